@@ -1,0 +1,5 @@
+//! encoder-studio: configure position encoders and small drives at a desk. ARCHITECTURE.md describes the house.
+
+pub mod bits;
+pub mod protocol;
+pub mod units;

@@ -1,0 +1,3 @@
+//! The program: arguments → a command.
+
+fn main() {}

@@ -1,0 +1,49 @@
+//! Who a frame is for (manual, "ADDRESS-Format").
+
+use std::fmt;
+
+/// Every encoder on the line obeys; each answers with its own address. Allowed only with one encoder connected, unless
+/// the command has no reply.
+pub const BROADCAST: u8 = 0xFF;
+
+/// The address byte of one encoder: device number 0…31 plus 40h, so 40h…5Fh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DeviceAddress(u8);
+
+impl DeviceAddress {
+    /// 40h, the factory setting.
+    pub const FACTORY: DeviceAddress = DeviceAddress(0x40);
+
+    /// An address byte 40h…5Fh; `None` for any other.
+    pub const fn new(byte: u8) -> Option<Self> {
+        if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
+    }
+
+    /// All 32 addresses, 40h first.
+    pub fn all() -> impl Iterator<Item = DeviceAddress> {
+        (0x40..=0x5F).map(DeviceAddress)
+    }
+
+    /// The byte on the line.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+}
+
+impl fmt::Display for DeviceAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}h", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_40h_to_5fh_name_a_device() {
+        let valid: Vec<u8> = (0..=0xFF).filter(|byte| DeviceAddress::new(*byte).is_some()).collect();
+        assert_eq!(valid, (0x40..=0x5F).collect::<Vec<u8>>());
+        assert!(DeviceAddress::all().map(DeviceAddress::byte).eq(0x40..=0x5F));
+    }
+}

@@ -1,0 +1,164 @@
+//! The twenty commands (manual, "Übersicht der Commands").
+
+use std::time::Duration;
+
+/// A command byte without the error bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+#[expect(missing_docs, reason = "the name in the table below is the documentation")]
+pub enum Command {
+    ReadPosition = 0x42,
+    SetPosition = 0x43,
+    ReadAnalogue = 0x44,
+    ReadCounter = 0x46,
+    IncrementCounter = 0x47,
+    ClearCounter = 0x49,
+    ReadData = 0x4A,
+    StoreData = 0x4B,
+    FieldStatus = 0x4C,
+    DefineField = 0x4D,
+    FreeMemory = 0x4E,
+    ChangeCode = 0x4F,
+    ReadStatus = 0x50,
+    ReadTypeLabel = 0x52,
+    Reset = 0x53,
+    SetAddress = 0x55,
+    ReadSerial = 0x56,
+    ConfigureLine = 0x57,
+    Synchronise = 0x63,
+    ConfigureLineTemporarily = 0x67,
+}
+
+/// One line of the manual's table.
+#[derive(Clone, Copy, Debug)]
+pub struct CommandRow {
+    /// The command.
+    pub command: Command,
+    /// The manual's name of it.
+    pub name: &'static str,
+    /// "Code 0" has to be given.
+    pub code0: bool,
+    /// Longest time to process it, without transfer and protocol time-out; zero for a command without reply.
+    pub max_time: Duration,
+    /// Bytes between command and checksum of the request; for 4Bh the least number.
+    pub request_payload: usize,
+    /// It changes what the encoder keeps without power.
+    pub persistent: bool,
+    /// Sending it again after a lost reply does no harm and changes nothing.
+    pub repeatable: bool,
+}
+
+const fn row(
+    command: Command,
+    name: &'static str,
+    code0: bool,
+    max_ms: u64,
+    request_payload: usize,
+    persistent: bool,
+    repeatable: bool,
+) -> CommandRow {
+    CommandRow {
+        command,
+        name,
+        code0,
+        max_time: Duration::from_millis(max_ms),
+        request_payload,
+        persistent,
+        repeatable,
+    }
+}
+
+/// Every command in the manual's order with the manual's columns (times: column "maximale Antwortzeit").
+#[rustfmt::skip]
+pub const COMMANDS: [CommandRow; 20] = [
+    //                                      name                                code0  ms  payload persistent repeatable
+    row(Command::ReadPosition,              "read position",                    false,  10, 0, false, true),
+    row(Command::SetPosition,               "set position",                     true,   40, 5, true,  false),
+    row(Command::ReadAnalogue,              "read analogue value",              false,   5, 1, false, true),
+    row(Command::ReadCounter,               "read counter",                     false,   5, 0, false, true),
+    row(Command::IncrementCounter,          "increment counter",                false,  30, 0, true,  false),
+    row(Command::ClearCounter,              "clear counter",                    true,   30, 1, true,  false),
+    row(Command::ReadData,                  "read data",                        false,  30, 4, false, true),
+    row(Command::StoreData,                 "store data",                       false, 250, 5, true,  false),
+    row(Command::FieldStatus,               "read data field status",           false,   5, 1, false, true),
+    row(Command::DefineField,               "create, change or delete a data field", false, 70, 3, true, false),
+    row(Command::FreeMemory,                "read available memory",            false,   5, 0, false, true),
+    row(Command::ChangeCode,                "change access code",               false,  40, 3, true,  false),
+    row(Command::ReadStatus,                "read encoder status",              false,   5, 0, false, true),
+    row(Command::ReadTypeLabel,             "read type label",                  false,   5, 0, false, true),
+    row(Command::Reset,                     "reset",                            false,   0, 0, false, false),
+    row(Command::SetAddress,                "set address",                      true,   40, 2, true,  false),
+    row(Command::ReadSerial,                "read serial number and firmware",  false,   5, 0, false, true),
+    row(Command::ConfigureLine,             "configure serial interface",       true,   40, 2, true,  false),
+    row(Command::Synchronise,               "set position and synchronise",     true,   40, 5, true,  false),
+    row(Command::ConfigureLineTemporarily,  "configure serial interface temporarily", false, 5, 1, false, false),
+];
+
+impl Command {
+    /// The command of a command byte, whatever its error bit.
+    pub fn from_byte(byte: u8) -> Option<Self> {
+        COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
+    }
+
+    /// The command byte without the error bit.
+    pub const fn byte(self) -> u8 {
+        self as u8
+    }
+
+    /// The command's line of the manual's table.
+    pub fn row(self) -> &'static CommandRow {
+        // The table lists every variant (tested); its first line stands in for the impossible.
+        let [first, ..] = &COMMANDS;
+        COMMANDS.iter().find(|row| row.command == self).unwrap_or(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Manual, page 18, typed from the table: command byte, Code 0 mark, maximum time in ms (None for "---").
+    const MANUAL: [(u8, bool, Option<u64>); 20] = [
+        (0x42, false, Some(10)),
+        (0x43, true, Some(40)),
+        (0x44, false, Some(5)),
+        (0x46, false, Some(5)),
+        (0x47, false, Some(30)),
+        (0x49, true, Some(30)),
+        (0x4A, false, Some(30)),
+        (0x4B, false, Some(250)),
+        (0x4C, false, Some(5)),
+        (0x4D, false, Some(70)),
+        (0x4E, false, Some(5)),
+        (0x4F, false, Some(40)),
+        (0x50, false, Some(5)),
+        (0x52, false, Some(5)),
+        (0x53, false, None),
+        (0x55, true, Some(40)),
+        (0x56, false, Some(5)),
+        (0x57, true, Some(40)),
+        (0x63, true, Some(40)),
+        (0x67, false, Some(5)),
+    ];
+
+    #[test]
+    fn the_table_is_the_manuals() {
+        for ((byte, code0, ms), row) in MANUAL.into_iter().zip(COMMANDS) {
+            assert_eq!(row.command.byte(), byte);
+            assert_eq!(row.code0, code0, "{byte:02X}");
+            assert_eq!(row.max_time, Duration::from_millis(ms.unwrap_or(0)), "{byte:02X}");
+        }
+    }
+
+    #[test]
+    fn every_command_finds_its_own_row_and_byte() {
+        for row in COMMANDS {
+            assert_eq!(row.command.row().name, row.name);
+            assert_eq!(Command::from_byte(row.command.byte()), Some(row.command));
+            assert_eq!(Command::from_byte(row.command.byte() | 0x80), Some(row.command));
+            assert!(!(row.persistent && row.repeatable), "{}: what writes is never repeated blindly", row.name);
+        }
+        let known = (0..=0x7F).filter(|byte| Command::from_byte(*byte).is_some()).count();
+        assert_eq!(known, 20);
+    }
+}

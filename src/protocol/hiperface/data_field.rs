@@ -1,0 +1,257 @@
+//! Data fields: the partitions of the encoder's EEPROM (manual, "Datenspeicherung und Verwaltung", figure 28).
+
+use std::fmt;
+
+/// The number of the extended type label's field; read only.
+pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
+
+/// Most data bytes in one 4Ah or 4Bh.
+pub const MAX_TRANSFER: usize = 128;
+
+/// Which of the encoder's four access codes: 0…3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CodeNumber(u8);
+
+impl CodeNumber {
+    /// Code 0 also guards the settings of the encoder itself.
+    pub const ZERO: CodeNumber = CodeNumber(0);
+
+    /// 0…3; `None` above.
+    pub const fn new(number: u8) -> Option<Self> {
+        if number < 4 { Some(CodeNumber(number)) } else { None }
+    }
+
+    /// All four.
+    pub fn all() -> impl Iterator<Item = CodeNumber> {
+        (0..4).map(CodeNumber)
+    }
+
+    /// The number on the line.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl fmt::Display for CodeNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// An access code. It shows itself nowhere: not in a log, a trace, an error or a test's output.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct AccessCode(u8);
+
+impl AccessCode {
+    /// 55h, the factory value of all four codes.
+    pub const FACTORY: AccessCode = AccessCode(0x55);
+
+    /// Any byte is an access code.
+    pub const fn new(byte: u8) -> Self {
+        AccessCode(byte)
+    }
+
+    /// The byte for the line.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+}
+
+impl fmt::Debug for AccessCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("AccessCode(**)")
+    }
+}
+
+/// Size of a data field: 16, 32 … 128 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FieldSize(u8);
+
+impl FieldSize {
+    /// Bytes in a block, the unit in which memory is given out.
+    pub const BLOCK: usize = 16;
+
+    /// A size in bytes; `None` unless it is a multiple of 16 from 16 to 128.
+    pub fn from_bytes(bytes: usize) -> Option<Self> {
+        if !bytes.is_multiple_of(Self::BLOCK) {
+            return None;
+        }
+        Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
+    }
+
+    /// A size in blocks of 16 bytes, 1…8.
+    pub const fn from_blocks(blocks: u8) -> Option<Self> {
+        if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
+    }
+
+    /// Every size, smallest first.
+    pub fn all() -> impl Iterator<Item = FieldSize> {
+        (1..=8).map(FieldSize)
+    }
+
+    /// Size in bytes.
+    pub const fn bytes(self) -> usize {
+        self.0 as usize * Self::BLOCK
+    }
+
+    /// Size in blocks of 16 bytes.
+    pub const fn blocks(self) -> u8 {
+        self.0
+    }
+}
+
+/// The data field status byte of 4Ch and 4Dh.
+///
+/// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
+/// |---|---|---|---|---|---|
+/// | | E exists | WE write enable | access code 0…3 | CE code required | blocks − 1 |
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DataFieldStatus(u8);
+
+impl DataFieldStatus {
+    const EXISTS: u8 = 0x80;
+    const WRITE_ENABLE: u8 = 0x40;
+    const CODE_REQUIRED: u8 = 0x08;
+
+    /// Every byte is a status byte.
+    pub const fn from_byte(byte: u8) -> Self {
+        DataFieldStatus(byte)
+    }
+
+    /// An existing, writable field.
+    pub const fn new(size: FieldSize, code: CodeNumber, code_required: bool) -> Self {
+        let required = if code_required { Self::CODE_REQUIRED } else { 0 };
+        DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
+    }
+
+    /// The byte on the line.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// E: the field is defined.
+    pub const fn exists(self) -> bool {
+        self.0 & Self::EXISTS != 0
+    }
+
+    /// WE: the field may be written.
+    pub const fn is_writable(self) -> bool {
+        self.0 & Self::WRITE_ENABLE != 0
+    }
+
+    /// Which access code guards the field.
+    pub const fn code(self) -> CodeNumber {
+        CodeNumber(self.0 >> 4 & 3)
+    }
+
+    /// CE: reading and writing need the access code.
+    pub const fn code_required(self) -> bool {
+        self.0 & Self::CODE_REQUIRED != 0
+    }
+
+    /// (SIZE + 1) · 16 bytes.
+    pub const fn size(self) -> FieldSize {
+        FieldSize((self.0 & 7) + 1)
+    }
+
+    /// The same field, writable or not.
+    #[must_use]
+    pub const fn with_write_enable(self, writable: bool) -> Self {
+        DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
+    }
+
+    /// The same field with another size.
+    #[must_use]
+    pub const fn with_size(self, size: FieldSize) -> Self {
+        DataFieldStatus(self.0 & !7 | (size.0 - 1))
+    }
+
+    /// The status that deletes this field: E is 0.
+    #[must_use]
+    pub const fn deleted(self) -> Self {
+        DataFieldStatus(self.0 & !Self::EXISTS)
+    }
+}
+
+impl fmt::Debug for DataFieldStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}h ({self})", self.0)
+    }
+}
+
+impl fmt::Display for DataFieldStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.exists() {
+            return f.write_str("not defined");
+        }
+        let access = if self.is_writable() { "writable" } else { "write protected" };
+        let code = if self.code_required() { "code required" } else { "no code to read" };
+        write!(f, "{} bytes, {access}, code {}, {code}", self.size().bytes(), self.code())
+    }
+}
+
+/// Reply to 4Eh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FreeMemory {
+    /// Blocks of 16 bytes that no field uses.
+    pub blocks: u8,
+    /// Number of data fields, the extended label not counted.
+    pub fields: u8,
+}
+
+impl FreeMemory {
+    /// Free memory in bytes.
+    pub fn bytes(self) -> usize {
+        usize::from(self.blocks) * FieldSize::BLOCK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn status_bytes_say_what_the_reference_says() {
+        // byte, exists, writable, code, code required, size
+        let cases = [
+            (0xC9, true, true, 0, true, 32),
+            (0xE0, true, true, 2, false, 16),
+            (0xE8, true, true, 2, true, 16),
+            (0xC8, true, true, 0, true, 16),
+            (0xCF, true, true, 0, true, 128),
+            (0xA8, true, false, 2, true, 16),
+            (0x8B, true, false, 0, true, 64),
+            (0x83, true, false, 0, false, 64),
+            (0x49, false, true, 0, true, 32),
+        ];
+        for (byte, exists, writable, code, required, size) in cases {
+            let status = DataFieldStatus::from_byte(byte);
+            assert_eq!(status.exists(), exists, "{byte:02X}");
+            assert_eq!(status.is_writable(), writable, "{byte:02X}");
+            assert_eq!(status.code().get(), code, "{byte:02X}");
+            assert_eq!(status.code_required(), required, "{byte:02X}");
+            assert_eq!(status.size().bytes(), size, "{byte:02X}");
+        }
+    }
+
+    #[test]
+    fn a_status_is_built_as_the_manual_builds_it() {
+        let size = FieldSize::from_bytes(32).unwrap();
+        let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);
+        assert_eq!(status.byte(), 0xC9);
+        assert_eq!(status.deleted().byte(), 0x49);
+        assert_eq!(DataFieldStatus::from_byte(0xE8).with_write_enable(false).byte(), 0xA8);
+        assert_eq!(status.with_size(FieldSize::from_bytes(128).unwrap()).byte(), 0xCF);
+    }
+
+    #[test]
+    fn sizes_are_blocks_of_sixteen() {
+        assert!([0, 1, 15, 17, 127, 129, 144].iter().all(|bytes| FieldSize::from_bytes(*bytes).is_none()));
+        assert_eq!(FieldSize::all().map(FieldSize::bytes).collect::<Vec<_>>(), [16, 32, 48, 64, 80, 96, 112, 128]);
+    }
+
+    #[test]
+    fn an_access_code_never_shows_itself() {
+        assert_eq!(format!("{:?}", AccessCode::FACTORY), "AccessCode(**)");
+    }
+}

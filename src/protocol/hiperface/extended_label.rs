@@ -1,0 +1,163 @@
+//! The extended type label in data field FFh (manual, "Inhalt des Datenfeldes FFh").
+
+use super::type_label::text;
+use super::{Geometry, checksum};
+
+/// What an encoder with type FFh says about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExtendedLabel {
+    /// The stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a difference warns, it
+    /// never rejects.
+    pub checksum_fits: bool,
+    /// Byte 01h: bit 0 linear, bit 1 bipolar counting; shown raw, because another public source has bit 1 reversed.
+    pub flags: u8,
+    /// Periods and turns, or period length and range; `None` where a number is zero or too large.
+    pub geometry: Option<Geometry>,
+    /// Designation, 18 characters, blank padded.
+    pub designation: String,
+    /// The limits that are valid, in the order of their numbers.
+    pub parameters: Vec<LabelParameter>,
+}
+
+/// A limit. What each number stands for is in the encoder's data sheet (`U`); a quantity that 44h can read has its
+/// analogue channel as the first word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LabelParameter {
+    /// 0…14 in the first set, 15…29 in the second, 30…44 in the third.
+    pub number: u8,
+    /// The word, two's complement.
+    pub value: i16,
+}
+
+/// Why a data field is not an extended label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LabelError {
+    /// Too short for the description in bytes 00h…1Bh.
+    #[error("{got} bytes are too few for an extended type label of at least {}", ExtendedLabel::MIN_BYTES)]
+    Short {
+        /// Bytes there were.
+        got: usize,
+    },
+}
+
+impl ExtendedLabel {
+    /// Bytes 00h…1Bh: the description without limits.
+    pub const MIN_BYTES: usize = 0x1C;
+    /// Bit 0 of the flags.
+    pub const LINEAR: u8 = 0x01;
+    /// Bit 1 of the flags.
+    pub const BIPOLAR: u8 = 0x02;
+    /// A selector word and fifteen limit words.
+    const SET_BYTES: usize = 32;
+
+    /// Reads the content of field FFh.
+    ///
+    /// # Errors
+    /// [`LabelError::Short`] when the description is not complete. Limits beyond the end of the field are left out.
+    pub fn parse(bytes: &[u8]) -> Result<Self, LabelError> {
+        let (description, sets) =
+            bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
+        let [_checksum, flags, a3, a2, a1, a0, b3, b2, b1, b0, designation @ ..] = description;
+        let first = u32::from_be_bytes([*a3, *a2, *a1, *a0]);
+        let second = u32::from_be_bytes([*b3, *b2, *b1, *b0]);
+        Ok(ExtendedLabel {
+            checksum_fits: checksum(bytes) == 0,
+            flags: *flags,
+            geometry: Self::geometry(flags & Self::LINEAR != 0, first, second),
+            designation: text(designation),
+            parameters: Self::parameters(sets),
+        })
+    }
+
+    fn geometry(linear: bool, first: u32, second: u32) -> Option<Geometry> {
+        if first == 0 || second == 0 {
+            return None;
+        }
+        let geometry = if linear {
+            Geometry::Linear { period_nm: first, periods: second }
+        } else {
+            Geometry::Rotary { periods: first, turns: second }
+        };
+        // The position word has 32 bits.
+        geometry.range().filter(|range| *range <= 1 << 32).map(|_| geometry)
+    }
+
+    fn parameters(mut sets: &[u8]) -> Vec<LabelParameter> {
+        let mut parameters = Vec::new();
+        for set in 0..3u8 {
+            let Some(([high, low], limits)) = sets.split_first_chunk::<2>() else { break };
+            let selector = u16::from_be_bytes([*high, *low]);
+            let (words, _) = limits.as_chunks::<2>();
+            for (slot, word) in (0..15u8).zip(words) {
+                if selector & 1 << slot != 0 {
+                    parameters.push(LabelParameter { number: set * 15 + slot, value: i16::from_be_bytes(*word) });
+                }
+            }
+            let another_follows = selector & 0x8000 != 0;
+            match sets.get(Self::SET_BYTES..) {
+                Some(rest) if another_follows => sets = rest,
+                _ => break,
+            }
+        }
+        parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The synthetic label of the reference, 64 bytes, XOR checksum.
+    fn label() -> Vec<u8> {
+        let mut bytes = crate::bits::parse_hex(
+            "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",
+        )
+        .unwrap();
+        bytes.resize(64, 0);
+        bytes
+    }
+
+    #[test]
+    fn the_label_of_the_reference() {
+        let label = ExtendedLabel::parse(&label()).unwrap();
+        assert!(label.checksum_fits);
+        assert_eq!(label.geometry, Some(Geometry::Rotary { periods: 16, turns: 4096 }));
+        assert_eq!(label.designation, "SEL37-HFB0-K02");
+        let parameters: Vec<(u8, i16)> = label.parameters.iter().map(|p| (p.number, p.value)).collect();
+        assert_eq!(parameters, [(0, 0x48), (1, 115)]);
+    }
+
+    #[test]
+    fn a_linear_label_and_a_second_set() {
+        let mut bytes = vec![0; 128];
+        bytes[1] = 0x01;
+        bytes[2..6].copy_from_slice(&1_000_000u32.to_be_bytes());
+        bytes[6..10].copy_from_slice(&5_000u32.to_be_bytes());
+        bytes[0x1C..0x1E].copy_from_slice(&[0xC0, 0x00]); // parameter 14, and another selector
+        bytes[0x1E + 28..0x1E + 30].copy_from_slice(&(-40i16).to_be_bytes());
+        bytes[0x3C..0x3E].copy_from_slice(&[0x00, 0x01]);
+        bytes[0x3E..0x40].copy_from_slice(&[0x12, 0x34]);
+        let label = ExtendedLabel::parse(&bytes).unwrap();
+        assert_eq!(label.geometry, Some(Geometry::Linear { period_nm: 1_000_000, periods: 5_000 }));
+        let parameters: Vec<(u8, i16)> = label.parameters.iter().map(|p| (p.number, p.value)).collect();
+        assert_eq!(parameters, [(14, -40), (15, 0x1234)]);
+        assert!(!label.checksum_fits, "it warns and still reads");
+    }
+
+    #[test]
+    fn every_cut_is_read_or_refused() {
+        let whole = label();
+        for cut in 0..whole.len() {
+            assert_eq!(ExtendedLabel::parse(&whole[..cut]).is_ok(), cut >= ExtendedLabel::MIN_BYTES, "{cut}");
+        }
+    }
+
+    #[test]
+    fn impossible_numbers_are_no_geometry() {
+        let mut bytes = label();
+        bytes[2..6].copy_from_slice(&u32::MAX.to_be_bytes());
+        assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
+        bytes[2..6].copy_from_slice(&[0; 4]);
+        assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
+    }
+}

@@ -1,0 +1,121 @@
+//! The frame: address, command byte, payload, XOR checksum (manual, "Das Übertragungsprotokoll").
+
+/// XOR of all bytes; zero over a whole valid frame.
+pub fn checksum(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum, byte| sum ^ byte)
+}
+
+/// A frame whose checksum was right. What the payload means depends on the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// Address byte as received: 40h…5Fh, FFh in a broadcast.
+    pub address: u8,
+    /// Command byte as received, error bit included.
+    pub command: u8,
+    /// Everything between the command byte and the checksum.
+    pub payload: &'a [u8],
+}
+
+/// Why bytes are not a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// Fewer than the three bytes that every frame has.
+    #[error("{got} bytes are too few for a frame")]
+    Short {
+        /// Bytes received.
+        got: usize,
+    },
+    /// The last byte is not the XOR of the others.
+    #[error("checksum {got:02X} where {expected:02X} was expected")]
+    Checksum {
+        /// What the other bytes give.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+}
+
+impl<'a> Frame<'a> {
+    /// The error bit of a reply's command byte.
+    pub const ERROR_BIT: u8 = 0x80;
+
+    /// Takes a frame apart. The whole slice is the frame: where it ends is told by silence on the line.
+    ///
+    /// # Errors
+    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] when the last byte does not fit.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
+        let [address, command, payload @ .., got] = bytes else {
+            return Err(FrameError::Short { got: bytes.len() });
+        };
+        let expected = checksum(bytes) ^ got;
+        if expected != *got {
+            return Err(FrameError::Checksum { expected, got: *got });
+        }
+        Ok(Frame { address: *address, command: *command, payload })
+    }
+
+    /// The bytes on the line, checksum last.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.payload.len() + 3);
+        bytes.extend([self.address, self.command]);
+        bytes.extend(self.payload);
+        bytes.push(checksum(&bytes));
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Manual, "Beispiel zur Datenfelddefinition": every frame of the example, and whether its printed checksum is right.
+    const MANUAL_EXAMPLE: [(&[u8], bool); 11] = [
+        (&[0x40, 0x4E, 0x0E], true),
+        (&[0x40, 0x4E, 0x08, 0x00, 0x06], true),
+        (&[0x40, 0x4D, 0x00, 0xC9, 0x55, 0x91], true),
+        (&[0x40, 0x4D, 0x00, 0xC9, 0xC4], true),
+        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0x69], false), // printed wrong: B9 is right
+        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0xB9], true),
+        (&[0x40, 0x4D, 0x01, 0xE0, 0xEC], true),
+        (&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], true),
+        (&[0x40, 0x4F, 0x02, 0x0D], true),
+        (&[0x40, 0x4B, 0x01, 0x05, 0x02, 0x66, 0x08, 0x15, 0x76], true),
+        (&[0x40, 0x4B, 0x01, 0x05, 0x02, 0x0D], true),
+    ];
+
+    #[test]
+    fn the_manuals_example_is_read_as_printed() {
+        for (bytes, right) in MANUAL_EXAMPLE {
+            match Frame::parse(bytes) {
+                Ok(frame) => assert!(right && frame.emit() == bytes, "{bytes:02X?}"),
+                Err(error) => {
+                    assert!(!right);
+                    assert_eq!(error, FrameError::Checksum { expected: 0xB9, got: 0x69 });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_cut_and_every_flipped_bit_is_refused() {
+        let frame = [0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38];
+        for cut in 0..frame.len() {
+            assert!(Frame::parse(&frame[..cut]).is_err(), "cut at {cut}");
+        }
+        for bit in 0..frame.len() * 8 {
+            let mut damaged = frame;
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert!(Frame::parse(&damaged).is_err(), "bit {bit}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_emitted_is_parsed(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..140)) {
+            let frame = Frame { address, command, payload: &payload };
+            let bytes = frame.emit();
+            prop_assert_eq!(Frame::parse(&bytes), Ok(frame));
+        }
+    }
+}

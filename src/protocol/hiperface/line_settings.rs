@@ -1,0 +1,170 @@
+//! The settings byte of the serial interface: 52h reads it, 57h and 67h set it (manual, figure 42; the order of bits 7
+//! and 6 is derived from the figure's order).
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::units::{Baud, Parity};
+
+/// Speeds by their three-bit code; 111 is reserved.
+pub const BAUDS: [Baud; 7] = [baud(600), baud(1200), baud(2400), baud(4800), baud(9600), baud(19200), baud(38400)];
+
+const fn baud(bits_per_second: u32) -> Baud {
+    match Baud::new(bits_per_second) {
+        Some(baud) => baud,
+        None => Baud::B9600,
+    }
+}
+
+/// How a character travels: what both ends must agree upon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CharacterFormat {
+    /// Speed.
+    pub baud: Baud,
+    /// Parity bit.
+    pub parity: Parity,
+}
+
+impl CharacterFormat {
+    /// 9600 bit/s, 8E1.
+    pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
+
+    /// One character on the line: the manual reckons with 11 bits whatever the parity.
+    pub fn character_time(self) -> Duration {
+        self.baud.time_of_bits(11)
+    }
+}
+
+impl fmt::Display for CharacterFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} 8{}1", self.baud, self.parity.letter())
+    }
+}
+
+/// The RS485 settings byte.
+///
+/// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
+/// |---|---|---|---|---|---|
+/// | | 1 standard, 0 bus | time-out 1: 44/baud, 0: 11/baud | parity 00 none, 10 even, 11 odd | 0 | speed |
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct LineSettings(u8);
+
+impl LineSettings {
+    /// E4h: standard, 44/baud, even, 9600.
+    pub const FACTORY: LineSettings = LineSettings(0xE4);
+
+    const STANDARD: u8 = 0x80;
+    const LONG_TIMEOUT: u8 = 0x40;
+
+    /// Every byte is kept, also one with reserved values.
+    pub const fn from_byte(byte: u8) -> Self {
+        LineSettings(byte)
+    }
+
+    /// The byte on the line.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// The same interface with another character format; `None` for a speed that the byte cannot express.
+    pub fn with_format(self, format: CharacterFormat) -> Option<Self> {
+        let speed = u8::try_from(BAUDS.iter().position(|baud| *baud == format.baud)?).ok()?;
+        let parity = match format.parity {
+            Parity::None => 0b00,
+            Parity::Even => 0b10,
+            Parity::Odd => 0b11,
+        };
+        Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
+    }
+
+    /// Speed; `None` for the reserved code 111.
+    pub fn baud(self) -> Option<Baud> {
+        BAUDS.get(usize::from(self.0 & 7)).copied()
+    }
+
+    /// Parity; `None` for the reserved code 01.
+    pub const fn parity(self) -> Option<Parity> {
+        match self.0 >> 4 & 3 {
+            0b00 => Some(Parity::None),
+            0b10 => Some(Parity::Even),
+            0b11 => Some(Parity::Odd),
+            _ => None,
+        }
+    }
+
+    /// Speed and parity; `None` where either is reserved.
+    pub fn format(self) -> Option<CharacterFormat> {
+        Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
+    }
+
+    /// Bit 6: the time-out is 44/baud, else 11/baud.
+    pub const fn long_timeout(self) -> bool {
+        self.0 & Self::LONG_TIMEOUT != 0
+    }
+
+    /// Bit 7 is 0: an encoder for a bus of several.
+    pub const fn is_bus(self) -> bool {
+        self.0 & Self::STANDARD == 0
+    }
+
+    /// No reserved value in it: it may be sent to an encoder.
+    pub fn is_valid(self) -> bool {
+        self.format().is_some() && self.0 & 0x08 == 0
+    }
+}
+
+impl fmt::Debug for LineSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}h ({self})", self.0)
+    }
+}
+
+impl fmt::Display for LineSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.format() {
+            Some(format) => write!(f, "{format}")?,
+            None => write!(f, "reserved format")?,
+        }
+        let timeout = if self.long_timeout() { 44 } else { 11 };
+        let wiring = if self.is_bus() { "bus" } else { "standard" };
+        write!(f, ", time-out {timeout} bits, {wiring}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_bytes_say_what_the_reference_says() {
+        // byte, baud, parity, long time-out, bus
+        let cases = [
+            (0xE4, 9600, Parity::Even, true, false),
+            (0xE5, 19200, Parity::Even, true, false),
+            (0xE6, 38400, Parity::Even, true, false),
+            (0xC4, 9600, Parity::None, true, false),
+            (0xF4, 9600, Parity::Odd, true, false),
+            (0xA4, 9600, Parity::Even, false, false),
+            (0x64, 9600, Parity::Even, true, true),
+            (0x85, 19200, Parity::None, false, false),
+        ];
+        for (byte, baud, parity, long_timeout, bus) in cases {
+            let settings = LineSettings::from_byte(byte);
+            let format = CharacterFormat { baud: Baud::new(baud).unwrap(), parity };
+            assert_eq!(settings.format(), Some(format), "{byte:02X}");
+            assert_eq!(settings.long_timeout(), long_timeout, "{byte:02X}");
+            assert_eq!(settings.is_bus(), bus, "{byte:02X}");
+            assert_eq!(settings.with_format(format), Some(settings), "{byte:02X}");
+            assert!(settings.is_valid());
+        }
+    }
+
+    #[test]
+    fn reserved_values_are_kept_and_not_sent() {
+        for byte in [0xE7, 0xD4, 0xEC] {
+            let settings = LineSettings::from_byte(byte);
+            assert_eq!(settings.byte(), byte);
+            assert!(!settings.is_valid(), "{byte:02X}");
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! The HIPERFACE parameter channel: frames, commands, status codes, data fields, labels and timing.
+//!
+//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual" below). What the manual leaves open is
+//! marked `U` (unknown) and treated tolerantly; what other public sources say is marked `P`.
+//!
+//! ```text
+//! request : ADDR CMD [args…] CHK        reply : ADDR CMD [data…] CHK
+//! ```
+//! A frame ends with silence. `CHK` is the XOR of all bytes before it. Bit 7 of a reply's `CMD` is the error bit.
+
+mod address;
+mod command;
+mod data_field;
+mod describe;
+mod encoder_type;
+mod extended_label;
+mod frame;
+mod line_settings;
+mod position;
+mod reply;
+mod request;
+mod status;
+mod timing;
+mod type_label;
+
+pub use address::{BROADCAST, DeviceAddress};
+pub use command::{COMMANDS, Command, CommandRow};
+pub use data_field::{
+    AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
+};
+pub use describe::describe;
+pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
+pub use extended_label::{ExtendedLabel, LabelError, LabelParameter};
+pub use frame::{Frame, FrameError, checksum};
+pub use line_settings::{BAUDS, CharacterFormat, LineSettings};
+pub use position::{Geometry, Position, STEPS_PER_PERIOD, nearest_in_phase};
+pub use reply::{Answer, Reply, ReplyError, ReplyLength};
+pub use request::{Request, RequestError, SecretFrame};
+pub use status::{StatusClass, StatusCode};
+pub use timing::Timing;
+pub use type_label::{SerialLabel, TypeLabel};

@@ -1,0 +1,197 @@
+//! The position word: 5 bits a signal period, least significant bit right-aligned (manual, "Position lesen").
+
+use std::fmt;
+
+/// Steps in one signal period: the position always resolves 5 bits of it.
+pub const STEPS_PER_PERIOD: u32 = 32;
+
+/// What the steps of an encoder mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Geometry {
+    /// A shaft.
+    Rotary {
+        /// Signal periods in a revolution, at least 1.
+        periods: u32,
+        /// Revolutions that the encoder tells apart: 1 for a singleturn.
+        turns: u32,
+    },
+    /// A scale or a distance.
+    Linear {
+        /// Length of a signal period in nanometres, at least 1.
+        period_nm: u32,
+        /// Coded range in periods; 0 where nothing is said about it.
+        periods: u32,
+    },
+}
+
+impl Geometry {
+    /// Steps in one revolution; `None` for a linear encoder.
+    pub fn steps_per_turn(self) -> Option<u64> {
+        match self {
+            Geometry::Rotary { periods, .. } => Some(u64::from(periods.max(1)) * u64::from(STEPS_PER_PERIOD)),
+            Geometry::Linear { .. } => None,
+        }
+    }
+
+    /// Number of different positions, so that they run from 0 to one less; `None` where it is not known.
+    pub fn range(self) -> Option<u64> {
+        match self {
+            Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()? * u64::from(turns.max(1))),
+            Geometry::Linear { periods: 0, .. } => None,
+            Geometry::Linear { periods, .. } => Some(u64::from(periods) * u64::from(STEPS_PER_PERIOD)),
+        }
+    }
+
+    /// Takes a position word apart.
+    pub fn position(self, raw: u32) -> Position {
+        let in_range = self.range().is_none_or(|range| u64::from(raw) < range);
+        match self {
+            Geometry::Rotary { .. } => {
+                let per_turn = self.steps_per_turn().unwrap_or(1);
+                let (turns, steps) = (u64::from(raw) / per_turn, u64::from(raw) % per_turn);
+                let degrees = steps as f64 * 360.0 / per_turn as f64;
+                Position { raw, in_range, place: Place::Rotary { turns, steps, degrees } }
+            }
+            Geometry::Linear { period_nm, .. } => {
+                let nanometres = f64::from(raw) * f64::from(period_nm) / f64::from(STEPS_PER_PERIOD);
+                Position { raw, in_range, place: Place::Linear { millimetres: nanometres * 1e-6 } }
+            }
+        }
+    }
+}
+
+impl fmt::Display for Geometry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Geometry::Rotary { periods, turns: 1 } => write!(f, "{periods} periods, singleturn"),
+            Geometry::Rotary { periods, turns } => write!(f, "{periods} periods, {turns} turns"),
+            Geometry::Linear { period_nm, .. } => write!(f, "linear, period {} mm", f64::from(*period_nm) * 1e-6),
+        }
+    }
+}
+
+/// A position word with its meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// The word as received.
+    pub raw: u32,
+    /// The word lies within the encoder's measuring range.
+    pub in_range: bool,
+    place: Place,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    Rotary { turns: u64, steps: u64, degrees: f64 },
+    Linear { millimetres: f64 },
+}
+
+impl Position {
+    /// Whole revolutions; `None` for a linear encoder.
+    pub fn turns(self) -> Option<u64> {
+        match self.place {
+            Place::Rotary { turns, .. } => Some(turns),
+            Place::Linear { .. } => None,
+        }
+    }
+
+    /// Steps within the revolution; `None` for a linear encoder.
+    pub fn steps(self) -> Option<u64> {
+        match self.place {
+            Place::Rotary { steps, .. } => Some(steps),
+            Place::Linear { .. } => None,
+        }
+    }
+
+    /// Degrees within the revolution, 0 up to 360; `None` for a linear encoder.
+    pub fn degrees(self) -> Option<f64> {
+        match self.place {
+            Place::Rotary { degrees, .. } => Some(degrees),
+            Place::Linear { .. } => None,
+        }
+    }
+
+    /// Millimetres; `None` for a rotary encoder.
+    pub fn millimetres(self) -> Option<f64> {
+        match self.place {
+            Place::Rotary { .. } => None,
+            Place::Linear { millimetres } => Some(millimetres),
+        }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Place::Rotary { turns, degrees, .. } => write!(f, "turn {turns}, {degrees:.3}°"),
+            Place::Linear { millimetres } => write!(f, "{millimetres:.6} mm"),
+        }
+    }
+}
+
+/// The value nearest to `wanted` that has the five lowest bits of `now`, so that setting it keeps the phase between the
+/// absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five highest of the
+/// arctangent). It stays within `range`; of two equally near values the lower is taken.
+pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
+    let phase = u64::from(now % STEPS_PER_PERIOD);
+    let wanted = u64::from(wanted);
+    let period = u64::from(STEPS_PER_PERIOD);
+    let last = range.unwrap_or(1 << 32).clamp(1, 1 << 32) - 1;
+    let base = wanted / period * period + phase;
+    [base.checked_sub(period), Some(base), base.checked_add(period)]
+        .into_iter()
+        .flatten()
+        .filter(|candidate| *candidate <= last)
+        .min_by_key(|candidate| candidate.abs_diff(wanted))
+        .and_then(|nearest| u32::try_from(nearest).ok())
+        .unwrap_or(now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_skm36_position_of_the_reference() {
+        let skm36 = Geometry::Rotary { periods: 128, turns: 4096 };
+        assert_eq!(skm36.range(), Some(1 << 24));
+        let position = skm36.position(0x000E_0531);
+        assert_eq!((position.turns(), position.steps()), (Some(224), Some(1329)));
+        assert!((position.degrees().unwrap() - 116.806_640_625).abs() < 1e-9);
+        assert!(position.in_range);
+        assert!(!skm36.position(0x0100_0000).in_range);
+    }
+
+    #[test]
+    fn one_step_is_what_the_reference_says() {
+        for (periods, step) in [(16, 0.703125), (128, 0.087890625), (512, 0.0219727), (1024, 0.0109863)] {
+            let degrees = Geometry::Rotary { periods, turns: 1 }.position(1).degrees().unwrap();
+            assert!((degrees - step).abs() < 1e-7, "{periods}: {degrees}");
+        }
+    }
+
+    #[test]
+    fn a_linear_encoder_gives_millimetres() {
+        let dme = Geometry::Linear { period_nm: 4_000_000, periods: 0 };
+        assert_eq!(dme.position(8).millimetres(), Some(1.0));
+        assert_eq!(dme.position(8).turns(), None);
+        assert!(dme.position(u32::MAX).in_range);
+    }
+
+    #[test]
+    fn the_phase_is_kept() {
+        // now, wanted, range, expected
+        let cases = [
+            (0x000E_0531, 0, Some(1 << 24), 17),
+            (0x000E_0531, 17, Some(1 << 24), 17),
+            (0x000E_0531, 1000, Some(1 << 24), 1009),
+            (0x0000_0000, 1008, Some(1 << 24), 992), // 992 and 1024 are equally near
+            (0x0000_001F, 0, Some(1 << 24), 31),
+            (0x0000_0001, 511, Some(512), 481), // 513 would be beyond the range
+            (0x0000_0000, u32::MAX, None, 0xFFFF_FFE0),
+        ];
+        for (now, wanted, range, expected) in cases {
+            assert_eq!(nearest_in_phase(now, wanted, range), expected, "{now:X} {wanted}");
+        }
+    }
+}

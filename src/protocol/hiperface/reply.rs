@@ -1,0 +1,218 @@
+//! What an encoder answers. Replies repeat address and command, then the data asked for (manual, "Fehlerbehandlung").
+//!
+//! The layouts of the replies to 55h, 57h and 67h are not printed (`U`): with and without the repeated argument is taken.
+
+use super::{
+    Command, DataFieldStatus, DeviceAddress, Frame, FrameError, FreeMemory, LineSettings, Request, SerialLabel,
+    StatusCode, TypeLabel,
+};
+
+/// The data of a reply.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// Carried out; there is nothing to tell.
+    Done,
+    /// 42h: position in steps (1/32 period).
+    Position(u32),
+    /// 44h: signed value, usually 10 bits for 5 V or the quantity of the data sheet.
+    Analogue(i16),
+    /// 46h: 0…FFFFFFh.
+    Counter(u32),
+    /// 4Ah: the bytes asked for.
+    Data(Vec<u8>),
+    /// 4Ch: the field's status byte.
+    FieldStatus(DataFieldStatus),
+    /// 4Eh.
+    FreeMemory(FreeMemory),
+    /// 50h: one code; some encoders send up to four.
+    Status(Vec<StatusCode>),
+    /// 52h.
+    TypeLabel(TypeLabel),
+    /// 56h.
+    Serial(SerialLabel),
+}
+
+/// A reply that belongs to its request.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// The request was carried out.
+    Reply {
+        /// Error bit: codes wait in the queue, to be read with 50h.
+        pending: bool,
+        /// The data.
+        reply: Reply,
+    },
+    /// The request was refused, with at least one code.
+    Rejected {
+        /// More codes wait in the queue.
+        pending: bool,
+        /// Why.
+        codes: Vec<StatusCode>,
+    },
+}
+
+/// Why bytes are not the reply to a request.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReplyError {
+    /// Not a frame at all.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// From somebody else.
+    #[error("reply from address {got:02X}h where {expected:02X}h was asked")]
+    Address {
+        /// Who was asked.
+        expected: u8,
+        /// Who answered.
+        got: u8,
+    },
+    /// To another command.
+    #[error("reply to command {got:02X}h where {expected:02X}h was sent")]
+    Command {
+        /// What was sent.
+        expected: u8,
+        /// What came back.
+        got: u8,
+    },
+    /// Too many or too few data bytes.
+    #[error("{got} data bytes do not fit the reply to {command:02X}h")]
+    Length {
+        /// The command.
+        command: u8,
+        /// Data bytes received.
+        got: usize,
+    },
+    /// The repeated arguments are not those of the request.
+    #[error("the reply repeats other arguments than were sent")]
+    Argument,
+}
+
+/// How many bytes a reply may have, checksum and all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReplyLength {
+    /// Shortest.
+    pub min: usize,
+    /// Longest: no more bytes are to come.
+    pub max: usize,
+}
+
+impl Request {
+    /// The reply's length, as far as the request and the bytes `received` so far tell. `None` for a request without
+    /// reply.
+    pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
+        let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
+        let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });
+        match self {
+            Request::Reset => None,
+            _ if rejected => payload(1, 4),
+            Request::ReadStatus => payload(1, 4),
+            Request::SetPosition { .. }
+            | Request::Synchronise { .. }
+            | Request::IncrementCounter
+            | Request::ClearCounter { .. } => payload(0, 0),
+            Request::ReadPosition | Request::ReadTypeLabel => payload(4, 4),
+            Request::ReadAnalogue { .. } | Request::ReadCounter | Request::StoreData { .. } => payload(3, 3),
+            Request::ReadData { count, .. } => payload(3 + usize::from(*count), 3 + usize::from(*count)),
+            Request::FieldStatus { .. } | Request::DefineField { .. } | Request::FreeMemory => payload(2, 2),
+            Request::ChangeCode { .. } => payload(1, 1),
+            Request::SetAddress { .. } | Request::ConfigureLine { .. } | Request::ConfigureLineTemporarily { .. } => {
+                payload(0, 1)
+            }
+            Request::ReadSerial => payload(SerialLabel::MIN_PAYLOAD, SerialLabel::MAX_PAYLOAD),
+        }
+    }
+
+    /// Reads the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
+    ///
+    /// # Errors
+    /// A broken frame, another sender, another command, a wrong length or other arguments: nothing of such a reply may
+    /// be shown as a value.
+    pub fn parse_reply(&self, address: u8, bytes: &[u8]) -> Result<Answer, ReplyError> {
+        let frame = Frame::parse(bytes)?;
+        self.check_sender(address, frame.address)?;
+        let pending = frame.command & Frame::ERROR_BIT != 0;
+        let expected = self.command();
+        let length_error = || ReplyError::Length { command: expected.byte(), got: frame.payload.len() };
+        match Command::from_byte(frame.command) {
+            Some(got) if got == expected => {
+                let reply = self.parse_payload(frame.payload)?.ok_or_else(length_error)?;
+                Ok(Answer::Reply { pending, reply })
+            }
+            Some(Command::ReadStatus) if (1..=4).contains(&frame.payload.len()) => {
+                Ok(Answer::Rejected { pending, codes: codes(frame.payload) })
+            }
+            _ => Err(ReplyError::Command { expected: expected.byte(), got: frame.command }),
+        }
+    }
+
+    fn check_sender(&self, address: u8, sender: u8) -> Result<(), ReplyError> {
+        let moved = matches!(self, Request::SetAddress { new, .. } if new.byte() == sender);
+        let broadcast = address == super::BROADCAST && DeviceAddress::new(sender).is_some();
+        if sender == address || moved || broadcast {
+            Ok(())
+        } else {
+            Err(ReplyError::Address { expected: address, got: sender })
+        }
+    }
+
+    /// `None` when the payload's length does not fit.
+    fn parse_payload(&self, payload: &[u8]) -> Result<Option<Reply>, ReplyError> {
+        let echoed = |same: bool, reply: Reply| if same { Ok(Some(reply)) } else { Err(ReplyError::Argument) };
+        match (self, payload) {
+            (Request::ReadPosition, [hh, hl, lh, ll]) => {
+                Ok(Some(Reply::Position(u32::from_be_bytes([*hh, *hl, *lh, *ll]))))
+            }
+            (
+                Request::SetPosition { .. }
+                | Request::Synchronise { .. }
+                | Request::IncrementCounter
+                | Request::ClearCounter { .. }
+                | Request::SetAddress { .. }
+                | Request::ConfigureLine { .. }
+                | Request::ConfigureLineTemporarily { .. },
+                [],
+            ) => Ok(Some(Reply::Done)),
+            (Request::SetAddress { new, .. }, [echo]) => echoed(new.byte() == *echo, Reply::Done),
+            (Request::ConfigureLine { settings, .. } | Request::ConfigureLineTemporarily { settings }, [echo]) => {
+                echoed(settings.byte() == *echo, Reply::Done)
+            }
+            (Request::ReadAnalogue { channel }, [echo, high, low]) => {
+                echoed(channel == echo, Reply::Analogue(i16::from_be_bytes([*high, *low])))
+            }
+            (Request::ReadCounter, [c2, c1, c0]) => Ok(Some(Reply::Counter(u32::from_be_bytes([0, *c2, *c1, *c0])))),
+            (Request::ReadData { field, address, count, .. }, [f, a, n, data @ ..]) => {
+                if data.len() != usize::from(*count) {
+                    return Ok(None);
+                }
+                echoed((field, address, count) == (f, a, n), Reply::Data(data.to_vec()))
+            }
+            (Request::StoreData { field, address, data, .. }, [f, a, n]) => {
+                echoed(field == f && address == a && data.len() == usize::from(*n), Reply::Done)
+            }
+            (Request::FieldStatus { field }, [f, status]) => {
+                echoed(field == f, Reply::FieldStatus(DataFieldStatus::from_byte(*status)))
+            }
+            (Request::DefineField { field, status, .. }, [f, s]) => {
+                echoed(field == f && status.byte() == *s, Reply::Done)
+            }
+            (Request::FreeMemory, [blocks, fields]) => {
+                Ok(Some(Reply::FreeMemory(FreeMemory { blocks: *blocks, fields: *fields })))
+            }
+            (Request::ChangeCode { number, .. }, [echo]) => echoed(number.get() == *echo, Reply::Done),
+            (Request::ReadStatus, [_, ..]) if payload.len() <= 4 => Ok(Some(Reply::Status(codes(payload)))),
+            (Request::ReadTypeLabel, [settings, encoder_type, eeprom_units, options]) => {
+                Ok(Some(Reply::TypeLabel(TypeLabel {
+                    settings: LineSettings::from_byte(*settings),
+                    encoder_type: *encoder_type,
+                    eeprom_units: *eeprom_units,
+                    options: *options,
+                })))
+            }
+            (Request::ReadSerial, _) => Ok(SerialLabel::parse(payload).map(Reply::Serial)),
+            _ => Ok(None),
+        }
+    }
+}
+
+fn codes(payload: &[u8]) -> Vec<StatusCode> {
+    payload.iter().copied().map(StatusCode::new).collect()
+}

@@ -1,0 +1,387 @@
+//! What a host asks: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from public
+//! implementations, `P`).
+
+use std::fmt;
+
+use super::{
+    AccessCode, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, LineSettings, MAX_TRANSFER, StatusCode,
+};
+use crate::bits::MaskedBytes;
+
+/// A request without its address.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// 42h: the absolute position.
+    ReadPosition,
+    /// 43h: give the shaft's present place a position. Only at standstill.
+    SetPosition {
+        /// New position in steps (1/32 period).
+        position: u32,
+        /// Code 0.
+        code0: AccessCode,
+    },
+    /// 44h: an analogue value.
+    ReadAnalogue {
+        /// Channel number of the data sheet.
+        channel: u8,
+    },
+    /// 46h: the 24-bit counter.
+    ReadCounter,
+    /// 47h: counter + 1. Wears the EEPROM: about a million times in a life.
+    IncrementCounter,
+    /// 49h: counter to 0.
+    ClearCounter {
+        /// Code 0.
+        code0: AccessCode,
+    },
+    /// 4Ah: bytes of a data field.
+    ReadData {
+        /// Data field number, FFh for the extended label.
+        field: u8,
+        /// First byte within the field.
+        address: u8,
+        /// Number of bytes, 1…128.
+        count: u8,
+        /// The field's access code; ignored by the encoder where CE is 0.
+        code: AccessCode,
+    },
+    /// 4Bh: write bytes of a data field.
+    StoreData {
+        /// Data field number.
+        field: u8,
+        /// First byte within the field.
+        address: u8,
+        /// The field's access code.
+        code: AccessCode,
+        /// 1…128 bytes.
+        data: Vec<u8>,
+    },
+    /// 4Ch: the status byte of a data field.
+    FieldStatus {
+        /// Data field number.
+        field: u8,
+    },
+    /// 4Dh: create, change or delete a data field.
+    DefineField {
+        /// Data field number.
+        field: u8,
+        /// Its status from now on; E = 0 deletes.
+        status: DataFieldStatus,
+        /// Access code of the field.
+        code: AccessCode,
+    },
+    /// 4Eh: free memory and number of fields.
+    FreeMemory,
+    /// 4Fh: change an access code.
+    ChangeCode {
+        /// Which one.
+        number: CodeNumber,
+        /// Its present value.
+        old: AccessCode,
+        /// Its new value.
+        new: AccessCode,
+    },
+    /// 50h: takes the oldest code out of the encoder's queue.
+    ReadStatus,
+    /// 52h: the type label.
+    ReadTypeLabel,
+    /// 53h: restart. There is no reply.
+    Reset,
+    /// 55h: another address.
+    SetAddress {
+        /// The address from now on.
+        new: DeviceAddress,
+        /// Code 0.
+        code0: AccessCode,
+    },
+    /// 56h: serial number and firmware.
+    ReadSerial,
+    /// 57h: interface settings, in force after the next reset.
+    ConfigureLine {
+        /// New settings.
+        settings: LineSettings,
+        /// Code 0.
+        code0: AccessCode,
+    },
+    /// 63h: set position and align the code tracks of a kit encoder. Only at standstill.
+    Synchronise {
+        /// New position in steps (1/32 period).
+        position: u32,
+        /// Code 0.
+        code0: AccessCode,
+    },
+    /// 67h: interface settings at once and until the next reset.
+    ConfigureLineTemporarily {
+        /// New settings.
+        settings: LineSettings,
+    },
+}
+
+/// Why an encoder does not understand a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RequestError {
+    /// Not one of the twenty commands.
+    #[error("{0:02X}h is not a command")]
+    Command(u8),
+    /// A command with the wrong number of arguments.
+    #[error("{got} argument bytes where {expected} belong")]
+    Length {
+        /// Bytes the command takes.
+        expected: usize,
+        /// Bytes there were.
+        got: usize,
+    },
+    /// An argument out of its range.
+    #[error("argument {0} is out of its range")]
+    Argument(&'static str),
+}
+
+impl RequestError {
+    /// The status code an encoder answers with.
+    pub fn status(self) -> StatusCode {
+        match self {
+            RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
+            RequestError::Length { .. } => StatusCode::LENGTH,
+            RequestError::Argument(_) => StatusCode::ARGUMENT,
+        }
+    }
+}
+
+impl Request {
+    /// Which command it is.
+    pub fn command(&self) -> Command {
+        match self {
+            Request::ReadPosition => Command::ReadPosition,
+            Request::SetPosition { .. } => Command::SetPosition,
+            Request::ReadAnalogue { .. } => Command::ReadAnalogue,
+            Request::ReadCounter => Command::ReadCounter,
+            Request::IncrementCounter => Command::IncrementCounter,
+            Request::ClearCounter { .. } => Command::ClearCounter,
+            Request::ReadData { .. } => Command::ReadData,
+            Request::StoreData { .. } => Command::StoreData,
+            Request::FieldStatus { .. } => Command::FieldStatus,
+            Request::DefineField { .. } => Command::DefineField,
+            Request::FreeMemory => Command::FreeMemory,
+            Request::ChangeCode { .. } => Command::ChangeCode,
+            Request::ReadStatus => Command::ReadStatus,
+            Request::ReadTypeLabel => Command::ReadTypeLabel,
+            Request::Reset => Command::Reset,
+            Request::SetAddress { .. } => Command::SetAddress,
+            Request::ReadSerial => Command::ReadSerial,
+            Request::ConfigureLine { .. } => Command::ConfigureLine,
+            Request::Synchronise { .. } => Command::Synchronise,
+            Request::ConfigureLineTemporarily { .. } => Command::ConfigureLineTemporarily,
+        }
+    }
+
+    /// The frame for the line. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
+    pub fn emit(&self, address: u8) -> SecretFrame {
+        let (payload, codes) = self.payload();
+        let frame = Frame { address, command: self.command().byte(), payload: &payload };
+        let bytes = frame.emit();
+        let mut secret: Vec<usize> = codes.iter().map(|at| at + 2).collect();
+        if !secret.is_empty() {
+            secret.push(bytes.len() - 1); // the checksum is an XOR: it gives the code away
+        }
+        SecretFrame { bytes, secret }
+    }
+
+    /// Reads the request in a frame.
+    ///
+    /// # Errors
+    /// In the order in which an encoder checks (`U`): the command, the number of arguments, their ranges.
+    pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
+        let command = Command::from_byte(frame.command)
+            .filter(|_| frame.command & Frame::ERROR_BIT == 0)
+            .ok_or(RequestError::Command(frame.command))?;
+        let expected = match (command, frame.payload) {
+            (Command::StoreData, [_, _, count, ..]) => 4 + usize::from(*count).max(1),
+            _ => command.row().request_payload,
+        };
+        let got = frame.payload.len();
+        Self::from_payload(command, frame.payload)
+            .filter(|_| got == expected)
+            .ok_or(RequestError::Length { expected, got })
+            .and_then(Self::checked)
+    }
+
+    /// Arguments in the order of the line, and the places of access codes among them.
+    fn payload(&self) -> (Vec<u8>, Vec<usize>) {
+        match self {
+            Request::ReadPosition
+            | Request::ReadCounter
+            | Request::IncrementCounter
+            | Request::FreeMemory
+            | Request::ReadStatus
+            | Request::ReadTypeLabel
+            | Request::Reset
+            | Request::ReadSerial => (vec![], vec![]),
+            Request::SetPosition { position, code0 } | Request::Synchronise { position, code0 } => {
+                let mut payload = position.to_be_bytes().to_vec();
+                payload.push(code0.byte());
+                (payload, vec![4])
+            }
+            Request::ReadAnalogue { channel } => (vec![*channel], vec![]),
+            Request::ClearCounter { code0 } => (vec![code0.byte()], vec![0]),
+            Request::ReadData { field, address, count, code } => (vec![*field, *address, *count, code.byte()], vec![3]),
+            Request::StoreData { field, address, code, data } => {
+                let count = u8::try_from(data.len()).unwrap_or(u8::MAX);
+                let mut payload = vec![*field, *address, count, code.byte()];
+                payload.extend(data);
+                (payload, vec![3])
+            }
+            Request::FieldStatus { field } => (vec![*field], vec![]),
+            Request::DefineField { field, status, code } => (vec![*field, status.byte(), code.byte()], vec![2]),
+            Request::ChangeCode { number, old, new } => (vec![number.get(), old.byte(), new.byte()], vec![1, 2]),
+            Request::SetAddress { new, code0 } => (vec![new.byte(), code0.byte()], vec![1]),
+            Request::ConfigureLine { settings, code0 } => (vec![settings.byte(), code0.byte()], vec![1]),
+            Request::ConfigureLineTemporarily { settings } => (vec![settings.byte()], vec![]),
+        }
+    }
+
+    /// `None` for a payload too short to hold the arguments or with an address or code number that cannot be expressed.
+    fn from_payload(command: Command, payload: &[u8]) -> Option<Result<Self, RequestError>> {
+        let position = |hh: u8, hl: u8, lh: u8, ll: u8| u32::from_be_bytes([hh, hl, lh, ll]);
+        let code = AccessCode::new;
+        Some(Ok(match (command, payload) {
+            (Command::ReadPosition, []) => Request::ReadPosition,
+            (Command::SetPosition, [hh, hl, lh, ll, code0]) => {
+                Request::SetPosition { position: position(*hh, *hl, *lh, *ll), code0: code(*code0) }
+            }
+            (Command::ReadAnalogue, [channel]) => Request::ReadAnalogue { channel: *channel },
+            (Command::ReadCounter, []) => Request::ReadCounter,
+            (Command::IncrementCounter, []) => Request::IncrementCounter,
+            (Command::ClearCounter, [code0]) => Request::ClearCounter { code0: code(*code0) },
+            (Command::ReadData, [field, address, count, ac]) => {
+                Request::ReadData { field: *field, address: *address, count: *count, code: code(*ac) }
+            }
+            (Command::StoreData, [field, address, count, ac, data @ ..]) => {
+                if usize::from(*count) > MAX_TRANSFER || *count == 0 {
+                    return Some(Err(RequestError::Argument("count")));
+                }
+                Request::StoreData { field: *field, address: *address, code: code(*ac), data: data.to_vec() }
+            }
+            (Command::FieldStatus, [field]) => Request::FieldStatus { field: *field },
+            (Command::DefineField, [field, status, ac]) => {
+                Request::DefineField { field: *field, status: DataFieldStatus::from_byte(*status), code: code(*ac) }
+            }
+            (Command::FreeMemory, []) => Request::FreeMemory,
+            (Command::ChangeCode, [number, old, new]) => match CodeNumber::new(*number) {
+                Some(number) => Request::ChangeCode { number, old: code(*old), new: code(*new) },
+                None => return Some(Err(RequestError::Argument("code number"))),
+            },
+            (Command::ReadStatus, []) => Request::ReadStatus,
+            (Command::ReadTypeLabel, []) => Request::ReadTypeLabel,
+            (Command::Reset, []) => Request::Reset,
+            (Command::SetAddress, [new, code0]) => match DeviceAddress::new(*new) {
+                Some(new) => Request::SetAddress { new, code0: code(*code0) },
+                None => return Some(Err(RequestError::Argument("address"))),
+            },
+            (Command::ReadSerial, []) => Request::ReadSerial,
+            (Command::ConfigureLine, [settings, code0]) => {
+                Request::ConfigureLine { settings: LineSettings::from_byte(*settings), code0: code(*code0) }
+            }
+            (Command::Synchronise, [hh, hl, lh, ll, code0]) => {
+                Request::Synchronise { position: position(*hh, *hl, *lh, *ll), code0: code(*code0) }
+            }
+            (Command::ConfigureLineTemporarily, [settings]) => {
+                Request::ConfigureLineTemporarily { settings: LineSettings::from_byte(*settings) }
+            }
+            _ => return None,
+        }))
+    }
+
+    /// The ranges that the frame alone decides; what depends on the encoder is the encoder's business.
+    fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
+        match request? {
+            Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
+                Err(RequestError::Argument("count"))
+            }
+            Request::ConfigureLine { settings, .. } | Request::ConfigureLineTemporarily { settings }
+                if !settings.is_valid() =>
+            {
+                Err(RequestError::Argument("settings"))
+            }
+            request => Ok(request),
+        }
+    }
+}
+
+/// A request's bytes, knowing which of them give an access code away.
+#[derive(Clone, PartialEq, Eq)]
+pub struct SecretFrame {
+    bytes: Vec<u8>,
+    secret: Vec<usize>,
+}
+
+impl SecretFrame {
+    /// What is sent.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// It carries an access code.
+    pub fn is_secret(&self) -> bool {
+        !self.secret.is_empty()
+    }
+
+    /// What may be shown: access codes and the checksum over them masked.
+    pub fn masked(&self) -> MaskedBytes {
+        MaskedBytes::masked(&self.bytes, &self.secret)
+    }
+}
+
+impl fmt::Debug for SecretFrame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "SecretFrame({})", self.masked())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(bytes: &[u8]) -> Result<Request, RequestError> {
+        Request::parse(&Frame::parse(bytes).unwrap())
+    }
+
+    fn framed(bytes: &[u8]) -> Vec<u8> {
+        let mut frame = bytes.to_vec();
+        frame.push(super::super::checksum(bytes));
+        frame
+    }
+
+    #[test]
+    fn bad_requests_get_the_status_an_encoder_gives() {
+        let cases: [(&[u8], StatusCode); 12] = [
+            (&[0x40, 0x41], StatusCode::UNKNOWN_COMMAND),
+            (&[0x40, 0x54], StatusCode::UNKNOWN_COMMAND),
+            (&[0x40, 0xC2], StatusCode::UNKNOWN_COMMAND),
+            (&[0x40, 0x42, 0x00], StatusCode::LENGTH),
+            (&[0x40, 0x4A, 0x00, 0x00, 0x04], StatusCode::LENGTH),
+            (&[0x40, 0x4B, 0x00, 0x00, 0x02, 0x55, 0x01], StatusCode::LENGTH),
+            (&[0x40, 0x4A, 0x00, 0x00, 0x00, 0x55], StatusCode::ARGUMENT),
+            (&[0x40, 0x4A, 0x00, 0x00, 0x81, 0x55], StatusCode::ARGUMENT),
+            (&[0x40, 0x4F, 0x04, 0x55, 0x66], StatusCode::ARGUMENT),
+            (&[0x40, 0x55, 0x60, 0x55], StatusCode::ARGUMENT),
+            (&[0x40, 0x57, 0xE7, 0x55], StatusCode::ARGUMENT),
+            (&[0x40, 0x67, 0xD4], StatusCode::ARGUMENT),
+        ];
+        for (bytes, status) in cases {
+            assert_eq!(parse(&framed(bytes)).unwrap_err().status(), status, "{bytes:02X?}");
+        }
+    }
+
+    #[test]
+    fn codes_and_their_checksum_are_masked() {
+        let store = Request::StoreData { field: 1, address: 5, code: AccessCode::new(0x66), data: vec![0x08, 0x15] };
+        assert_eq!(store.emit(0x40).masked().to_string(), "40 4B 01 05 02 ** 08 15 **");
+        let change = Request::ChangeCode {
+            number: CodeNumber::new(2).unwrap(),
+            old: AccessCode::FACTORY,
+            new: AccessCode::new(0x66),
+        };
+        assert_eq!(format!("{:?}", change.emit(0x40)), "SecretFrame(40 4F 02 ** ** **)");
+        assert!(!Request::ReadPosition.emit(0x40).is_secret());
+    }
+}

@@ -1,0 +1,158 @@
+//! Status codes: what an encoder reports in reply to 50h (`P`: SEK34/SEL34 and DME data sheets, B&R error 7013; the
+//! manual leaves the list to each data sheet).
+
+use std::fmt;
+
+/// One byte of the encoder's status queue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StatusCode(u8);
+
+/// What a status code is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StatusClass {
+    /// Found while the encoder started.
+    Initialisation,
+    /// A frame was not understood, or the encoder was restarted.
+    Protocol,
+    /// A data field refused.
+    Data,
+    /// The position cannot be relied upon.
+    Position,
+    /// Monitoring of temperature, transmitter and signals.
+    Monitoring,
+    /// Not in the list.
+    Unknown,
+}
+
+use StatusClass::{Data, Initialisation, Monitoring, Position, Protocol};
+
+#[rustfmt::skip]
+const CODES: [(u8, StatusClass, &str); 27] = [
+    (0x01, Initialisation, "analogue signals or compensation data faulty"),
+    (0x02, Initialisation, "internal angular offset faulty"),
+    (0x03, Initialisation, "data field partition table destroyed"),
+    (0x04, Initialisation, "analogue limit values not available"),
+    (0x05, Initialisation, "internal I²C bus fault"),
+    (0x06, Initialisation, "internal checksum error"),
+    (0x07, Protocol,       "reset caused by the watchdog"),
+    (0x08, Protocol,       "counter overflow"),
+    (0x09, Protocol,       "parity error"),
+    (0x0A, Protocol,       "checksum error"),
+    (0x0B, Protocol,       "unknown command"),
+    (0x0C, Protocol,       "wrong number of bytes"),
+    (0x0D, Protocol,       "argument not allowed"),
+    (0x0E, Data,           "data field is write protected"),
+    (0x0F, Data,           "wrong access code"),
+    (0x10, Data,           "data field size cannot be changed"),
+    (0x11, Data,           "address outside the data field"),
+    (0x12, Data,           "data field does not exist"),
+    (0x1C, Monitoring,     "analogue signal amplitude out of limits"),
+    (0x1D, Monitoring,     "critical transmitter current (dirt or ageing)"),
+    (0x1E, Monitoring,     "critical encoder temperature"),
+    (0x1F, Position,       "speed too high, no position possible"),
+    (0x20, Position,       "singleturn position unreliable"),
+    (0x21, Position,       "multiturn position error"),
+    (0x22, Position,       "multiturn position error"),
+    (0x23, Position,       "multiturn position error"),
+    (0x00, Protocol,       "no error"),
+];
+
+impl StatusCode {
+    /// 00h: nothing to report.
+    pub const OK: StatusCode = StatusCode(0x00);
+    /// 08h: the counter went from FFFFFFh to 0.
+    pub const COUNTER_OVERFLOW: StatusCode = StatusCode(0x08);
+    /// 09h: a character with the wrong parity bit.
+    pub const PARITY: StatusCode = StatusCode(0x09);
+    /// 0Ah: a frame with a wrong checksum.
+    pub const CHECKSUM: StatusCode = StatusCode(0x0A);
+    /// 0Bh: a command the encoder does not have.
+    pub const UNKNOWN_COMMAND: StatusCode = StatusCode(0x0B);
+    /// 0Ch: a request of the wrong length.
+    pub const LENGTH: StatusCode = StatusCode(0x0C);
+    /// 0Dh: an argument out of its range.
+    pub const ARGUMENT: StatusCode = StatusCode(0x0D);
+    /// 0Eh: WE is 0.
+    pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
+    /// 0Fh: not this data field's access code.
+    pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
+    /// 10h: only the last field changes its size, and only as far as memory reaches.
+    pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
+    /// 11h: beyond the end of the data field.
+    pub const OUT_OF_FIELD: StatusCode = StatusCode(0x11);
+    /// 12h: no data field of that number.
+    pub const NO_SUCH_FIELD: StatusCode = StatusCode(0x12);
+    /// 1Eh: the encoder is too hot or too cold.
+    pub const TEMPERATURE: StatusCode = StatusCode(0x1E);
+    /// 1Fh: the shaft turns too fast.
+    pub const TOO_FAST: StatusCode = StatusCode(0x1F);
+
+    /// Any byte is a status code.
+    pub const fn new(byte: u8) -> Self {
+        StatusCode(byte)
+    }
+
+    /// The byte on the line.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// What the code is about.
+    pub fn class(self) -> StatusClass {
+        self.entry().map_or(StatusClass::Unknown, |(class, _)| class)
+    }
+
+    /// What the code says, in words.
+    pub fn text(self) -> &'static str {
+        self.entry().map_or("unknown status code", |(_, text)| text)
+    }
+
+    /// 08h, 1Ch, 1Dh and 1Eh warn; every other code but 00h is an error.
+    pub fn is_warning(self) -> bool {
+        matches!(self.0, 0x08 | 0x1C..=0x1E)
+    }
+
+    /// 01h…06h and 1Fh…23h: a position read at the same time cannot be relied upon. Codes 09h…12h concern a frame or a
+    /// data field and never make a position invalid.
+    pub fn spoils_position(self) -> bool {
+        matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
+    }
+
+    fn entry(self) -> Option<(StatusClass, &'static str)> {
+        CODES.iter().find(|(code, ..)| *code == self.0).map(|(_, class, text)| (*class, *text))
+    }
+}
+
+impl fmt::Display for StatusCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}h {}", self.0, self.text())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_is_listed_once() {
+        let mut bytes: Vec<u8> = CODES.iter().map(|(byte, ..)| *byte).collect();
+        bytes.sort_unstable();
+        bytes.dedup();
+        assert_eq!(bytes.len(), CODES.len());
+    }
+
+    #[test]
+    fn unknown_codes_keep_their_number() {
+        assert_eq!(StatusCode::new(0x7E).to_string(), "7Eh unknown status code");
+        assert_eq!(StatusCode::new(0x7E).class(), StatusClass::Unknown);
+        assert!(!StatusCode::new(0x7E).is_warning());
+    }
+
+    #[test]
+    fn warnings_and_spoilt_positions() {
+        let warnings: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).is_warning()).collect();
+        assert_eq!(warnings, [0x08, 0x1C, 0x1D, 0x1E]);
+        let spoiling: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).spoils_position()).collect();
+        assert_eq!(spoiling, [1, 2, 3, 4, 5, 6, 0x1F, 0x20, 0x21, 0x22, 0x23]);
+    }
+}

@@ -1,0 +1,93 @@
+//! How long things take (manual, "Dialog Timing" and the table of commands).
+
+use std::time::Duration;
+
+use super::{CharacterFormat, LineSettings, Request};
+
+/// The times of a line with given settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timing {
+    /// One character: 11 bits.
+    pub character: Duration,
+    /// Silence that ends a frame: 44 bits, or 11 where the settings say so. The dead time before the next request is
+    /// longer than this.
+    pub timeout: Duration,
+}
+
+impl Timing {
+    /// After power-on or reset the encoder hears nothing for up to this long.
+    pub const INITIALISATION: Duration = Duration::from_millis(100);
+    /// So long after power-on the encoder listens with factory settings; then it takes up the stored ones.
+    pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
+    /// Taking up the stored settings: the encoder hears nothing for up to this long.
+    pub const SWITCH: Duration = Duration::from_millis(200);
+
+    /// Times for a character format and the long (44 bits) or short (11 bits) time-out.
+    pub fn new(format: CharacterFormat, long_timeout: bool) -> Self {
+        let bits = if long_timeout { 44 } else { 11 };
+        Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
+    }
+
+    /// Times for a settings byte; `None` where it is reserved.
+    pub fn of_settings(settings: LineSettings) -> Option<Self> {
+        Some(Self::new(settings.format()?, settings.long_timeout()))
+    }
+
+    /// From the first bit of the request to the latest last bit of the longest reply: transfer, time-out, processing,
+    /// transfer. Without reply: transfer and time-out.
+    pub fn worst_case(&self, request: &Request) -> Duration {
+        let sent = request.emit(0).bytes().len();
+        let reply = request.reply_length(&[]).map_or(0, |length| length.max);
+        self.characters(sent + reply) + self.timeout + request.command().row().max_time
+    }
+
+    /// Time of `count` characters back to back.
+    pub fn characters(&self, count: usize) -> Duration {
+        self.character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::AccessCode;
+    use super::*;
+    use crate::units::{Baud, Parity};
+
+    /// Worst cases at 9600 8E1 with the default time-out in 0.1 ms, computed from 11 and 44 bits and the manual's
+    /// maximum times with a calculator.
+    #[test]
+    fn worst_cases_at_9600() {
+        let timing = Timing::of_settings(LineSettings::FACTORY).unwrap();
+        let code = AccessCode::FACTORY;
+        let read = |count| Request::ReadData { field: 0, address: 0, count, code };
+        let store = |count| Request::StoreData { field: 0, address: 0, code, data: vec![0; count] };
+        let cases = [
+            (Request::ReadPosition, 260),
+            (Request::SetPosition { position: 0, code0: code }, 572),
+            (Request::ReadAnalogue { channel: 0 }, 210),
+            (Request::ReadCounter, 199),
+            (Request::IncrementCounter, 415),
+            (Request::ClearCounter { code0: code }, 426),
+            (read(16), 678),
+            (read(128), 1962),
+            (store(16), 2878),
+            (store(128), 4162),
+            (Request::FieldStatus { field: 0 }, 199),
+            (Request::FreeMemory, 188),
+            (Request::ReadTypeLabel, 210),
+            (Request::Reset, 80),
+        ];
+        for (request, tenths) in cases {
+            let got = timing.worst_case(&request).as_micros().div_ceil(100) as u64;
+            let close = got.abs_diff(tenths) <= 1;
+            assert!(close, "{}: {got} is not {tenths}", request.command().row().name);
+        }
+    }
+
+    #[test]
+    fn the_time_out_is_programmable() {
+        let format = CharacterFormat { baud: Baud::new(38400).unwrap(), parity: Parity::Even };
+        assert_eq!(Timing::new(format, false).timeout, Duration::from_nanos(286_458));
+        assert_eq!(Timing::new(format, true).timeout, Duration::from_nanos(1_145_833));
+    }
+}

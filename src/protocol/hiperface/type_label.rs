@@ -1,0 +1,92 @@
+//! Type label (52h) and serial number with firmware (56h).
+
+use super::LineSettings;
+
+/// Reply to 52h.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TypeLabel {
+    /// The stored interface settings, in force after the next reset.
+    pub settings: LineSettings,
+    /// Encoder type; FFh: the extended label in field FFh describes the encoder.
+    pub encoder_type: u8,
+    /// Size of the EEPROM in units of 16 bytes.
+    pub eeprom_units: u8,
+    /// Hardware and software options, HIPERFACE version; the layout is not public, so it is kept raw.
+    pub options: u8,
+}
+
+impl TypeLabel {
+    /// The encoder describes itself in data field FFh.
+    pub const EXTENDED: u8 = 0xFF;
+
+    /// EEPROM size in bytes; part of it is the encoder's own.
+    pub fn eeprom_bytes(self) -> usize {
+        usize::from(self.eeprom_units) * 16
+    }
+}
+
+/// Reply to 56h: nine characters of serial number, up to twenty of firmware version, eight of date.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SerialLabel {
+    /// Serial number as the encoder gives it, blanks and NUL at its ends removed.
+    pub serial_number: String,
+    /// Firmware version, trimmed in the same way.
+    pub firmware_version: String,
+    /// Date of the firmware, `DD.MM.YY`.
+    pub firmware_date: String,
+}
+
+impl SerialLabel {
+    /// Shortest payload: serial number and date, no version.
+    pub const MIN_PAYLOAD: usize = 9 + 8;
+    /// Longest payload: a version of 20 characters.
+    pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
+
+    /// Reads the payload: the first nine bytes, the last eight, and what stands between. `None` unless it has
+    /// [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable ASCII are shown as `\xNN`.
+    pub fn parse(payload: &[u8]) -> Option<Self> {
+        if payload.len() > Self::MAX_PAYLOAD {
+            return None;
+        }
+        let (serial, rest) = payload.split_first_chunk::<9>()?;
+        let (version, date) = rest.split_last_chunk::<8>()?;
+        Some(SerialLabel { serial_number: text(serial), firmware_version: text(version), firmware_date: text(date) })
+    }
+}
+
+/// Text of a fixed-width field: padding (blanks, NUL) trimmed, anything unprintable made visible.
+pub(super) fn text(bytes: &[u8]) -> String {
+    let start = bytes.iter().position(|b| !matches!(b, 0 | b' ')).unwrap_or(bytes.len());
+    let end = bytes.iter().rposition(|b| !matches!(b, 0 | b' ')).map_or(start, |last| last + 1);
+    bytes.get(start..end).unwrap_or_default().escape_ascii().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_serial_label_of_the_reference() {
+        let label = SerialLabel::parse(b"GB0450179V1.2301.02.16").unwrap();
+        assert_eq!(label.serial_number, "GB0450179");
+        assert_eq!(label.firmware_version, "V1.23");
+        assert_eq!(label.firmware_date, "01.02.16");
+    }
+
+    #[test]
+    fn padding_is_trimmed_and_lengths_are_held() {
+        let label = SerialLabel::parse(b"123456   \0V2 \0       01.01.99").unwrap();
+        assert_eq!(label.serial_number, "123456");
+        assert_eq!(label.firmware_version, "V2");
+        assert_eq!(SerialLabel::parse(&[b'1'; 16]), None);
+        assert!(SerialLabel::parse(&[b'1'; 17]).is_some_and(|label| label.firmware_version.is_empty()));
+        assert!(SerialLabel::parse(&[b'1'; 37]).is_some());
+        assert_eq!(SerialLabel::parse(&[b'1'; 38]), None);
+    }
+
+    #[test]
+    fn what_cannot_be_printed_is_shown() {
+        let label = SerialLabel::parse(b"12345\xFF\n89V01.02.16").unwrap();
+        assert_eq!(label.serial_number, "12345\\xff\\n89");
+    }
+}

@@ -1,0 +1,138 @@
+//! Words for quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning.
+//! No clock is read here: a [`Moment`] is handed in by whoever owns one.
+
+use std::fmt;
+use std::ops::{Add, Sub};
+use std::time::Duration;
+
+/// A point in time, counted from the start of the clock that gave it. Moments of different clocks do not compare.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Moment(Duration);
+
+impl Moment {
+    /// The start of the clock.
+    pub const START: Moment = Moment(Duration::ZERO);
+
+    /// The moment `elapsed` after the start of the clock.
+    pub const fn after_start(elapsed: Duration) -> Self {
+        Moment(elapsed)
+    }
+
+    /// Time since the start of the clock.
+    pub const fn since_start(self) -> Duration {
+        self.0
+    }
+
+    /// Time since `earlier`; zero when `earlier` lies ahead.
+    pub fn since(self, earlier: Moment) -> Duration {
+        self.0.saturating_sub(earlier.0)
+    }
+}
+
+impl Add<Duration> for Moment {
+    type Output = Moment;
+    fn add(self, duration: Duration) -> Moment {
+        Moment(self.0.saturating_add(duration))
+    }
+}
+
+impl Sub<Duration> for Moment {
+    type Output = Moment;
+    fn sub(self, duration: Duration) -> Moment {
+        Moment(self.0.saturating_sub(duration))
+    }
+}
+
+/// A serial line's speed in bit/s, never zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Baud(u32);
+
+impl Baud {
+    /// A speed in bit/s; `None` for zero.
+    pub const fn new(bits_per_second: u32) -> Option<Self> {
+        if bits_per_second == 0 { None } else { Some(Baud(bits_per_second)) }
+    }
+
+    /// 9600 bit/s, the factory setting of HIPERFACE encoders.
+    pub const B9600: Baud = Baud(9_600);
+
+    /// Bits in a second.
+    pub const fn bits_per_second(self) -> u32 {
+        self.0
+    }
+
+    /// How long `bits` bits take on the line.
+    pub fn time_of_bits(self, bits: u64) -> Duration {
+        Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
+    }
+}
+
+impl fmt::Display for Baud {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// The parity bit of a serial character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Parity {
+    /// No parity bit.
+    None,
+    /// The number of ones, parity bit included, is even.
+    Even,
+    /// The number of ones, parity bit included, is odd.
+    Odd,
+}
+
+impl Parity {
+    /// Every parity, the most usual first.
+    pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
+
+    /// The word used in link URLs and JSON: `none`, `even`, `odd`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Parity::None => "none",
+            Parity::Even => "even",
+            Parity::Odd => "odd",
+        }
+    }
+
+    /// The letter between data bits and stop bits in `8E1`.
+    pub const fn letter(self) -> char {
+        match self {
+            Parity::None => 'N',
+            Parity::Even => 'E',
+            Parity::Odd => 'O',
+        }
+    }
+
+    /// Reads the [word](Parity::word) of a parity.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|parity| parity.word() == word)
+    }
+}
+
+impl fmt::Display for Parity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_take_time_on_the_line() {
+        assert_eq!(Baud::B9600.time_of_bits(44), Duration::from_nanos(4_583_333));
+        assert_eq!(Baud::new(600).unwrap().time_of_bits(11), Duration::from_nanos(18_333_333));
+        assert_eq!(Baud::new(0), None);
+    }
+
+    #[test]
+    fn moments_saturate_instead_of_wrapping() {
+        let start = Moment::START;
+        assert_eq!(start - Duration::from_secs(1), start);
+        assert_eq!(start.since(start + Duration::from_secs(1)), Duration::ZERO);
+    }
+}
