@@ -1,0 +1,299 @@
+//! Backups: what was in a device before it was written, one file each, sorted by device and serial number. None is ever
+//! overwritten or removed. What the text says is the caller's; access codes are not to be in it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use jiff::civil::DateTime;
+use jiff::tz::TimeZone;
+
+use super::file_error::{FileError, FileProblem, FileTask};
+use super::files::{create_folder, write_new};
+
+/// A file name's time: UTC, and without the colons that Windows forbids.
+const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
+const EXTENSION: &str = "ron";
+
+/// Backups of one device in the same second. Whoever asks for more is a loop gone wrong.
+const MOST_IN_A_SECOND: u32 = 1000;
+
+/// The folder of backups.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Backups(PathBuf);
+
+/// One backup.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Backup {
+    /// The file.
+    pub path: PathBuf,
+    /// When it was taken, to the second.
+    pub taken: Timestamp,
+}
+
+impl Backups {
+    pub(super) fn in_folder(folder: PathBuf) -> Self {
+        Backups(folder)
+    }
+
+    /// Writes a backup, `<device>/<serial number>/2026-11-21T12-14-47Z.ron`, and returns its path. Where there is one of
+    /// the same second, `-2`, `-3` … follows the time.
+    ///
+    /// # Errors
+    /// Where the folder cannot be made or the file cannot be written; then there is no file.
+    pub fn keep(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
+        let folder = self.folder_of(device, serial_number);
+        create_folder(&folder)?;
+        let time = taken.strftime(TIME).to_string();
+        for number in 1..=MOST_IN_A_SECOND {
+            let path = folder.join(file_name(&time, number));
+            match write_new(&path, text.as_bytes()) {
+                Err(FileError { problem: FileProblem::Exists, .. }) => {}
+                result => return result.map(|()| path),
+            }
+        }
+        Err(FileProblem::Exists.of(FileTask::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
+    }
+
+    /// The backups of a device, newest first; files of any other name are not backups.
+    ///
+    /// # Errors
+    /// Where the folder exists but cannot be read.
+    pub fn list(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
+        let folder = self.folder_of(device, serial_number);
+        let failed = |error: std::io::Error| FileProblem::from(error).of(FileTask::List, &folder);
+        let entries = match fs::read_dir(&folder) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+            entries => entries.map_err(failed)?,
+        };
+        let mut backups = Vec::new();
+        for entry in entries {
+            let path = entry.map_err(failed)?.path();
+            if let Some(order) = parse_file_name(&path)
+                && path.is_file()
+            {
+                backups.push((order, path));
+            }
+        }
+        backups.sort_by_key(|(order, _)| std::cmp::Reverse(*order));
+        Ok(backups.into_iter().map(|((taken, _), path)| Backup { path, taken }).collect())
+    }
+
+    fn folder_of(&self, device: &str, serial_number: &str) -> PathBuf {
+        // `device` is a word of the program's own, but a path out of the folder is none whoever makes it.
+        self.0.join(folder_name(device, Case::Kept)).join(folder_name(serial_number, Case::Told))
+    }
+}
+
+fn file_name(time: &str, number: u32) -> String {
+    match number {
+        1 => format!("{time}.{EXTENSION}"),
+        _ => format!("{time}-{number}.{EXTENSION}"),
+    }
+}
+
+/// Time and number of a backup's file; `None` for any name that [`file_name`] does not make.
+fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
+    let name = path.file_name()?.to_str()?;
+    let (time, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.split_once('Z')?;
+    let time = format!("{time}Z");
+    let number = if number.is_empty() { 1 } else { number.strip_prefix('-')?.parse().ok()? };
+    let taken = DateTime::strptime(TIME, &time).ok()?.to_zoned(TimeZone::UTC).ok()?.timestamp();
+    (file_name(&taken.strftime(TIME).to_string(), number) == name).then_some((taken, number))
+}
+
+/// Whether a folder's name has to differ where the texts differ only in upper and lower case, which Windows and macOS do
+/// not tell apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Case {
+    Kept,
+    Told,
+}
+
+/// A folder name for any text, different for different texts, on every system: letters, digits, `.`, `_` and `-` stand
+/// for themselves, every other byte is `%XX`. With [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each
+/// letter.
+fn folder_name(text: &str, case: Case) -> String {
+    if text.is_empty() {
+        return "%none".to_owned();
+    }
+    let reserved = is_reserved(text);
+    let last = text.len() - 1;
+    let mut name = String::new();
+    let mut cases = String::new();
+    for (at, byte) in text.bytes().enumerate() {
+        // A dot in front hides the folder, one at the end is lost on Windows, and `.` and `..` are no names at all.
+        let plain = match byte {
+            b'.' => at != 0 && at != last,
+            b'_' | b'-' => true,
+            _ => byte.is_ascii_alphanumeric() && !(reserved && at == 0),
+        };
+        if !plain {
+            name.push_str(&format!("%{byte:02X}"));
+            continue;
+        }
+        name.push(char::from(byte));
+        if byte.is_ascii_alphabetic() {
+            cases.push(if byte.is_ascii_lowercase() { 'l' } else { 'u' });
+        }
+    }
+    if case == Case::Told && cases.contains('l') {
+        name.push('%');
+        name.push_str(&cases);
+    }
+    name
+}
+
+/// Names that are devices on Windows, with any extension.
+fn is_reserved(text: &str) -> bool {
+    let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
+    match stem.as_str() {
+        "CON" | "PRN" | "AUX" | "NUL" => true,
+        _ => ["COM", "LPT"].iter().any(|port| {
+            stem.strip_prefix(port)
+                .is_some_and(|number| number.len() == 1 && number.bytes().all(|c| c.is_ascii_digit()))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::read_text;
+    use proptest::prelude::*;
+
+    fn at(text: &str) -> Timestamp {
+        text.parse().unwrap()
+    }
+
+    fn backups() -> (tempfile::TempDir, Backups) {
+        let root = tempfile::tempdir().unwrap();
+        let backups = Backups::in_folder(root.path().join("data/backups"));
+        (root, backups)
+    }
+
+    #[test]
+    fn backups_are_kept_and_listed_newest_first() {
+        let (root, backups) = backups();
+        let first = backups.keep("hiperface", "12345678", at("2026-11-21T12:14:47.9Z"), "first").unwrap();
+        let folder = root.path().join("data/backups/hiperface/12345678");
+        assert_eq!(first, folder.join("2026-11-21T12-14-47Z.ron"));
+        let later = backups.keep("hiperface", "12345678", at("2027-01-01T00:00:00Z"), "later").unwrap();
+        let second = backups.keep("hiperface", "12345678", at("2026-11-21T12:14:47.1Z"), "second").unwrap();
+        assert_eq!(second, folder.join("2026-11-21T12-14-47Z-2.ron"));
+        assert_eq!(read_text(&first).unwrap(), "first");
+
+        fs::create_dir(folder.join("2026-11-21T12-14-48Z.ron")).unwrap();
+        let foreign = ["notes.txt", "x.ron", "2026-11-21T12-14-47Z-1.ron", "2026-11-21T12-14-47Z-02.ron"];
+        for name in foreign.iter().chain(&["2026-13-21T12-14-47Z.ron", "2026-1-21T12-14-47Z.ron", "Z.ron", ".ron"]) {
+            fs::write(folder.join(name), "x").unwrap();
+        }
+        let listed = backups.list("hiperface", "12345678").unwrap();
+        let paths: Vec<_> = listed.iter().map(|backup| backup.path.clone()).collect();
+        assert_eq!(paths, [later, second, first]);
+        assert_eq!(listed[1].taken, at("2026-11-21T12:14:47Z"));
+        assert_eq!(backups.list("hiperface", "1234567"), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn many_of_one_second_are_all_kept() {
+        let (_root, backups) = backups();
+        let taken = at("2026-11-21T12:14:47Z");
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let backups = &backups;
+                scope.spawn(move || {
+                    for _ in 0..3 {
+                        backups.keep("hiperface", "1", taken, &thread.to_string()).unwrap();
+                    }
+                });
+            }
+        });
+        let listed = backups.list("hiperface", "1").unwrap();
+        assert_eq!(listed.len(), 12);
+        assert!(listed[0].path.ends_with("2026-11-21T12-14-47Z-12.ron"), "{:?}", listed[0]);
+        let mut texts: Vec<_> = listed.iter().map(|backup| read_text(&backup.path).unwrap()).collect();
+        texts.sort();
+        assert_eq!(texts.concat(), "000111222333");
+    }
+
+    #[test]
+    fn every_serial_number_has_a_folder_of_its_own() {
+        let cases = [
+            ("12345678", "12345678"),
+            ("AB-1_2.3", "AB-1_2.3"),
+            ("", "%none"),
+            (".", "%2E"),
+            ("..", "%2E%2E"),
+            ("../X", "%2E.%2FX"),
+            ("A/B", "A%2FB"),
+            ("A\\B:C", "A%5CB%3AC"),
+            ("   ", "%20%20%20"),
+            ("1 ", "1%20"),
+            ("1.", "1%2E"),
+            ("%20", "%2520"),
+            ("\0", "%00"),
+            ("Ä", "%C3%84"),
+            ("NUL", "%4EUL"),
+            ("NUL.1", "%4EUL.1"),
+            ("COM1", "%43OM1"),
+            ("COM10", "COM10"),
+            ("AbC", "AbC%ulu"),
+            ("con", "%63on%ll"),
+        ];
+        let (root, backups) = backups();
+        for (serial_number, expected) in cases {
+            assert_eq!(folder_name(serial_number, Case::Told), expected, "{serial_number:?}");
+            let path = backups.keep("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
+            assert_eq!(path.parent(), Some(root.path().join("data/backups/hiperface").join(expected).as_path()));
+            let listed = backups.list("hiperface", serial_number).unwrap();
+            assert_eq!(listed.len(), 1, "{serial_number:?}");
+            assert_eq!(read_text(&listed[0].path).unwrap(), serial_number);
+        }
+        let outside = backups.keep("../..", "1", at("2026-11-21T12:14:47Z"), "x").unwrap();
+        assert!(outside.starts_with(root.path().join("data/backups/%2E.%2F.%2E")), "{outside:?}");
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_an_error() {
+        let (root, backups) = backups();
+        fs::write(root.path().join("data"), "x").unwrap();
+        let error = backups.keep("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
+        assert_eq!((error.task, error.problem), (FileTask::CreateFolder, FileProblem::NotFolder));
+        assert!(backups.list("hiperface", "1").is_err());
+    }
+
+    /// The text of a folder's name, read without regard to case.
+    fn read_back(name: &str) -> Vec<u8> {
+        let name = name.to_ascii_uppercase();
+        if name == "%NONE" {
+            return Vec::new();
+        }
+        let (name, cases) = match name.rsplit_once('%') {
+            Some((name, cases)) if cases.starts_with(['L', 'U']) => (name, cases),
+            _ => (name.as_str(), ""),
+        };
+        let mut cases = cases.bytes();
+        let mut rest = name.as_bytes();
+        let mut text = Vec::new();
+        while let [byte, tail @ ..] = rest {
+            rest = tail;
+            if *byte == b'%' {
+                text.push(u8::from_str_radix(str::from_utf8(&rest[..2]).unwrap(), 16).unwrap());
+                rest = &rest[2..];
+            } else if byte.is_ascii_alphabetic() && cases.next() == Some(b'L') {
+                text.push(byte.to_ascii_lowercase());
+            } else {
+                text.push(*byte);
+            }
+        }
+        text
+    }
+
+    proptest! {
+        #[test]
+        fn different_serial_numbers_never_share_a_folder(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
+            prop_assert_eq!(read_back(&folder_name(&text, Case::Told)), text.as_bytes());
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Why a file could not be read or written: the system's reasons, sorted by what a user can do about them.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be read or written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cannot {task} {}: {problem}", path.display())]
+pub struct FileError {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// What was being done.
+    pub task: FileTask,
+    /// What stood in the way.
+    pub problem: FileProblem,
+}
+
+/// What was being done to a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileTask {
+    /// A file was read.
+    Read,
+    /// A file was written.
+    Write,
+    /// The files in a folder were listed.
+    List,
+    /// A folder was made, with those above it.
+    CreateFolder,
+}
+
+impl fmt::Display for FileTask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            FileTask::Read => "read",
+            FileTask::Write => "write",
+            FileTask::List => "list",
+            FileTask::CreateFolder => "create",
+        })
+    }
+}
+
+/// What stands in the way of reading or writing a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FileProblem {
+    /// There is no such file.
+    #[error("it does not exist")]
+    NotFound,
+    /// The folder in which the file is to be written does not exist.
+    #[error("its folder does not exist")]
+    NoFolder,
+    /// A file stands where the path needs a folder.
+    #[error("a part of the path is a file, not a folder")]
+    NotFolder,
+    /// A folder stands where the file should be.
+    #[error("it is a folder")]
+    IsFolder,
+    /// There is such a file, and it was not to be replaced.
+    #[error("it exists already")]
+    Exists,
+    /// This user may not do this.
+    #[error("permission denied")]
+    PermissionDenied,
+    /// The file, or the disk it lies on, is marked as read-only.
+    #[error("it is write-protected")]
+    WriteProtected,
+    /// The disk is full, or this user's share of it.
+    #[error("the disk is full")]
+    DiskFull,
+    /// The file is larger than any the program writes.
+    #[error("it is larger than {limit} bytes")]
+    TooLarge {
+        /// Most bytes possible.
+        limit: u64,
+    },
+    /// The file is not a text, or a text in another encoding.
+    #[error("it is not UTF-8 text: byte {offset} does not fit")]
+    NotUtf8 {
+        /// The first byte that does not fit, counted from 0.
+        offset: usize,
+    },
+    /// Anything else, as the system calls it.
+    #[error("{what}")]
+    Other {
+        /// The system's kind of error.
+        kind: io::ErrorKind,
+        /// The system's words.
+        what: String,
+    },
+}
+
+impl From<io::Error> for FileProblem {
+    fn from(error: io::Error) -> Self {
+        use io::ErrorKind as Kind;
+        match error.kind() {
+            Kind::NotFound => FileProblem::NotFound,
+            Kind::NotADirectory => FileProblem::NotFolder,
+            Kind::IsADirectory => FileProblem::IsFolder,
+            Kind::AlreadyExists => FileProblem::Exists,
+            Kind::PermissionDenied => FileProblem::PermissionDenied,
+            Kind::ReadOnlyFilesystem => FileProblem::WriteProtected,
+            Kind::StorageFull | Kind::QuotaExceeded => FileProblem::DiskFull,
+            kind => FileProblem::Other { kind, what: error.to_string() },
+        }
+    }
+}
+
+impl FileProblem {
+    pub(super) fn of(self, task: FileTask, path: &Path) -> FileError {
+        FileError { path: path.to_owned(), task, problem: self }
+    }
+
+    /// What a problem means while a new file is made: it cannot itself be the one that is missing.
+    pub(super) fn while_making(error: io::Error) -> Self {
+        match error.into() {
+            FileProblem::NotFound => FileProblem::NoFolder,
+            problem => problem,
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! Whole files, read and written at once. A file is either the old one or the new one, never a part of it: it is
+//! written to a temporary neighbour, flushed and renamed.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::file_error::{FileError, FileProblem, FileTask};
+
+/// Most bytes that [`read_text`] reads: 16 MiB. The largest profile is a hundredth of it.
+pub const MAX_TEXT: u64 = 16 << 20;
+
+/// Writes a file so that a crash or a full disk leaves either the old content or the new one.
+///
+/// A file that exists keeps its permissions; a link stays a link, and the file behind it is replaced. A device or a pipe
+/// (`/dev/stdout`) has no content to protect and is written to directly.
+///
+/// # Errors
+/// With the old content in place: the folder is missing, the target is a folder or write-protected, the disk is full.
+pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
+    let permissions = match fs::metadata(path) {
+        Ok(target) if target.is_dir() => return Err(failed(FileProblem::IsFolder)),
+        Ok(target) if !target.is_file() => return write_directly(path, content).map_err(|e| failed(e.into())),
+        // Renaming would not mind, but whoever protected the file does.
+        Ok(target) if target.permissions().readonly() => return Err(failed(FileProblem::WriteProtected)),
+        Ok(target) => Some(target.permissions()),
+        Err(_) => None,
+    };
+    let target = through_links(path).map_err(|e| failed(e.into()))?;
+    let failed = |problem: FileProblem| problem.of(FileTask::Write, &target);
+    let folder = folder_of(&target).map_err(failed)?;
+    let staged = stage(folder, content, permissions).map_err(|e| failed(FileProblem::while_making(e)))?;
+    staged.persist(&target).map_err(|e| failed(e.error.into()))?;
+    platform::flush_folder(folder).map_err(|e| failed(e.into()))
+}
+
+/// Writes a new file as [`write_atomically`] does, but never replaces one, whoever else writes at the same time.
+///
+/// # Errors
+/// [`FileProblem::Exists`] where there is one.
+pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
+    let folder = folder_of(path).map_err(failed)?;
+    let staged = stage(folder, content, None).map_err(|e| failed(FileProblem::while_making(e)))?;
+    staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
+    platform::flush_folder(folder).map_err(|e| failed(e.into()))
+}
+
+/// Makes a folder and those above it that are missing.
+pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
+    fs::create_dir_all(path).map_err(|error| match error.into() {
+        // A folder that exists is no error: this is a file, or a link that leads nowhere.
+        FileProblem::Exists => FileProblem::NotFolder.of(FileTask::CreateFolder, path),
+        problem => problem.of(FileTask::CreateFolder, path),
+    })
+}
+
+/// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, as some editors leave it, is no part of it.
+///
+/// # Errors
+/// Where the file is missing, a folder, too large or not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    let failed = |problem: FileProblem| problem.of(FileTask::Read, path);
+    let bytes = match read_at_most(path, MAX_TEXT + 1) {
+        Ok(bytes) => bytes,
+        // Windows calls it "permission denied".
+        Err(_) if path.is_dir() => return Err(failed(FileProblem::IsFolder)),
+        Err(error) => return Err(failed(error.into())),
+    };
+    if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_TEXT) {
+        return Err(failed(FileProblem::TooLarge { limit: MAX_TEXT }));
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|error| failed(FileProblem::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
+    Ok(text.strip_prefix('\u{FEFF}').map(str::to_owned).unwrap_or(text))
+}
+
+fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
+    OpenOptions::new().write(true).open(path)?.write_all(content)
+}
+
+/// The file at the end of a chain of links; it need not exist.
+fn through_links(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST {
+        // What cannot be read as a link is none; what else may be wrong with it shows when it is written.
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    // Links in a ring: the system has its own words for that.
+    fs::metadata(path).map(|_| target)
+}
+
+/// The folder a file lies in.
+fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
+    match (path.parent(), path.file_name()) {
+        (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
+        (Some(folder), Some(_)) => Ok(folder),
+        // "/" and "..".
+        _ => Err(FileProblem::IsFolder),
+    }
+}
+
+/// A flushed temporary file beside the target; it is gone when dropped.
+fn stage(folder: &Path, content: &[u8], permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".encoder-studio-").suffix(".tmp");
+    if permissions.is_none() {
+        platform::with_usual_permissions(&mut builder);
+    }
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(content)?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
+    }
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+#[cfg(unix)]
+mod platform {
+    use std::fs::{File, Permissions};
+    use std::io;
+    use std::os::unix::fs::PermissionsExt;
+    use std::path::Path;
+
+    /// What any program's new file gets; a temporary file is its owner's alone otherwise. The umask is taken off.
+    pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
+        builder.permissions(Permissions::from_mode(0o666));
+    }
+
+    /// Makes a rename outlast a power failure.
+    pub(super) fn flush_folder(folder: &Path) -> io::Result<()> {
+        use io::ErrorKind as Kind;
+        match File::open(folder).and_then(|folder| folder.sync_all()) {
+            // Network disks that cannot flush a folder, folders that may be written but not read: the file is in place.
+            Err(error) if matches!(error.kind(), Kind::InvalidInput | Kind::Unsupported | Kind::PermissionDenied) => {
+                Ok(())
+            }
+            result => result,
+        }
+    }
+}
+
+#[cfg(not(unix))]
+mod platform {
+    use std::io;
+    use std::path::Path;
+
+    pub(super) fn with_usual_permissions(_: &mut tempfile::Builder<'_, '_>) {}
+
+    pub(super) fn flush_folder(_: &Path) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(result: Result<impl std::fmt::Debug, FileError>) -> FileProblem {
+        result.unwrap_err().problem
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_file_is_written_and_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ron");
+        for content in ["first, and longer", "second", ""] {
+            write_atomically(&path, content.as_bytes()).unwrap();
+            assert_eq!(read_text(&path).unwrap(), content);
+        }
+        assert_eq!(names(folder.path()), ["a.ron"]);
+    }
+
+    #[test]
+    fn what_cannot_be_written_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        fs::write(&file, "x").unwrap();
+        let cases = [
+            ("missing folder", folder.path().join("no/a.ron"), FileProblem::NoFolder),
+            ("a file for a folder", file.join("a.ron"), FileProblem::NotFolder),
+            ("a folder", folder.path().to_owned(), FileProblem::IsFolder),
+            ("the folder above", folder.path().join(".."), FileProblem::IsFolder),
+            ("no name", PathBuf::new(), FileProblem::IsFolder),
+        ];
+        for (label, path, expected) in cases {
+            let error = write_atomically(&path, b"new").unwrap_err();
+            assert_eq!((error.task, error.problem), (FileTask::Write, expected), "{label}");
+        }
+        assert_eq!(names(folder.path()), ["file"]);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ron");
+        write_new(&path, b"old").unwrap();
+        assert_eq!(problem(write_new(&path, b"new")), FileProblem::Exists);
+
+        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).unwrap();
+        assert_eq!(problem(write_atomically(&path, b"new")), FileProblem::WriteProtected);
+
+        assert_eq!(read_text(&path).unwrap(), "old");
+        assert_eq!(names(folder.path()), ["a.ron"]);
+    }
+
+    #[test]
+    fn what_is_no_text_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ron");
+        assert_eq!(problem(read_text(&path)), FileProblem::NotFound);
+        assert_eq!(problem(read_text(folder.path())), FileProblem::IsFolder);
+        fs::write(&path, b"\xEF\xBB\xBFab\xFFc").unwrap();
+        assert_eq!(problem(read_text(&path)), FileProblem::NotUtf8 { offset: 5 });
+        fs::write(&path, b"\xEF\xBB\xBFab").unwrap();
+        assert_eq!(read_text(&path).unwrap(), "ab");
+        File::create(&path).unwrap().set_len(MAX_TEXT).unwrap();
+        assert_eq!(read_text(&path).unwrap().len() as u64, MAX_TEXT);
+        File::create(&path).unwrap().set_len(MAX_TEXT + 1).unwrap();
+        assert_eq!(problem(read_text(&path)), FileProblem::TooLarge { limit: MAX_TEXT });
+    }
+
+    #[test]
+    fn a_folder_is_made_once_and_never_over_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("a/b");
+        create_folder(&deep).unwrap();
+        create_folder(&deep).unwrap();
+        fs::write(deep.join("file"), "x").unwrap();
+        assert_eq!(problem(create_folder(&deep.join("file"))), FileProblem::NotFolder);
+        assert_eq!(problem(create_folder(&deep.join("file/c"))), FileProblem::NotFolder);
+    }
+
+    #[cfg(unix)]
+    mod unix {
+        use super::*;
+        use std::os::unix::fs::{PermissionsExt, symlink};
+
+        fn mode(path: &Path) -> u32 {
+            fs::metadata(path).unwrap().permissions().mode() & 0o7777
+        }
+
+        #[test]
+        fn permissions_are_the_usual_ones_and_stay() {
+            let folder = tempfile::tempdir().unwrap();
+            let [ours, usual] = ["ours", "usual"].map(|name| folder.path().join(name));
+            fs::write(&usual, "x").unwrap();
+            write_atomically(&ours, b"x").unwrap();
+            assert_eq!(mode(&ours), mode(&usual));
+            for bits in [0o600, 0o664, 0o777] {
+                fs::set_permissions(&ours, Permissions::from_mode(bits)).unwrap();
+                write_atomically(&ours, b"y").unwrap();
+                assert_eq!(mode(&ours), bits, "{bits:o}");
+            }
+        }
+
+        #[test]
+        fn a_link_stays_a_link() {
+            let folder = tempfile::tempdir().unwrap();
+            let [link, second, target] = ["link", "second", "sub/target"].map(|name| folder.path().join(name));
+            fs::create_dir(folder.path().join("sub")).unwrap();
+            symlink("second", &link).unwrap();
+            symlink(&target, &second).unwrap();
+            // The first time, the link leads to a file yet to be made.
+            for content in ["made", "replaced"] {
+                write_atomically(&link, content.as_bytes()).unwrap();
+                assert_eq!(read_text(&target).unwrap(), content);
+                assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+            }
+            assert_eq!(names(&folder.path().join("sub")), ["target"]);
+        }
+
+        #[test]
+        fn a_ring_of_links_is_an_error() {
+            let folder = tempfile::tempdir().unwrap();
+            let link = folder.path().join("link");
+            symlink("link", &link).unwrap();
+            assert!(matches!(problem(write_atomically(&link, b"x")), FileProblem::Other { .. }));
+            assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        }
+
+        #[test]
+        #[cfg(target_os = "linux")]
+        fn a_device_is_written_to_and_not_replaced() {
+            use std::os::unix::fs::FileTypeExt;
+            write_atomically(Path::new("/dev/null"), b"x").unwrap();
+            assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+            assert_eq!(problem(write_atomically(Path::new("/dev/full"), b"x")), FileProblem::DiskFull);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Why the logbook cannot be used: SQLite's result codes, sorted by what a user can do about them.
+
+use std::path::{Path, PathBuf};
+
+use rusqlite::ErrorCode;
+
+use super::EntryId;
+use crate::store::FileError;
+
+/// A logbook that could not be opened, read or written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("logbook {}: {problem}", path.display())]
+pub struct LogbookError {
+    /// The logbook's file.
+    pub path: PathBuf,
+    /// What stood in the way.
+    pub problem: LogbookProblem,
+}
+
+/// What stands in the way of using the logbook.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LogbookProblem {
+    /// Its folder cannot be made.
+    #[error(transparent)]
+    Folder(FileError),
+    /// The file cannot be opened: a folder of its name, or no permission.
+    #[error("it cannot be opened")]
+    NoAccess,
+    /// It can be read but not written.
+    #[error("it is write-protected")]
+    WriteProtected,
+    /// Another program held it longer than it is waited for.
+    #[error("another program is using it")]
+    Locked,
+    /// The disk is full.
+    #[error("the disk is full")]
+    DiskFull,
+    /// It is no database, or a damaged one.
+    #[error("it is damaged: {what}")]
+    Damaged {
+        /// What the database says.
+        what: String,
+    },
+    /// A newer version of the program made it. It was left alone.
+    #[error("it has schema {found}, made by a newer version; this version knows schemas up to {known}")]
+    Newer {
+        /// The schema's number in the file.
+        found: i64,
+        /// The last one this version knows.
+        known: i64,
+    },
+    /// The entry to conclude does not exist, or is concluded.
+    #[error("entry {entry} is not an open one")]
+    NotOpen {
+        /// The entry.
+        entry: EntryId,
+    },
+    /// Anything else, as the database calls it.
+    #[error("{what}")]
+    Database {
+        /// SQLite's extended result code; `None` where the value was refused before it came to SQLite.
+        code: Option<i32>,
+        /// The database's words.
+        what: String,
+    },
+}
+
+impl LogbookProblem {
+    pub(super) fn of(self, path: &Path) -> LogbookError {
+        LogbookError { path: path.to_owned(), problem: self }
+    }
+}
+
+impl From<rusqlite::Error> for LogbookProblem {
+    fn from(error: rusqlite::Error) -> Self {
+        use rusqlite::Error as Cause;
+        let what = error.to_string();
+        match error {
+            Cause::SqliteFailure(failure, _) => match failure.code {
+                ErrorCode::CannotOpen | ErrorCode::PermissionDenied => LogbookProblem::NoAccess,
+                ErrorCode::ReadOnly => LogbookProblem::WriteProtected,
+                ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked => LogbookProblem::Locked,
+                ErrorCode::DiskFull => LogbookProblem::DiskFull,
+                ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt => LogbookProblem::Damaged { what },
+                _ => LogbookProblem::Database { code: Some(failure.extended_code), what },
+            },
+            // A value that the schema does not allow was found in its table.
+            Cause::FromSqlConversionFailure(..)
+            | Cause::IntegralValueOutOfRange(..)
+            | Cause::InvalidColumnType(..)
+            | Cause::Utf8Error(..) => LogbookProblem::Damaged { what },
+            _ => LogbookProblem::Database { code: None, what },
+        }
+    }
+}

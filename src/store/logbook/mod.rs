@@ -1,0 +1,235 @@
+//! The logbook: what this program wrote into which device, and how many of its write cycles that took. An intent is
+//! recorded before the first byte goes out and concluded afterwards, so that a program that dies in between leaves a
+//! trace. It is SQLite, so that two windows can share it and any tool can read it.
+//!
+//! It never learns an access code: `what` and a failure's text are words for people, made from what was planned, not from
+//! frames. It never decides whether a device may be written: it may fail, and the caller warns and goes on.
+
+mod error;
+mod schema;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use jiff::Timestamp;
+use rusqlite::{Connection, Row, named_params};
+
+pub use error::{LogbookError, LogbookProblem};
+
+/// How long to wait for another window that is writing.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// An open logbook. Opening and asking may wait for another window: not a thing to do on a thread that draws.
+#[derive(Debug)]
+pub struct Logbook {
+    path: PathBuf,
+    database: Connection,
+}
+
+/// Which device an entry is about.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct DeviceKey {
+    /// Kind of device: `hiperface`.
+    pub kind: String,
+    /// Its type within the kind, as its manual writes it: `37h`. Serial numbers are unique within a type only.
+    pub device_type: String,
+    /// Its serial number.
+    pub serial_number: String,
+    /// A simulated device; it never shares a count with a real one.
+    pub is_virtual: bool,
+}
+
+/// Which entry of the logbook.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EntryId(i64);
+
+impl fmt::Display for EntryId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// How a write ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Written and read back.
+    Done,
+    /// It failed, with the reason in words.
+    Failed(String),
+    /// The user stopped it.
+    Cancelled,
+}
+
+/// One write, as it was intended and as it ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its number; a later entry has a greater one.
+    pub id: EntryId,
+    /// When it was about to begin.
+    pub at: Timestamp,
+    /// What was to be written, in words.
+    pub what: String,
+    /// Write cycles that were to be spent.
+    pub planned_cycles: u64,
+    /// The backup taken before; in its path, what is not Unicode is replaced.
+    pub backup: Option<PathBuf>,
+    /// How it ended; `None` while it runs, and for ever if the program died meanwhile.
+    pub conclusion: Option<Conclusion>,
+}
+
+/// How and when a write ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Conclusion {
+    /// When.
+    pub at: Timestamp,
+    /// How.
+    pub outcome: Outcome,
+    /// Write cycles that were spent; not zero for what failed half-way.
+    pub cycles_spent: u64,
+}
+
+impl Logbook {
+    /// Opens the logbook, making it and its folder where there is none.
+    ///
+    /// # Errors
+    /// Where the file is no database, a damaged one, in use for longer than two seconds, not to be written to, or made
+    /// by a newer version of the program; the file is then as it was.
+    pub fn open(path: &Path) -> Result<Self, LogbookError> {
+        Self::open_patiently(path, PATIENCE)
+    }
+
+    fn open_patiently(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
+        let database = schema::open(path, patience).map_err(|problem| problem.of(path))?;
+        Ok(Logbook { path: path.to_owned(), database })
+    }
+
+    /// Records that a device is about to be written. It is on disk when this returns.
+    ///
+    /// # Errors
+    /// Where the logbook cannot be written.
+    pub fn intend(
+        &mut self,
+        at: Timestamp,
+        device: &DeviceKey,
+        what: &str,
+        planned_cycles: u64,
+        backup: Option<&Path>,
+    ) -> Result<EntryId, LogbookError> {
+        let sql = "INSERT INTO entry (at, kind, device_type, serial_number, is_virtual, what, planned_cycles, backup)
+                   VALUES (:at, :kind, :device_type, :serial_number, :is_virtual, :what, :planned_cycles, :backup)";
+        let parameters = named_params! {
+            ":at": at.to_string(),
+            ":kind": device.kind,
+            ":device_type": device.device_type,
+            ":serial_number": device.serial_number,
+            ":is_virtual": device.is_virtual,
+            ":what": what,
+            ":planned_cycles": countable(planned_cycles),
+            ":backup": backup.map(Path::to_string_lossy),
+        };
+        self.database.execute(sql, parameters).map_err(|error| self.failed(error))?;
+        Ok(EntryId(self.database.last_insert_rowid()))
+    }
+
+    /// Records how an intended write ended.
+    ///
+    /// # Errors
+    /// [`LogbookProblem::NotOpen`] where there is no such intent or it is concluded; else where the logbook cannot be
+    /// written.
+    pub fn conclude(
+        &mut self,
+        id: EntryId,
+        at: Timestamp,
+        outcome: Outcome,
+        cycles_spent: u64,
+    ) -> Result<(), LogbookError> {
+        let sql = "UPDATE entry
+                   SET concluded_at = :at, outcome = :outcome, failure = :failure, cycles_spent = :cycles_spent
+                   WHERE id = :id AND concluded_at IS NULL";
+        let (outcome, failure) = match outcome {
+            Outcome::Done => ("done", None),
+            Outcome::Failed(reason) => ("failed", Some(reason)),
+            Outcome::Cancelled => ("cancelled", None),
+        };
+        let parameters = named_params! {
+            ":at": at.to_string(),
+            ":outcome": outcome,
+            ":failure": failure,
+            ":cycles_spent": countable(cycles_spent),
+            ":id": id.0,
+        };
+        match self.database.execute(sql, parameters).map_err(|error| self.failed(error))? {
+            0 => Err(LogbookProblem::NotOpen { entry: id }.of(&self.path)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Write cycles that this program has spent on a device. An intent without a conclusion counts as planned: whether
+    /// the program died before or after the last byte nobody knows. Other programs' writing is not in it: "at least".
+    ///
+    /// # Errors
+    /// Where the logbook cannot be read.
+    pub fn write_cycles(&self, device: &DeviceKey) -> Result<u64, LogbookError> {
+        let sql = "SELECT coalesce(sum(coalesce(cycles_spent, planned_cycles)), 0) FROM entry
+                   WHERE kind = ?1 AND device_type = ?2 AND serial_number = ?3 AND is_virtual = ?4";
+        let key = (&device.kind, &device.device_type, &device.serial_number, device.is_virtual);
+        self.database
+            .query_row(sql, key, |row| row.get(0).and_then(schema::parse_cycles))
+            .map_err(|error| self.failed(error))
+    }
+
+    /// The last `limit` entries about a device, newest first.
+    ///
+    /// # Errors
+    /// Where the logbook cannot be read.
+    pub fn history(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
+        self.read_history(device, limit).map_err(|error| self.failed(error))
+    }
+
+    fn read_history(&self, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<Entry>> {
+        let sql = "SELECT * FROM entry
+                   WHERE kind = ?1 AND device_type = ?2 AND serial_number = ?3 AND is_virtual = ?4
+                   ORDER BY id DESC LIMIT ?5";
+        let key = (&device.kind, &device.device_type, &device.serial_number, device.is_virtual, limit);
+        self.database.prepare(sql)?.query_map(key, read_entry)?.collect()
+    }
+
+    fn failed(&self, error: rusqlite::Error) -> LogbookError {
+        LogbookProblem::from(error).of(&self.path)
+    }
+}
+
+/// The cycles one entry counts: with 32 bits no sum of entries overflows, and no EEPROM lives to see a thousandth of them.
+fn countable(cycles: u64) -> u32 {
+    u32::try_from(cycles).unwrap_or(u32::MAX)
+}
+
+fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
+    Ok(Entry {
+        id: EntryId(row.get("id")?),
+        at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
+        what: row.get("what")?,
+        planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
+        backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
+        conclusion: read_conclusion(row)?,
+    })
+}
+
+fn read_conclusion(row: &Row<'_>) -> rusqlite::Result<Option<Conclusion>> {
+    let Some(at) = row.get::<_, Option<String>>("concluded_at")? else { return Ok(None) };
+    let outcome = match row.get::<_, String>("outcome")?.as_str() {
+        "done" => Outcome::Done,
+        "cancelled" => Outcome::Cancelled,
+        // The schema allows no fourth word.
+        _ => Outcome::Failed(row.get::<_, Option<String>>("failure")?.unwrap_or_default()),
+    };
+    Ok(Some(Conclusion {
+        at: schema::parse_time(&at)?,
+        outcome,
+        cycles_spent: row.get("cycles_spent").and_then(schema::parse_cycles)?,
+    }))
+}
+
+#[cfg(test)]
+mod tests;

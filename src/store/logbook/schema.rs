@@ -1,0 +1,104 @@
+//! The logbook's tables, and how an older logbook comes up to date. `user_version` holds the schema's number.
+
+use std::path::Path;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use rusqlite::config::DbConfig;
+use rusqlite::types::Type;
+use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
+
+use super::LogbookProblem;
+use crate::store::files::create_folder;
+
+/// What leads from each schema to the next. Steps are added, never changed: logbooks made by them exist.
+const STEPS: [&str; 1] = ["
+    CREATE TABLE entry (
+        id             INTEGER PRIMARY KEY,
+        at             TEXT    NOT NULL, -- RFC 3339, UTC
+        kind           TEXT    NOT NULL,
+        device_type    TEXT    NOT NULL,
+        serial_number  TEXT    NOT NULL,
+        is_virtual     INTEGER NOT NULL CHECK (is_virtual IN (0, 1)),
+        what           TEXT    NOT NULL,
+        planned_cycles INTEGER NOT NULL CHECK (planned_cycles >= 0),
+        backup         TEXT,
+        concluded_at   TEXT,             -- this and the rest: NULL until concluded
+        outcome        TEXT             CHECK (outcome IN ('done', 'failed', 'cancelled')),
+        failure        TEXT,             -- the reason, of 'failed' only
+        cycles_spent   INTEGER          CHECK (cycles_spent >= 0),
+        CHECK ((concluded_at IS NULL) = (outcome IS NULL)),
+        CHECK ((concluded_at IS NULL) = (cycles_spent IS NULL)),
+        CHECK ((outcome IS 'failed') = (failure IS NOT NULL))
+    ) STRICT;
+    CREATE INDEX entry_of_device ON entry (kind, device_type, serial_number, is_virtual);
+"];
+
+/// The schema this version knows.
+pub(super) const KNOWN: i64 = STEPS.len() as i64;
+
+/// Opens a database and brings its schema up to date.
+pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookProblem> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder).map_err(LogbookProblem::Folder)?;
+    }
+    // Without SQLITE_OPEN_URI: a file may be called "file:x?mode=memory".
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let mut database = Connection::open_with_flags(path, flags)?;
+    database.busy_timeout(patience)?;
+    // Before anything is changed, the journal's mode included.
+    if let Err(problem) = check_version(&database) {
+        // Closing would tidy up after a newer version that crashed; that is its own affair.
+        let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+        return Err(problem);
+    }
+    use_write_ahead_log(&database)?;
+    migrate(&mut database)?;
+    Ok(database)
+}
+
+/// A time as the tables hold it.
+pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
+    text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
+}
+
+/// Cycles as the tables hold them: SQLite knows no unsigned numbers.
+pub(super) fn parse_cycles(count: i64) -> rusqlite::Result<u64> {
+    u64::try_from(count).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(0, count))
+}
+
+/// Readers do not wait for a writer, and every commit is flushed: an intent has to outlast a power failure.
+fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
+    // The mode it has now comes back; a network disk that cannot have a WAL keeps its old one and works too.
+    match database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get::<_, String>(0)) {
+        // Another window is switching or writing at this moment, and SQLite does not wait here: it would wait for a
+        // window that waits for this one. Either mode is safe; the next to open switches.
+        Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) => {}
+        result => drop(result?),
+    }
+    database.pragma_update(None, "synchronous", "FULL")
+}
+
+fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
+    // Nearly every time there is nothing to do, and nothing to wait for.
+    if check_version(database)? == STEPS.len() {
+        return Ok(());
+    }
+    let transaction = database.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    // Another window may have been first.
+    let done = check_version(&transaction)?;
+    for step in STEPS.iter().skip(done) {
+        transaction.execute_batch(step)?;
+    }
+    transaction.pragma_update(None, "user_version", KNOWN)?;
+    Ok(transaction.commit()?)
+}
+
+/// How many of the steps this database has behind it.
+fn check_version(database: &Connection) -> Result<usize, LogbookProblem> {
+    let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    match usize::try_from(found) {
+        Ok(done) if done <= STEPS.len() => Ok(done),
+        _ => Err(LogbookProblem::Newer { found, known: KNOWN }),
+    }
+}

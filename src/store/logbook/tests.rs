@@ -1,0 +1,233 @@
+//! The logbook on a disk: counts, two windows, and every way in which its file can be unusable.
+
+use super::*;
+use crate::store::{FileProblem, Store};
+use std::fs;
+
+fn at(second: i64) -> Timestamp {
+    Timestamp::from_second(1_795_263_287 + second).unwrap()
+}
+
+fn device(serial_number: &str) -> DeviceKey {
+    DeviceKey {
+        kind: "hiperface".into(),
+        device_type: "37h".into(),
+        serial_number: serial_number.into(),
+        is_virtual: false,
+    }
+}
+
+/// A folder, and where a logbook in it would be.
+fn place() -> (tempfile::TempDir, PathBuf) {
+    let root = tempfile::tempdir().unwrap();
+    let path = Store::at(root.path()).logbook_path();
+    (root, path)
+}
+
+fn problem<T: fmt::Debug>(result: Result<T, LogbookError>) -> LogbookProblem {
+    result.unwrap_err().problem
+}
+
+#[test]
+fn cycles_add_up_for_each_device() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let own = device("1");
+    let others = [
+        device("2"),
+        DeviceKey { kind: "biss".into(), ..own.clone() },
+        DeviceKey { device_type: "27h".into(), ..own.clone() },
+        DeviceKey { is_virtual: true, ..own.clone() },
+    ];
+    assert_eq!(logbook.write_cycles(&own), Ok(0));
+    for (spent, outcome) in [(8, Outcome::Done), (3, Outcome::Failed("no reply".into())), (0, Outcome::Cancelled)] {
+        let id = logbook.intend(at(0), &own, "data field 1", 8, None).unwrap();
+        logbook.conclude(id, at(1), outcome, spent).unwrap();
+    }
+    assert_eq!(logbook.write_cycles(&own), Ok(11));
+    for other in &others {
+        assert_eq!(logbook.write_cycles(other), Ok(0), "{other:?}");
+        logbook.intend(at(0), other, "x", 100, None).unwrap();
+    }
+    assert_eq!(logbook.write_cycles(&own), Ok(11));
+}
+
+#[test]
+fn an_intent_without_conclusion_counts_as_planned() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    logbook.intend(at(0), &device("1"), "data field 1", 8, None).unwrap();
+    // The program dies here.
+    drop(logbook);
+    let logbook = Logbook::open(&path).unwrap();
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(8));
+    assert_eq!(logbook.history(&device("1"), 1).unwrap()[0].conclusion, None);
+}
+
+#[test]
+fn history_is_newest_first_and_complete() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let own = device("A/B ä\0");
+    let backup = path.with_file_name("a backup.ron");
+    let first = logbook.intend(at(0), &own, "first", 1, Some(&backup)).unwrap();
+    let second = logbook.intend(at(5), &own, "second", 2, None).unwrap();
+    logbook.intend(at(6), &device("2"), "another", 1, None).unwrap();
+    logbook.conclude(first, at(1), Outcome::Failed(String::new()), 1).unwrap();
+
+    let history = logbook.history(&own, 10).unwrap();
+    let conclusion = Conclusion { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
+    let expected = [
+        Entry { id: second, at: at(5), what: "second".into(), planned_cycles: 2, backup: None, conclusion: None },
+        Entry {
+            id: first,
+            at: at(0),
+            what: "first".into(),
+            planned_cycles: 1,
+            backup: Some(backup),
+            conclusion: Some(conclusion),
+        },
+    ];
+    assert_eq!(history, expected);
+    assert_eq!(logbook.history(&own, 1).unwrap(), expected[..1]);
+    assert_eq!(logbook.history(&own, 0), Ok(Vec::new()));
+}
+
+#[test]
+fn an_entry_is_concluded_once() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    let id = logbook.intend(at(0), &device("1"), "x", 8, None).unwrap();
+    logbook.conclude(id, at(1), Outcome::Done, 8).unwrap();
+    let not_open = LogbookProblem::NotOpen { entry: id };
+    assert_eq!(problem(logbook.conclude(id, at(2), Outcome::Cancelled, 0)), not_open);
+    assert!(logbook.conclude(EntryId(99), at(2), Outcome::Done, 0).is_err());
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(8));
+}
+
+#[test]
+fn an_absurd_count_does_not_break_the_sum() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    for _ in 0..3 {
+        logbook.intend(at(0), &device("1"), "x", u64::MAX, None).unwrap();
+    }
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(3 * u64::from(u32::MAX)));
+}
+
+#[test]
+fn two_windows_share_a_logbook() {
+    let (_root, path) = place();
+    let mut first = Logbook::open(&path).unwrap();
+    let mut second = Logbook::open(&path).unwrap();
+    let id = first.intend(at(0), &device("1"), "x", 8, None).unwrap();
+    assert_eq!(second.write_cycles(&device("1")), Ok(8));
+    second.intend(at(0), &device("1"), "y", 1, None).unwrap();
+    second.conclude(id, at(1), Outcome::Done, 2).unwrap();
+    assert_eq!(first.write_cycles(&device("1")), Ok(3));
+}
+
+#[test]
+fn many_may_open_and_write_at_the_same_moment() {
+    let (_root, path) = place();
+    std::thread::scope(|scope| {
+        for _ in 0..6 {
+            scope.spawn(|| {
+                let mut logbook = Logbook::open(&path).unwrap();
+                for _ in 0..5 {
+                    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
+                }
+            });
+        }
+    });
+    assert_eq!(Logbook::open(&path).unwrap().write_cycles(&device("1")), Ok(30));
+}
+
+#[test]
+fn a_locked_logbook_says_so() {
+    let (_root, path) = place();
+    let patience = Duration::from_millis(20);
+    let mut logbook = Logbook::open_patiently(&path, patience).unwrap();
+    let other = Connection::open(&path).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookProblem::Locked);
+    // Reading, and opening to read, wait for nobody.
+    assert_eq!(Logbook::open_patiently(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
+    other.execute_batch("ROLLBACK").unwrap();
+    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
+}
+
+#[test]
+fn a_newer_logbook_is_left_alone() {
+    let (_root, path) = place();
+    drop(Logbook::open(&path).unwrap());
+    for found in [schema::KNOWN + 1, i64::from(i32::MAX), -1] {
+        Connection::open(&path).unwrap().pragma_update(None, "user_version", found).unwrap();
+        let before = fs::read(&path).unwrap();
+        assert_eq!(problem(Logbook::open(&path)), LogbookProblem::Newer { found, known: schema::KNOWN });
+        assert_eq!(fs::read(&path).unwrap(), before, "{found}");
+    }
+}
+
+#[test]
+fn what_a_newer_version_left_in_its_log_stays_there() {
+    let (_root, path) = place();
+    drop(Logbook::open(&path).unwrap());
+    let newer = Connection::open(&path).unwrap();
+    newer.set_db_config(rusqlite::config::DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).unwrap();
+    newer.pragma_update(None, "user_version", 77).unwrap();
+    drop(newer);
+    let wal = path.with_extension("sqlite-wal");
+    let before = [&path, &wal].map(|path| fs::read(path).unwrap());
+    assert!(matches!(problem(Logbook::open(&path)), LogbookProblem::Newer { found: 77, .. }));
+    assert_eq!([&path, &wal].map(|path| fs::read(path).unwrap()), before);
+}
+
+#[test]
+fn a_damaged_logbook_is_an_error_and_stays() {
+    let (_root, path) = place();
+    drop(Logbook::open(&path).unwrap());
+    let whole = fs::read(&path).unwrap();
+    let mut shredded = whole.clone();
+    shredded[100..].fill(0xA5);
+    let cases = [
+        ("two bytes", b"xy".to_vec()),
+        ("a text", b"this is a text, and not a short one at that. ".repeat(30)),
+        ("a header only", whole[..100].to_vec()),
+        ("cut off", whole[..whole.len() / 2].to_vec()),
+        ("shredded", shredded),
+    ];
+    for (label, content) in cases {
+        fs::write(&path, &content).unwrap();
+        let result = Logbook::open(&path).and_then(|mut logbook| {
+            logbook.intend(at(0), &device("1"), "x", 1, None)?;
+            logbook.write_cycles(&device("1"))
+        });
+        assert!(
+            matches!(&result, Err(LogbookError { problem: LogbookProblem::Damaged { .. }, .. })),
+            "{label}: {result:?}"
+        );
+        assert_eq!(fs::read(&path).unwrap(), content, "{label}");
+    }
+}
+
+#[test]
+fn a_value_that_makes_no_sense_is_damage() {
+    let (_root, path) = place();
+    let mut logbook = Logbook::open(&path).unwrap();
+    logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
+    Connection::open(&path).unwrap().execute("UPDATE entry SET at = 'yesterday'", []).unwrap();
+    assert!(matches!(problem(logbook.history(&device("1"), 1)), LogbookProblem::Damaged { .. }));
+    assert_eq!(logbook.write_cycles(&device("1")), Ok(1));
+}
+
+#[test]
+fn a_logbook_that_has_no_place_is_an_error() {
+    let (root, path) = place();
+    fs::create_dir_all(&path).unwrap();
+    assert_eq!(problem(Logbook::open(&path)), LogbookProblem::NoAccess);
+    let file = root.path().join("file");
+    fs::write(&file, "x").unwrap();
+    let LogbookProblem::Folder(error) = problem(Logbook::open(&file.join("logbook.sqlite"))) else { panic!() };
+    assert_eq!(error.problem, FileProblem::NotFolder);
+}

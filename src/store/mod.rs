@@ -1,0 +1,141 @@
+//! The program's own folders: backups and the logbook (data), device tables of the user's own (configuration).
+//! No folder is made before something is written into it, and no access code is ever written.
+
+mod backups;
+mod file_error;
+mod files;
+mod logbook;
+
+use std::path::{Path, PathBuf};
+
+use directories::ProjectDirs;
+
+pub use backups::{Backup, Backups};
+pub use file_error::{FileError, FileProblem, FileTask};
+pub use files::{MAX_TEXT, read_text, write_atomically};
+pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
+
+use crate::protocol::hiperface::{EncoderTypes, TypeTableError};
+
+/// Where the program keeps what outlives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Store {
+    data: PathBuf,
+    config: PathBuf,
+}
+
+/// Why the store cannot give what is asked for.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StoreError {
+    /// The system names no home folder for this user.
+    #[error("this user has no home folder")]
+    NoHome,
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The user's own table of encoder types is broken.
+    #[error("{}, {cause}", path.display())]
+    EncoderTypes {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column or with the row's type byte.
+        cause: TypeTableError,
+    },
+}
+
+impl Store {
+    /// The folders that the system keeps for this user and this program.
+    ///
+    /// # Errors
+    /// [`StoreError::NoHome`] where there are none.
+    pub fn for_user() -> Result<Self, StoreError> {
+        let folders = ProjectDirs::from("", "", "encoder-studio").ok_or(StoreError::NoHome)?;
+        Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
+    }
+
+    /// The folders `data` and `config` under `root`: a store of its own for a test or a portable copy.
+    pub fn at(root: &Path) -> Self {
+        Store { data: root.join("data"), config: root.join("config") }
+    }
+
+    /// The backups taken before devices were written.
+    pub fn backups(&self) -> Backups {
+        Backups::in_folder(self.data.join("backups"))
+    }
+
+    /// The file for [`Logbook::open`].
+    pub fn logbook_path(&self) -> PathBuf {
+        self.data.join("logbook.sqlite")
+    }
+
+    /// The file in which a user may add encoder types; it need not exist.
+    pub fn encoder_types_path(&self) -> PathBuf {
+        self.config.join("devices").join("hiperface.ron")
+    }
+
+    /// The built-in table of encoder types; rows in the user's own file go before its rows.
+    ///
+    /// # Errors
+    /// Where the user's file exists but cannot be read or understood. [`EncoderTypes::built_in`] is there to go on with.
+    pub fn encoder_types(&self) -> Result<EncoderTypes, StoreError> {
+        let built_in = EncoderTypes::built_in();
+        let path = self.encoder_types_path();
+        let text = match read_text(&path) {
+            Ok(text) => text,
+            Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(built_in),
+            Err(error) => return Err(error.into()),
+        };
+        match EncoderTypes::parse(&text) {
+            Ok(own) => Ok(built_in.overlaid_with(own)),
+            Err(cause) => Err(StoreError::EncoderTypes { path, cause }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn store_with(own: &[u8]) -> (tempfile::TempDir, Store) {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        fs::create_dir_all(store.encoder_types_path().parent().unwrap()).unwrap();
+        fs::write(store.encoder_types_path(), own).unwrap();
+        (root, store)
+    }
+
+    #[test]
+    fn looking_makes_no_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        assert_eq!(store.encoder_types(), Ok(EncoderTypes::built_in()));
+        assert_eq!(store.backups().list("hiperface", "1"), Ok(Vec::new()));
+        assert!(store.logbook_path().starts_with(root.path()));
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_users_encoder_type_goes_first() {
+        let (_root, store) = store_with("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
+        let types = store.encoder_types().unwrap();
+        assert_eq!(types.find(0x37).unwrap().name, "own");
+        assert_eq!(types.find(0x22), EncoderTypes::built_in().find(0x22));
+    }
+
+    #[test]
+    fn a_broken_table_is_named_with_its_place() {
+        let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
+        let error = store.encoder_types().unwrap_err();
+        assert!(matches!(&error, StoreError::EncoderTypes { cause: TypeTableError::Syntax { line: 2, .. }, .. }));
+        let text = error.to_string();
+        assert!(text.contains("hiperface.ron, line 2, column "), "{text}");
+
+        let (_root, store) = store_with(b"(types: \xFF)");
+        let error = store.encoder_types().unwrap_err();
+        assert!(
+            matches!(&error, StoreError::File(FileError { problem: FileProblem::NotUtf8 { offset: 8 }, .. })),
+            "{error}"
+        );
+    }
+}
