@@ -1,6 +1,9 @@
 //! Frames in words, for `decode` and the trace. It never shows an access code.
 
-use super::{BROADCAST, Command, EncoderTypes, Frame, FrameError, Reply, Request, StatusCode};
+use super::{
+    BROADCAST, CodeNumber, Command, DataFieldStatus, DeviceAddress, EncoderTypes, Frame, FrameError, LineSettings,
+    Reply, Request, StatusCode,
+};
 use crate::bits::hex;
 
 /// What a captured frame says, one sentence a line. `request` is the request before it, when the frame may be its reply.
@@ -39,16 +42,32 @@ fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<super::Answer> {
     let code = super::AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {
         (Command::ReadPosition, _) => Request::ReadPosition,
+        (Command::SetPosition, _) => Request::SetPosition { position: 0, code0: code },
         (Command::ReadAnalogue, [channel, ..]) => Request::ReadAnalogue { channel: *channel },
         (Command::ReadCounter, _) => Request::ReadCounter,
+        (Command::ClearCounter, _) => Request::ClearCounter { code0: code },
         (Command::ReadData, [field, address, count, ..]) => {
             Request::ReadData { field: *field, address: *address, count: *count, code }
         }
+        (Command::StoreData, [field, address, count]) => {
+            Request::StoreData { field: *field, address: *address, code, data: vec![0; usize::from(*count)] }
+        }
         (Command::FieldStatus, [field, ..]) => Request::FieldStatus { field: *field },
+        (Command::DefineField, [field, status]) => {
+            Request::DefineField { field: *field, status: DataFieldStatus::from_byte(*status), code }
+        }
         (Command::FreeMemory, _) => Request::FreeMemory,
+        (Command::ChangeCode, [number]) => {
+            Request::ChangeCode { number: CodeNumber::new(*number)?, old: code, new: code }
+        }
         (Command::ReadStatus, _) => Request::ReadStatus,
         (Command::ReadTypeLabel, _) => Request::ReadTypeLabel,
+        (Command::SetAddress, [new]) => Request::SetAddress { new: DeviceAddress::new(*new)?, code0: code },
         (Command::ReadSerial, _) => Request::ReadSerial,
+        (Command::ConfigureLine, [settings]) => {
+            Request::ConfigureLine { settings: LineSettings::from_byte(*settings), code0: code }
+        }
+        (Command::Synchronise, _) => Request::Synchronise { position: 0, code0: code },
         _ => return None,
     };
     candidate.parse_reply(frame.address, bytes).ok()
@@ -130,6 +149,11 @@ mod tests {
             ("40 D0 0F 9F", "address 40h: read encoder status (50h, error bit set)|error 0Fh wrong access code"),
             ("40 4E 08 00 06", "address 40h: read available memory (4Eh)|reply: 128 bytes free, 0 data fields"),
             ("40 4F 02 55 66 3E", "address 40h: change access code (4Fh)|request: access code 2"),
+            ("40 4D 00 C9 C4", "address 40h: create, change or delete a data field (4Dh)|reply: done"),
+            ("40 4F 02 0D", "address 40h: change access code (4Fh)|reply: done"),
+            ("40 4B 01 05 02 0D", "address 40h: store data (4Bh)|reply: done"),
+            ("40 43 03", "address 40h: set position (43h)|reply: done"),
+            ("40 57 E5 F2", "address 40h: configure serial interface (57h)|reply: done"),
             ("FF 53 AC", "broadcast: reset (53h)|request"),
             ("40 41 01", "address 40h: unknown command (41h)|as a request: 41h is not a command"),
         ];

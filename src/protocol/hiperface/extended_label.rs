@@ -157,6 +157,8 @@ mod tests {
         let mut bytes = label();
         bytes[2..6].copy_from_slice(&u32::MAX.to_be_bytes());
         assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
+        bytes[6..10].copy_from_slice(&u32::MAX.to_be_bytes()); // the product needs 69 bits
+        assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
         bytes[2..6].copy_from_slice(&[0; 4]);
         assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
     }

@@ -22,6 +22,8 @@ mod request;
 mod status;
 mod timing;
 mod type_label;
+#[cfg(test)]
+mod vectors;
 
 pub use address::{BROADCAST, DeviceAddress};
 pub use command::{COMMANDS, Command, CommandRow};

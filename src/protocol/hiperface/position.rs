@@ -36,7 +36,7 @@ impl Geometry {
     /// Number of different positions, so that they run from 0 to one less; `None` where it is not known.
     pub fn range(self) -> Option<u64> {
         match self {
-            Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()? * u64::from(turns.max(1))),
+            Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
             Geometry::Linear { periods: 0, .. } => None,
             Geometry::Linear { periods, .. } => Some(u64::from(periods) * u64::from(STEPS_PER_PERIOD)),
         }

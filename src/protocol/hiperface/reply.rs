@@ -146,8 +146,9 @@ impl Request {
 
     fn check_sender(&self, address: u8, sender: u8) -> Result<(), ReplyError> {
         let moved = matches!(self, Request::SetAddress { new, .. } if new.byte() == sender);
-        let broadcast = address == super::BROADCAST && DeviceAddress::new(sender).is_some();
-        if sender == address || moved || broadcast {
+        // An encoder always answers with its own address: FFh is never a sender, not even after a broadcast.
+        let device = DeviceAddress::new(sender).is_some();
+        if device && (sender == address || moved || address == super::BROADCAST) {
             Ok(())
         } else {
             Err(ReplyError::Address { expected: address, got: sender })

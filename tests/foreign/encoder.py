@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""A HIPERFACE encoder on a pseudo terminal, for tests against a process that is not our program.
+
+Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" alone, with the Python standard library alone. This
+file is the line and the options; what the encoder does is in device.py.
+
+It opens a pty, prints one line "ready PATH" and answers until SIGTERM (or the end of stdin, --stdin-eof). A request
+ends with 6 ms of silence (4.6 ms on a real line). A client that closes the line is noticed if it stays away for some
+milliseconds. The state is JSON:
+
+  {"address": "40", "settings": "E4", "codes": ["55", "55", "55", "55"], "counter": 0, "position": 918833,
+   "fields": [{"status": "C9", "bytes": "..."}], "free": "bytes that no field uses"}
+
+Every option that takes bytes takes them as hex.
+"""
+
+import argparse
+import json
+import os
+import pty
+import random
+import select
+import signal
+import sys
+import termios
+import time
+import tty
+
+sys.dont_write_bytecode = True  # the tests leave nothing behind
+
+from device import BLOCK, Died, Encoder  # noqa: E402
+
+SILENCE = 0.006  # seconds that end a frame
+
+
+class Line:
+    """The pty: cuts what arrives into frames and notices when nobody is there."""
+
+    def __init__(self, encoder, options):
+        self.encoder, self.options = encoder, options
+        self.master, slave = pty.openpty()
+        self.path = os.ttyname(slave)
+        tty.setraw(slave)
+        os.close(slave)  # from now on the only one who holds it is the client
+        self.dead = False
+        self.random = random.Random(options.seed)
+
+    def run(self):
+        frame = b""
+        watched = [self.master] + ([sys.stdin.fileno()] if self.options.stdin_eof else [])
+        while True:
+            ready, _, _ = select.select(watched, [], [], SILENCE if frame else None)
+            if len(watched) == 2 and watched[1] in ready and not os.read(watched[1], 4096):
+                return
+            data = self.read() if self.master in ready else b""
+            if data:
+                frame += data
+                continue
+            if frame and (data is None or not ready):
+                self.serve(frame)
+                frame = b""
+            if data is None:
+                self.hang_up()
+
+    def read(self):
+        """What the client sent; None when there is no client."""
+        try:
+            data = os.read(self.master, 4096)
+        except OSError:  # EIO
+            return None
+        if self.options.echo:
+            self.write(data)
+        return data
+
+    def hang_up(self):
+        self.dead = False
+        termios.tcflush(self.master, termios.TCIOFLUSH)  # no late reply for the next client
+        tty.setraw(self.master)
+        time.sleep(0.002)
+
+    def serve(self, frame):
+        if self.options.log:
+            with open(self.options.log, "a", encoding="ascii") as log:
+                log.write(frame.hex(" ").upper() + "\n")
+        if self.dead or self.options.silent:
+            return
+        if self.options.nonsense:
+            self.write(self.random.randbytes(self.random.randint(1, 40)))
+            return
+        try:
+            reply = self.encoder.answer(frame)
+        except Died:
+            self.dead, reply = True, None
+        if self.options.state:
+            self.encoder.save(self.options.state)
+        if reply:
+            time.sleep(self.options.delay)
+            self.write(reply)
+
+    def write(self, data):
+        try:
+            os.write(self.master, data)
+        except OSError:
+            pass  # the client has gone
+
+
+def parse_options():
+    def byte(text):
+        return int(text, 16)
+
+    def channel(text):
+        number, value = text.split("=")
+        return int(number, 16), int(value)
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = parser.add_argument
+    add("--link", help="symbolic link to make to the pty")
+    add("--state", help="JSON file that keeps the EEPROM across runs; wins over the options")
+    add("--log", help="file to append every request frame to, in hex, one a line")
+    add("--stdin-eof", action="store_true", help="end when stdin ends")
+    add("--echo", action="store_true", help="send the host's bytes back first, as many converters do")
+    add("--silent", action="store_true", help="never answer")
+    add("--nonsense", action="store_true", help="answer random bytes")
+    add("--seed", type=int, default=1, help="of the random bytes")
+    add("--die-in-store", type=int, metavar="N",
+        help="write only half of the Nth store, then be silent until the client closes and opens the line")
+    add("--delay", type=float, default=0.003, help="seconds to process a request")
+    add("--address", type=byte, default=0x40)
+    add("--settings", type=byte, default=0xE4)
+    add("--type", type=byte, default=0x37)
+    add("--eeprom", type=byte, default=0x80, help="size byte of the type label")
+    add("--hardware", type=byte, default=0x01, help="option byte of the type label")
+    add("--serial", default="GB0450179")
+    add("--firmware", default="V1.23")
+    add("--date", default="01.02.16")
+    add("--position", type=lambda text: int(text, 0), default=0x000E0531)
+    add("--counter", type=lambda text: int(text, 0), default=0)
+    add("--blocks", type=int, default=112, help="blocks of 16 bytes for data fields")
+    add("--fields", type=json.loads, default=[], help='as JSON: [{"status": "C9", "bytes": "0815"}, ...]')
+    add("--label", type=bytes.fromhex, default=b"", help="extended label, filled up with 00 to blocks of 16")
+    add("--status", type=bytes.fromhex, default=b"", help="codes waiting in the queue")
+    add("--channel", type=channel, action="append", default=[], metavar="CH=VALUE", help="analogue value")
+    add("--reply-from", choices=["old", "new"], default="old", help="address in the reply to 55h")
+    add("--no-repeat", action="store_true", help="replies to 55h, 57h and 67h without the argument")
+    options = parser.parse_args()
+    options.channels = dict([(0x00, 511), (0x01, 0), (0x48, 42)] + options.channel)
+    options.label += bytes(-len(options.label) % BLOCK)
+    return options
+
+
+def main():
+    options = parse_options()
+    line = Line(Encoder(options), options)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    try:
+        if options.link:
+            if os.path.islink(options.link):
+                os.unlink(options.link)
+            os.symlink(line.path, options.link)
+        print("ready", line.path, flush=True)
+        line.run()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        if options.link and os.path.islink(options.link) and os.readlink(options.link) == line.path:
+            os.unlink(options.link)
+
+
+if __name__ == "__main__":
+    main()
