@@ -2,4 +2,5 @@
 
 pub mod bits;
 pub mod protocol;
+pub mod sim;
 pub mod units;
