@@ -2,5 +2,6 @@
 
 pub mod bits;
 pub mod protocol;
+pub mod sim;
 pub mod store;
 pub mod units;

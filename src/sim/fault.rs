@@ -1,0 +1,200 @@
+//! What goes wrong on purpose: noise on the line, slow and silent devices, a power cut in the middle of a store. Read
+//! from the text of `--fault` and `sim:?fault=`. Which device suffers from it, and how, is that device's business.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use fastrand::Rng;
+
+/// The faults of a virtual device; none by default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Faults {
+    drop: f64,
+    flip: f64,
+    garbage: f64,
+    delay: Duration,
+    silent_after: Option<u32>,
+    die_in_store: Option<u32>,
+}
+
+/// Why a fault specification cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FaultError {
+    /// A name that is none, or a name without value.
+    #[error(
+        "`{item}` is no fault; allowed are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and die-in-store:N, \
+         separated by commas"
+    )]
+    Unknown {
+        /// The item as written.
+        item: String,
+    },
+    /// The value of drop, flip or garbage.
+    #[error("fault `{item}`: the probability must be a number from 0 to 1")]
+    Probability {
+        /// The item as written.
+        item: String,
+    },
+    /// The value of delay, silent-after or die-in-store.
+    #[error("fault `{item}`: the value must be a whole number from {min} to {max}")]
+    Number {
+        /// The item as written.
+        item: String,
+        /// Least value.
+        min: u32,
+        /// Greatest value.
+        max: u32,
+    },
+}
+
+/// What becomes of one byte on a noisy line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Passage {
+    /// A byte that nobody sent, before it.
+    pub inserted: Option<u8>,
+    /// The byte itself; `None` when it got lost.
+    pub carried: Option<Carried>,
+}
+
+/// A byte that came through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Carried {
+    /// Its data bits.
+    pub byte: u8,
+    /// One of them was inverted on the way: a parity bit does not fit any more.
+    pub flipped: bool,
+}
+
+impl Faults {
+    /// Longest delay in milliseconds.
+    const MAX_DELAY_MS: u32 = 60_000;
+
+    /// Added before each reply.
+    pub fn delay(&self) -> Duration {
+        self.delay
+    }
+
+    /// After so many frames the device neither answers nor acts any more.
+    pub fn silent_after(&self) -> Option<u32> {
+        self.silent_after
+    }
+
+    /// Power is lost in the middle of this store, counted from 1.
+    pub fn die_in_store(&self) -> Option<u32> {
+        self.die_in_store
+    }
+
+    /// Sends one byte over the noisy line.
+    pub fn passage(&self, rng: &mut Rng, byte: u8) -> Passage {
+        let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
+        let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {
+            true => Carried { byte: byte ^ 1 << rng.u8(..8), flipped: true },
+            false => Carried { byte, flipped: false },
+        });
+        Passage { inserted, carried }
+    }
+}
+
+fn happens(probability: f64, rng: &mut Rng) -> bool {
+    // f64() is below 1, so that 1 always happens and 0 never does.
+    rng.f64() < probability
+}
+
+impl FromStr for Faults {
+    type Err = FaultError;
+
+    /// Reads `drop:0.01,delay:5`; of an item given twice the last counts, an empty text is no fault.
+    fn from_str(text: &str) -> Result<Self, FaultError> {
+        let mut faults = Faults::default();
+        for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
+            let unknown = || FaultError::Unknown { item: item.to_owned() };
+            let (name, value) = item.split_once(':').ok_or_else(unknown)?;
+            match name {
+                "drop" => faults.drop = probability(item, value)?,
+                "flip" => faults.flip = probability(item, value)?,
+                "garbage" => faults.garbage = probability(item, value)?,
+                "delay" => {
+                    faults.delay = Duration::from_millis(number(item, value, 0, Self::MAX_DELAY_MS)?.into());
+                }
+                "silent-after" => faults.silent_after = Some(number(item, value, 0, u32::MAX)?),
+                "die-in-store" => faults.die_in_store = Some(number(item, value, 1, u32::MAX)?),
+                _ => return Err(unknown()),
+            }
+        }
+        Ok(faults)
+    }
+}
+
+fn probability(item: &str, value: &str) -> Result<f64, FaultError> {
+    value
+        .parse()
+        .ok()
+        .filter(|probability| (0.0..=1.0).contains(probability))
+        .ok_or_else(|| FaultError::Probability { item: item.to_owned() })
+}
+
+fn number(item: &str, value: &str, min: u32, max: u32) -> Result<u32, FaultError> {
+    value.parse().ok().filter(|number| (min..=max).contains(number)).ok_or_else(|| FaultError::Number {
+        item: item.to_owned(),
+        min,
+        max,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::proptest;
+
+    #[test]
+    fn a_specification_is_read() {
+        let faults: Faults = "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
+        assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
+        assert_eq!(faults.delay(), Duration::from_millis(25));
+        assert_eq!((faults.silent_after(), faults.die_in_store()), (Some(0), Some(2)));
+        assert_eq!("".parse(), Ok(Faults::default()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_in_a_sentence() {
+        let cases = [
+            ("drop:2", "fault `drop:2`: the probability must be a number from 0 to 1"),
+            ("flip:NaN", "fault `flip:NaN`: the probability must be a number from 0 to 1"),
+            ("garbage:", "fault `garbage:`: the probability must be a number from 0 to 1"),
+            ("delay:-1", "fault `delay:-1`: the value must be a whole number from 0 to 60000"),
+            ("die-in-store:0", "fault `die-in-store:0`: the value must be a whole number from 1 to 4294967295"),
+            (
+                "delay:1,lose:0.5",
+                "`lose:0.5` is no fault; allowed are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
+                 die-in-store:N, separated by commas",
+            ),
+        ];
+        for (text, sentence) in cases {
+            assert_eq!(text.parse::<Faults>().unwrap_err().to_string(), sentence);
+        }
+        assert!(matches!("drop".parse::<Faults>(), Err(FaultError::Unknown { .. })));
+    }
+
+    #[test]
+    fn what_is_certain_always_happens_and_what_is_not_never() {
+        let mut rng = Rng::with_seed(1);
+        let quiet = Faults::default();
+        let lossy: Faults = "drop:1".parse().unwrap();
+        let noisy: Faults = "flip:1,garbage:1".parse().unwrap();
+        for byte in 0..=255 {
+            let whole = Some(Carried { byte, flipped: false });
+            assert_eq!(quiet.passage(&mut rng, byte), Passage { inserted: None, carried: whole });
+            assert_eq!(lossy.passage(&mut rng, byte).carried, None);
+            let passage = noisy.passage(&mut rng, byte);
+            assert!(passage.inserted.is_some());
+            assert_eq!((passage.carried.unwrap().byte ^ byte).count_ones(), 1);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "[a-z:0-9,.-]*") {
+            let _ = text.parse::<Faults>();
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! The virtual devices: the other end of a wire, byte for byte, with its faults. Deterministic: the same seed and the
+//! same calls at the same moments give the same bytes.
+//!
+//! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of `device/` or `link/`; only
+//! the tables of `protocol/` are shared with the host's side.
+
+mod fault;
+pub mod hiperface;
+
+pub use fault::{Carried, FaultError, Faults, Passage};
+
+use crate::protocol::hiperface::CharacterFormat;
+use crate::units::Moment;
+
+/// A virtual device at the far end of a serial line. Whoever owns it (a link in this process, a pseudo-terminal, a TCP
+/// server) hands over bytes and asks for bytes; moments never run backwards, one that does is taken as the latest known.
+pub trait ByteDevice: Send {
+    /// The host has handed these bytes to its UART at `now`; they travel one character time each, after what is still
+    /// travelling.
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
+
+    /// Bytes that have completely arrived at the host by `now` and were not fetched yet.
+    fn poll(&mut self, now: Moment) -> Vec<u8>;
+
+    /// When [`poll`](Self::poll) should be called next; `None`: nothing will happen by itself.
+    fn poll_at(&self) -> Option<Moment>;
+
+    /// How the host's UART is set. Where it differs from the device's setting, what arrives is garbage in both
+    /// directions, and no valid frame comes of it.
+    fn set_host_format(&mut self, now: Moment, format: CharacterFormat);
+
+    /// The host opened the link (again): what arrived before has no reader, and a device that lost its power gets it
+    /// back now.
+    fn connect(&mut self, now: Moment);
+}
