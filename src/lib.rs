@@ -1,7 +1,19 @@
-//! encoder-studio: configure position encoders and small drives at a desk. ARCHITECTURE.md describes the house.
+//! encoder-studio: configure position encoders and small drives at a desk.
+//!
+//! ARCHITECTURE.md describes the house: six floors, and a file uses only what lies below its own.
 
+// floor 1: words and numbers
 pub mod bits;
+pub mod units;
+
+// floor 2: bytes ↔ meaning, and what is saved
+pub mod profile;
 pub mod protocol;
+
+// floor 3: the world outside
+pub mod link;
 pub mod sim;
 pub mod store;
-pub mod units;
+
+// floor 4: what one does with a device
+pub mod device;

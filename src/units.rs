@@ -118,6 +118,32 @@ impl fmt::Display for Parity {
     }
 }
 
+/// How a character travels on a serial line: what both ends must agree upon. One start bit, eight data bits, one stop
+/// bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CharacterFormat {
+    /// Speed.
+    pub baud: Baud,
+    /// Parity bit.
+    pub parity: Parity,
+}
+
+impl CharacterFormat {
+    /// 9600 bit/s, even parity: the factory setting of HIPERFACE encoders.
+    pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
+
+    /// One character on the line, reckoned with 11 bits whatever the parity, as the manuals do.
+    pub fn character_time(self) -> Duration {
+        self.baud.time_of_bits(11)
+    }
+}
+
+impl fmt::Display for CharacterFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} 8{}1", self.baud, self.parity.letter())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ pub mod hiperface;
 
 pub use fault::{Carried, FaultError, Faults, Passage};
 
-use crate::protocol::hiperface::CharacterFormat;
+use crate::units::CharacterFormat;
 use crate::units::Moment;
 
 /// A virtual device at the far end of a serial line. Whoever owns it (a link in this process, a pseudo-terminal, a TCP

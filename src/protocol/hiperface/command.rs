@@ -44,8 +44,6 @@ pub struct CommandRow {
     pub request_payload: usize,
     /// It changes what the encoder keeps without power.
     pub persistent: bool,
-    /// Sending it again after a lost reply does no harm and changes nothing.
-    pub repeatable: bool,
 }
 
 const fn row(
@@ -55,43 +53,34 @@ const fn row(
     max_ms: u64,
     request_payload: usize,
     persistent: bool,
-    repeatable: bool,
 ) -> CommandRow {
-    CommandRow {
-        command,
-        name,
-        code0,
-        max_time: Duration::from_millis(max_ms),
-        request_payload,
-        persistent,
-        repeatable,
-    }
+    CommandRow { command, name, code0, max_time: Duration::from_millis(max_ms), request_payload, persistent }
 }
 
 /// Every command in the manual's order with the manual's columns (times: column "maximale Antwortzeit").
 #[rustfmt::skip]
 pub const COMMANDS: [CommandRow; 20] = [
-    //                                      name                                code0  ms  payload persistent repeatable
-    row(Command::ReadPosition,              "read position",                    false,  10, 0, false, true),
-    row(Command::SetPosition,               "set position",                     true,   40, 5, true,  false),
-    row(Command::ReadAnalogue,              "read analogue value",              false,   5, 1, false, true),
-    row(Command::ReadCounter,               "read counter",                     false,   5, 0, false, true),
-    row(Command::IncrementCounter,          "increment counter",                false,  30, 0, true,  false),
-    row(Command::ClearCounter,              "clear counter",                    true,   30, 1, true,  false),
-    row(Command::ReadData,                  "read data",                        false,  30, 4, false, true),
-    row(Command::StoreData,                 "store data",                       false, 250, 5, true,  false),
-    row(Command::FieldStatus,               "read data field status",           false,   5, 1, false, true),
-    row(Command::DefineField,               "create, change or delete a data field", false, 70, 3, true, false),
-    row(Command::FreeMemory,                "read available memory",            false,   5, 0, false, true),
-    row(Command::ChangeCode,                "change access code",               false,  40, 3, true,  false),
-    row(Command::ReadStatus,                "read encoder status",              false,   5, 0, false, true),
-    row(Command::ReadTypeLabel,             "read type label",                  false,   5, 0, false, true),
-    row(Command::Reset,                     "reset",                            false,   0, 0, false, false),
-    row(Command::SetAddress,                "set address",                      true,   40, 2, true,  false),
-    row(Command::ReadSerial,                "read serial number and firmware",  false,   5, 0, false, true),
-    row(Command::ConfigureLine,             "configure serial interface",       true,   40, 2, true,  false),
-    row(Command::Synchronise,               "set position and synchronise",     true,   40, 5, true,  false),
-    row(Command::ConfigureLineTemporarily,  "configure serial interface temporarily", false, 5, 1, false, false),
+    //                                      name                                code0  ms  payload persistent
+    row(Command::ReadPosition,              "read position",                    false,  10, 0, false),
+    row(Command::SetPosition,               "set position",                     true,   40, 5, true),
+    row(Command::ReadAnalogue,              "read analogue value",              false,   5, 1, false),
+    row(Command::ReadCounter,               "read counter",                     false,   5, 0, false),
+    row(Command::IncrementCounter,          "increment counter",                false,  30, 0, true),
+    row(Command::ClearCounter,              "clear counter",                    true,   30, 1, true),
+    row(Command::ReadData,                  "read data",                        false,  30, 4, false),
+    row(Command::StoreData,                 "store data",                       false, 250, 5, true),
+    row(Command::FieldStatus,               "read data field status",           false,   5, 1, false),
+    row(Command::DefineField,               "create, change or delete a data field", false, 70, 3, true),
+    row(Command::FreeMemory,                "read available memory",            false,   5, 0, false),
+    row(Command::ChangeCode,                "change access code",               false,  40, 3, true),
+    row(Command::ReadStatus,                "read encoder status",              false,   5, 0, false),
+    row(Command::ReadTypeLabel,             "read type label",                  false,   5, 0, false),
+    row(Command::Reset,                     "reset",                            false,   0, 0, false),
+    row(Command::SetAddress,                "set address",                      true,   40, 2, true),
+    row(Command::ReadSerial,                "read serial number and firmware",  false,   5, 0, false),
+    row(Command::ConfigureLine,             "configure serial interface",       true,   40, 2, true),
+    row(Command::Synchronise,               "set position and synchronise",     true,   40, 5, true),
+    row(Command::ConfigureLineTemporarily,  "configure serial interface temporarily", false, 5, 1, false),
 ];
 
 impl Command {
@@ -156,7 +145,6 @@ mod tests {
             assert_eq!(row.command.row().name, row.name);
             assert_eq!(Command::from_byte(row.command.byte()), Some(row.command));
             assert_eq!(Command::from_byte(row.command.byte() | 0x80), Some(row.command));
-            assert!(!(row.persistent && row.repeatable), "{}: what writes is never repeated blindly", row.name);
         }
         let known = (0..=0x7F).filter(|byte| Command::from_byte(*byte).is_some()).count();
         assert_eq!(known, 20);

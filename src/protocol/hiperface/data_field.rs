@@ -185,7 +185,7 @@ impl fmt::Display for DataFieldStatus {
             return f.write_str("not defined");
         }
         let access = if self.is_writable() { "writable" } else { "write protected" };
-        let code = if self.code_required() { "code required" } else { "no code to read" };
+        let code = if self.code_required() { "code required" } else { "code not required" };
         write!(f, "{} bytes, {access}, code {}, {code}", self.size().bytes(), self.code())
     }
 }

@@ -2,9 +2,8 @@
 //! and 6 is derived from the figure's order).
 
 use std::fmt;
-use std::time::Duration;
 
-use crate::units::{Baud, Parity};
+use crate::units::{Baud, CharacterFormat, Parity};
 
 /// Speeds by their three-bit code; 111 is reserved.
 pub const BAUDS: [Baud; 7] = [baud(600), baud(1200), baud(2400), baud(4800), baud(9600), baud(19200), baud(38400)];
@@ -13,31 +12,6 @@ const fn baud(bits_per_second: u32) -> Baud {
     match Baud::new(bits_per_second) {
         Some(baud) => baud,
         None => Baud::B9600,
-    }
-}
-
-/// How a character travels: what both ends must agree upon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct CharacterFormat {
-    /// Speed.
-    pub baud: Baud,
-    /// Parity bit.
-    pub parity: Parity,
-}
-
-impl CharacterFormat {
-    /// 9600 bit/s, 8E1.
-    pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
-
-    /// One character on the line: the manual reckons with 11 bits whatever the parity.
-    pub fn character_time(self) -> Duration {
-        self.baud.time_of_bits(11)
-    }
-}
-
-impl fmt::Display for CharacterFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} 8{}1", self.baud, self.parity.letter())
     }
 }
 

@@ -34,7 +34,7 @@ pub use describe::describe;
 pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter};
 pub use frame::{Frame, FrameError, checksum};
-pub use line_settings::{BAUDS, CharacterFormat, LineSettings};
+pub use line_settings::{BAUDS, LineSettings};
 pub use position::{Geometry, Position, STEPS_PER_PERIOD, nearest_in_phase};
 pub use reply::{Answer, Reply, ReplyError, ReplyLength};
 pub use request::{Request, RequestError, SecretFrame};

@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use super::{CharacterFormat, LineSettings, Request};
+use super::{LineSettings, Request};
+use crate::units::CharacterFormat;
 
 /// The times of a line with given settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

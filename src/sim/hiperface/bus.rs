@@ -9,8 +9,9 @@ use fastrand::Rng;
 
 use super::config::Config;
 use super::encoder::{Encoder, Heard};
-use crate::protocol::hiperface::{CharacterFormat, LineSettings};
+use crate::protocol::hiperface::LineSettings;
 use crate::sim::{ByteDevice, Faults};
+use crate::units::CharacterFormat;
 use crate::units::{Moment, Parity};
 
 /// A line with one or several encoders, seen from the host. Made by [`Config::bus`].

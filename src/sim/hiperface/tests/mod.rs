@@ -10,8 +10,9 @@ use std::time::Duration;
 
 use super::*;
 use crate::bits::{hex, parse_hex};
-use crate::protocol::hiperface::{CharacterFormat, LineSettings};
+use crate::protocol::hiperface::LineSettings;
 use crate::sim::ByteDevice;
+use crate::units::CharacterFormat;
 use crate::units::Moment;
 
 /// A host at the line: it waits for everything that comes by itself, then keeps the dead time.

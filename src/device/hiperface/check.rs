@@ -1,0 +1,149 @@
+//! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
+
+use super::{Error, Identity, Master, identify, read_analogue, read_field, read_position, read_status, reset};
+use crate::protocol::hiperface::{CodeNumber, EncoderTypes, LabelParameter, StatusCode};
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// 53h and the waits after it.
+    Restart,
+    /// 50h until the queue is empty.
+    Status,
+    /// 52h and 56h.
+    Identity,
+    /// 42h.
+    Position,
+    /// 44h on the channels that the extended label limits.
+    Limits,
+    /// 4Ch and 4Ah on every data field.
+    DataFields,
+}
+
+/// How a step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// As it should be.
+    Good,
+    /// It works, and somebody should look.
+    Attention,
+    /// It does not work.
+    Bad,
+}
+
+/// One line of the check.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What was checked.
+    pub step: Step,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What was found: values and codes.
+    pub findings: Vec<String>,
+}
+
+/// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the line fails.
+///
+/// # Errors
+/// The line, or the user's wish.
+pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<Line>, Error> {
+    let mut lines = Vec::new();
+    let codes = if restart {
+        let codes = reset(master)?;
+        lines.push(Line { step: Step::Restart, verdict: Verdict::Good, findings: Vec::new() });
+        codes
+    } else {
+        read_status(master)?
+    };
+    lines.push(Line { step: Step::Status, verdict: verdict(&codes), findings: words(&codes) });
+    let identity = identify(master, types)?;
+    let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
+    let findings = vec![identity.name.clone(), identity.serial.serial_number.clone()];
+    lines.push(Line { step: Step::Identity, verdict: known, findings });
+    lines.push(check_position(master, &identity)?);
+    lines.extend(check_limits(master, &identity)?);
+    lines.push(check_fields(master, &identity)?);
+    Ok(lines)
+}
+
+fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+    let step = Step::Position;
+    match refusal(read_position(master, identity.geometry))? {
+        Ok(reading) => {
+            let mut findings = vec![match reading.position {
+                Some(position) => position.to_string(),
+                None => reading.raw.to_string(),
+            }];
+            findings.extend(words(&reading.codes));
+            let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
+            Ok(Line { step, verdict, findings })
+        }
+        Err(codes) => Ok(Line { step, verdict: Verdict::Bad, findings: words(&codes) }),
+    }
+}
+
+/// The extended label gives a quantity that 44h can read as two words: the channel, then the limit (manual, "Grenzwerte";
+/// which pairs are of this kind is in the data sheet, `U`: only a pair whose channel answers is taken for one).
+fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<Line>, Error> {
+    let Some(label) = identity.extended() else { return Ok(None) };
+    let mut findings = Vec::new();
+    let mut worst = Verdict::Good;
+    let (pairs, _) = label.parameters.as_chunks::<2>();
+    for [LabelParameter { value: channel, .. }, LabelParameter { value: limit, .. }] in pairs {
+        let Ok(channel) = u8::try_from(*channel) else { continue };
+        if let Ok(value) = refusal(read_analogue(master, channel))? {
+            if value > *limit {
+                worst = Verdict::Attention;
+            }
+            findings.push(format!("{channel:02X}h: {value} ≤ {limit}"));
+        }
+    }
+    Ok((!findings.is_empty()).then_some(Line { step: Step::Limits, verdict: worst, findings }))
+}
+
+fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+    let mut findings = Vec::new();
+    let mut verdict = Verdict::Good;
+    for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
+        match refusal(read_field(master, number))? {
+            Ok(field) if field.bytes.is_some() => findings.push(format!("{number}: {}", field.status)),
+            Ok(field) => {
+                let code: CodeNumber = field.status.code();
+                findings.push(format!(
+                    "{number}: {}, {}",
+                    field.status,
+                    Error::CodeUnknown { field: number, number: code }
+                ));
+                verdict = Verdict::Attention;
+            }
+            Err(codes) => {
+                findings.push(format!("{number}: {}", words(&codes).join(", ")));
+                verdict = Verdict::Bad;
+            }
+        }
+    }
+    Ok(Line { step: Step::DataFields, verdict, findings })
+}
+
+/// A refusal is a finding, anything else ends the check.
+fn refusal<T>(result: Result<T, Error>) -> Result<Result<T, Vec<StatusCode>>, Error> {
+    match result {
+        Ok(value) => Ok(Ok(value)),
+        Err(Error::Rejected { codes, .. }) => Ok(Err(codes)),
+        Err(error) => Err(error),
+    }
+}
+
+fn verdict(codes: &[StatusCode]) -> Verdict {
+    if codes.is_empty() {
+        Verdict::Good
+    } else if codes.iter().all(|code| code.is_warning()) {
+        Verdict::Attention
+    } else {
+        Verdict::Bad
+    }
+}
+
+fn words(codes: &[StatusCode]) -> Vec<String> {
+    codes.iter().map(ToString::to_string).collect()
+}

@@ -1,0 +1,129 @@
+//! Reading data fields (4Ch, 4Ah). Long transfers are halved when the line damages them.
+
+use super::error::Damage;
+use super::master::Trouble;
+use super::{Error, Master};
+use crate::profile::hiperface::FieldImage;
+use crate::protocol::hiperface::{AccessCode, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode};
+
+/// Fewest bytes in a transfer: below that the frame is mostly head.
+const LEAST_TRANSFER: usize = 4;
+
+/// Reads the status byte of a field.
+///
+/// # Errors
+/// The line, or a refusal: there is no such field.
+pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
+    match master.ask_confirmed(&Request::FieldStatus { field })? {
+        Reply::FieldStatus(status) => Ok(status),
+        other => Err(Error::Unexpected(format!("field status: {other:?}"))),
+    }
+}
+
+/// Reads a field whole. With a wrong access code the field is given without bytes.
+///
+/// # Errors
+/// The line, or a refusal for another reason.
+pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Error> {
+    let status = read_field_status(master, number)?;
+    let code = master.station().codes.get(status.code());
+    match read_range(master, number, 0, status.size().bytes(), code) {
+        Ok(bytes) => Ok(FieldImage { number, status, bytes: Some(bytes) }),
+        Err(error) if error.is_rejection(StatusCode::WRONG_CODE) => Ok(FieldImage { number, status, bytes: None }),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads all fields, the extended label excepted; `progress` hears how many of how many are done.
+///
+/// # Errors
+/// As [`read_field`].
+pub fn read_all_fields(
+    master: &mut Master<'_>,
+    count: u8,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<FieldImage>, Error> {
+    let mut fields = Vec::new();
+    for number in 0..count {
+        progress(u64::from(number), u64::from(count));
+        fields.push(read_field(master, number)?);
+    }
+    Ok(fields)
+}
+
+/// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.
+///
+/// A transfer that fails is halved for the next try; after five failures in a row without a success in between the
+/// reading fails. On a line that has damaged something before, each transfer has to give the same bytes twice.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_range(
+    master: &mut Master<'_>,
+    field: u8,
+    address: usize,
+    count: usize,
+    code: AccessCode,
+) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::with_capacity(count);
+    let mut failures = 0;
+    let mut in_a_row = 0;
+    while bytes.len() < count {
+        let chunk = master.station().chunk.min(count - bytes.len());
+        let request = transfer(field, address + bytes.len(), chunk, code)?;
+        match read_twice_if_needed(master, &request)? {
+            Ok(more) => {
+                bytes.extend(more);
+                failures = 0;
+                in_a_row += 1;
+                let station = master.station();
+                if in_a_row >= 4 && station.chunk < MAX_TRANSFER {
+                    station.chunk *= 2;
+                    in_a_row = 0;
+                }
+            }
+            Err(trouble) => {
+                failures += 1;
+                in_a_row = 0;
+                master.may_try_again(&request, failures, trouble)?;
+                let station = master.station();
+                station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
+            }
+        }
+    }
+    Ok(bytes)
+}
+
+fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result<Request, Error> {
+    match (u8::try_from(address), u8::try_from(count)) {
+        (Ok(address), Ok(count)) => Ok(Request::ReadData { field, address, count, code }),
+        _ => Err(Error::OutOfField { field, address, count, size: MAX_TRANSFER }),
+    }
+}
+
+/// An XOR over many bytes lets some pairs of flipped bits through: where the line is known to be bad, once is not enough.
+fn read_twice_if_needed(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {
+    let first = match read_once(master, request)? {
+        Ok(bytes) => bytes,
+        Err(trouble) => return Ok(Err(trouble)),
+    };
+    if master.station().damaged == 0 {
+        return Ok(Ok(first));
+    }
+    Ok(match read_once(master, request)? {
+        Ok(second) if second == first => Ok(first),
+        Ok(_) => Err(Trouble::Damage(Damage::Inconsistent)),
+        Err(trouble) => Err(trouble),
+    })
+}
+
+fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {
+    let answered = match master.attempt(request)? {
+        Ok(answered) => answered,
+        Err(trouble) => return Ok(Err(trouble)),
+    };
+    match master.settle(request, answered)?.reply {
+        Reply::Data(bytes) => Ok(Ok(bytes)),
+        other => Err(Error::Unexpected(format!("data: {other:?}"))),
+    }
+}

@@ -1,0 +1,161 @@
+//! Finding encoders whose settings nobody remembers.
+//!
+//! It listens a second before its first byte: foreign traffic means a running machine, and then it only listens. It
+//! probes with 52h, never with 50h, which would take codes out of an encoder's queue. Broadcast comes last and only when
+//! the user says that one encoder is connected, because several would answer at once.
+
+use std::time::Duration;
+
+use super::master::Trouble;
+use super::{Error, Master};
+use crate::protocol::hiperface::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
+use crate::units::{Baud, CharacterFormat, Parity};
+
+/// How long to listen for a running machine.
+pub const LISTEN: Duration = Duration::from_secs(1);
+
+/// What to try.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FindOptions {
+    /// The user says that exactly one encoder is connected: broadcast may be used where no address answers.
+    pub one_encoder: bool,
+    /// The user will switch the encoder's supply off and on: wait so long for it and use the default window.
+    pub power_cycle: Option<Duration>,
+}
+
+/// An encoder that answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// Its address.
+    pub address: u8,
+    /// How it was talked to.
+    pub format: CharacterFormat,
+    /// Its type label, with the settings it has stored.
+    pub label: TypeLabel,
+}
+
+/// One try, for whoever watches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Attempt {
+    /// Listening for foreign traffic.
+    Listening,
+    /// Waiting for the supply to come back.
+    DefaultWindow,
+    /// Asking an address, or FFh.
+    Probing {
+        /// Whom.
+        address: u8,
+        /// How.
+        format: CharacterFormat,
+    },
+}
+
+/// How a search ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Findings {
+    /// Somebody else talks on this line: nothing was sent.
+    ForeignTraffic {
+        /// Bytes heard in the time of listening.
+        bytes: usize,
+    },
+    /// All that answered, in the order in which they did; maybe none.
+    Searched(Vec<Found>),
+}
+
+/// Searches all speeds, parities and addresses. Afterwards our side is set as it was before.
+///
+/// # Errors
+/// The wire, or the user's wish.
+pub fn find(
+    master: &mut Master<'_>,
+    options: &FindOptions,
+    progress: &mut dyn FnMut(u64, u64, &Attempt),
+) -> Result<Findings, Error> {
+    let before = (master.station().address, master.station().format);
+    let findings = search(master, options, progress);
+    master.shielded(|master| {
+        master.station().address = before.0;
+        master.set_format(before.1)
+    })?;
+    findings
+}
+
+fn search(
+    master: &mut Master<'_>,
+    options: &FindOptions,
+    progress: &mut dyn FnMut(u64, u64, &Attempt),
+) -> Result<Findings, Error> {
+    let formats = formats();
+    let per_format = 32 + u64::from(options.one_encoder);
+    let total = 1 + per_format * formats.len() as u64;
+    progress(0, total, &Attempt::Listening);
+    let heard = master.overhear(LISTEN)?;
+    if !heard.is_empty() {
+        return Ok(Findings::ForeignTraffic { bytes: heard.len() });
+    }
+    let mut found = Vec::new();
+    if let Some(patience) = options.power_cycle {
+        progress(0, total, &Attempt::DefaultWindow);
+        found.extend(catch_default_window(master, patience, options.one_encoder)?);
+    }
+    let mut done = 1;
+    for format in formats {
+        master.set_format(format)?;
+        let found_before = found.len();
+        let broadcast = options.one_encoder.then_some(BROADCAST);
+        for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
+            progress(done, total, &Attempt::Probing { address, format });
+            done += 1;
+            if address == BROADCAST && found.len() > found_before {
+                continue;
+            }
+            let hit = probe(master, address, format)?.filter(|hit| !found.contains(hit));
+            found.extend(hit);
+        }
+    }
+    Ok(Findings::Searched(found))
+}
+
+/// The likely first: 9600 with each parity, then the other speeds.
+fn formats() -> Vec<CharacterFormat> {
+    let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
+    std::iter::once(Baud::B9600)
+        .chain(rest)
+        .flat_map(|baud| Parity::ALL.map(|parity| CharacterFormat { baud, parity }))
+        .collect()
+}
+
+/// Asks every tenth of a second at factory settings until an encoder that has just been switched on answers.
+fn catch_default_window(master: &mut Master<'_>, patience: Duration, broadcast: bool) -> Result<Option<Found>, Error> {
+    master.set_format(CharacterFormat::FACTORY)?;
+    let address = if broadcast { BROADCAST } else { master.station().address };
+    let end = master.now() + patience;
+    while master.now() < end {
+        if let Some(found) = probe(master, address, CharacterFormat::FACTORY)? {
+            return Ok(Some(found));
+        }
+        master.wait(Timing::INITIALISATION)?;
+    }
+    Ok(None)
+}
+
+/// One question without repetition. A broken reply is asked for once more: something is there.
+fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<Found>, Error> {
+    master.station().address = address;
+    for _ in 0..2 {
+        match master.attempt(&Request::ReadTypeLabel)? {
+            Ok(answered) => {
+                let sender = answered.sender;
+                return Ok(match answered.answer {
+                    Answer::Reply { reply: Reply::TypeLabel(label), .. } => {
+                        Some(Found { address: sender, format, label })
+                    }
+                    _ => None,
+                });
+            }
+            Err(Trouble::Silence { .. }) => return Ok(None),
+            Err(Trouble::Damage(_)) => {}
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,103 @@
+//! Position, analogue values and the counter; and whether the shaft stands still.
+
+use std::time::Duration;
+
+use super::{Error, Master};
+use crate::protocol::hiperface::{Geometry, Position, Reply, Request, StatusCode};
+use crate::units::Moment;
+
+/// A position as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionReading {
+    /// When the encoder sampled it: the falling edge of the start bit of the reply's address.
+    pub at: Moment,
+    /// The word as received.
+    pub raw: u32,
+    /// What it means; `None` while periods and turns are not known.
+    pub position: Option<Position>,
+    /// It lies in the measuring range and no code spoils it.
+    pub valid: bool,
+    /// Codes that came with it.
+    pub codes: Vec<StatusCode>,
+}
+
+/// Reads the position (42h) and, where the reply announces them, all codes.
+///
+/// # Errors
+/// The line, or a refusal: the encoder has no position to give.
+pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
+    let met_before = master.station().codes_met.len();
+    let timed = master.ask_timed(&Request::ReadPosition)?;
+    let Reply::Position(raw) = timed.reply else {
+        return Err(Error::Unexpected(format!("position: {:?}", timed.reply)));
+    };
+    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    let position = geometry.map(|geometry| geometry.position(raw));
+    let in_range = position.is_none_or(|position| position.in_range);
+    let valid = in_range && !codes.iter().any(|code| code.spoils_position());
+    Ok(PositionReading { at: timed.at, raw, position, valid, codes })
+}
+
+/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, else as the data sheet says.
+///
+/// # Errors
+/// The line, or a refusal: the encoder has no such channel.
+pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
+    match master.ask(&Request::ReadAnalogue { channel })? {
+        Reply::Analogue(value) => Ok(value),
+        other => Err(Error::Unexpected(format!("analogue value: {other:?}"))),
+    }
+}
+
+/// Reads the counter (46h), 0…FFFFFFh.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
+    match master.ask_confirmed(&Request::ReadCounter)? {
+        Reply::Counter(value) => Ok(value),
+        other => Err(Error::Unexpected(format!("counter: {other:?}"))),
+    }
+}
+
+/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still: the
+/// readings differ by one step at most.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<u32, Error> {
+    let mut readings = Vec::new();
+    for reading in 0..3 {
+        if reading > 0 {
+            master.wait(Duration::from_millis(100))?;
+        }
+        readings.push(read_position(master, geometry)?.raw);
+    }
+    let range = geometry.and_then(Geometry::range).unwrap_or(1 << 32);
+    let (Some(first), Some(last)) = (readings.first().copied(), readings.last().copied()) else {
+        return Err(Error::Unexpected("no position".to_owned()));
+    };
+    if readings.iter().all(|reading| distance(first, *reading, range) <= 1) {
+        Ok(last)
+    } else {
+        Err(Error::Moving { readings })
+    }
+}
+
+/// Steps between two positions, the short way round.
+fn distance(a: u32, b: u32, range: u64) -> u64 {
+    let straight = u64::from(a.abs_diff(b));
+    straight.min(range.saturating_sub(straight))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_go_the_short_way_round() {
+        assert_eq!(distance(0, 4095, 4096), 1);
+        assert_eq!(distance(5, 3, 4096), 2);
+        assert_eq!(distance(0, u32::MAX, 1 << 32), 1);
+    }
+}

@@ -1,0 +1,68 @@
+//! Reading everything that can be restored, and what identifies the encoder.
+
+use super::{Error, Identity, Master, identify, read_all_fields, read_counter, read_position};
+use crate::profile::Unknown;
+use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
+use crate::protocol::hiperface::EncoderTypes;
+
+/// What saving insists upon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SaveOptions {
+    /// A field whose access code is not known is an error.
+    pub complete: bool,
+}
+
+/// Reads the whole encoder.
+///
+/// # Errors
+/// The line; with [`complete`](SaveOptions::complete) also a field that cannot be read.
+pub fn save(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    options: SaveOptions,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<HiperfaceProfile, Error> {
+    let identity = identify(master, types)?;
+    let fields = read_all_fields(master, identity.memory.map_or(0, |memory| memory.fields), progress)?;
+    if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
+        && options.complete
+    {
+        return Err(Error::CodeUnknown { field: locked.number, number: locked.status.code() });
+    }
+    // Neither is needed for a restore: an encoder that refuses them is saved all the same.
+    let position = refused(read_position(master, identity.geometry).map(|reading| reading.raw))?;
+    let counter = refused(read_counter(master))?;
+    Ok(profile(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
+}
+
+/// A profile of an encoder with these fields.
+pub(super) fn profile(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
+    let mut profile = HiperfaceProfile {
+        identity: ProfileIdentity {
+            serial_number: identity.serial.serial_number.clone(),
+            encoder_type: identity.label.encoder_type,
+            encoder_name: identity.name.clone(),
+            firmware_version: identity.serial.firmware_version.clone(),
+            firmware_date: identity.serial.firmware_date.clone(),
+            eeprom_bytes: u32::try_from(identity.label.eeprom_bytes()).unwrap_or(u32::MAX),
+            options: identity.label.options,
+            extended_label: identity.extended_label.clone(),
+            unknown: Unknown::new(),
+        },
+        interface: Interface { address: identity.address, settings: identity.label.settings, unknown: Unknown::new() },
+        recorded,
+        mounting: Vec::new(),
+        fields,
+        unknown_in_fields: Vec::new(),
+    };
+    profile.mark_mounting();
+    profile
+}
+
+fn refused<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(Error::Rejected { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}

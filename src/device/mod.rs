@@ -1,0 +1,3 @@
+//! What one does with a device: procedures that read like the manuals' step tables.
+
+pub mod hiperface;

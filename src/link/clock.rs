@@ -1,0 +1,69 @@
+//! Clocks: the real one for hardware and for the virtual devices of the window, a virtual one for tests.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::units::Moment;
+
+/// Who tells the time and waits.
+pub trait Clock: Send + Sync {
+    /// Now.
+    fn now(&self) -> Moment;
+
+    /// Returns when `moment` has come.
+    fn sleep_until(&self, moment: Moment);
+}
+
+/// The machine's monotonic clock, counted from when it was made.
+#[derive(Debug)]
+pub struct RealClock(Instant);
+
+impl RealClock {
+    /// A clock that starts now.
+    pub fn start() -> Self {
+        RealClock(Instant::now())
+    }
+}
+
+impl Clock for RealClock {
+    fn now(&self) -> Moment {
+        Moment::after_start(self.0.elapsed())
+    }
+
+    fn sleep_until(&self, moment: Moment) {
+        let left = moment.since(self.now());
+        if !left.is_zero() {
+            std::thread::sleep(left);
+        }
+    }
+}
+
+/// A clock that moves only when somebody waits: an hour passes in no time.
+#[derive(Debug, Default)]
+pub struct VirtualClock {
+    nanoseconds: AtomicU64,
+}
+
+impl Clock for VirtualClock {
+    fn now(&self) -> Moment {
+        Moment::after_start(Duration::from_nanos(self.nanoseconds.load(Ordering::SeqCst)))
+    }
+
+    fn sleep_until(&self, moment: Moment) {
+        let target = u64::try_from(moment.since_start().as_nanos()).unwrap_or(u64::MAX);
+        self.nanoseconds.fetch_max(target, Ordering::SeqCst);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn virtual_time_moves_only_forwards() {
+        let clock = VirtualClock::default();
+        clock.sleep_until(Moment::after_start(Duration::from_secs(3600)));
+        clock.sleep_until(Moment::after_start(Duration::from_secs(1)));
+        assert_eq!(clock.now(), Moment::after_start(Duration::from_secs(3600)));
+    }
+}

@@ -1,0 +1,119 @@
+//! The world at the other end of a cable: wires, clocks and the context in which a procedure runs.
+//!
+//! HIPERFACE needs one kind of wire, a stream of bytes with silences between frames ([`ByteLink`]). The other kinds of
+//! wire (registers, process data, explicit messages) come with their protocols and take the same [`Ctx`].
+
+mod clock;
+mod error;
+mod replay;
+mod serial;
+mod sim;
+mod tcp;
+mod trace;
+mod url;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+pub use clock::{Clock, RealClock, VirtualClock};
+pub use error::{LinkError, LinkErrorKind};
+pub use replay::ReplayLink;
+pub use serial::{PortInfo, SerialLink, ports};
+pub use sim::SimLink;
+pub use tcp::TcpLink;
+pub use trace::{Direction, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header};
+pub use url::{LinkUrl, Query, Scheme, UrlError};
+
+use crate::units::{CharacterFormat, Moment};
+
+/// A wire on which bytes come and go.
+pub trait ByteLink: Send {
+    /// Hands bytes to the line, all in one call, so that no gap arises inside a frame. It may return before the last
+    /// bit has left.
+    ///
+    /// # Errors
+    /// When the line is gone.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
+
+    /// Waits until something arrives, at most until `until`, and appends it to `into`. Nothing appended: the time is up.
+    ///
+    /// # Errors
+    /// When the line is gone.
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError>;
+
+    /// Sets speed and parity from now on.
+    ///
+    /// # Errors
+    /// When the line is gone or cannot be set so.
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
+
+    /// Looks whether the line is still there, without sending or taking anything.
+    ///
+    /// # Errors
+    /// When the line is gone.
+    fn check(&mut self) -> Result<(), LinkError>;
+}
+
+/// The wish to end what is going on. Clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Cancel(Arc<CancelState>);
+
+#[derive(Debug)]
+struct CancelState {
+    wished: AtomicBool,
+    /// Transactions left until the wish comes by itself.
+    fuse: AtomicU64,
+}
+
+impl Default for CancelState {
+    fn default() -> Self {
+        CancelState { wished: AtomicBool::new(false), fuse: AtomicU64::new(u64::MAX) }
+    }
+}
+
+impl Cancel {
+    /// A wish that comes by itself when `transactions` transactions have been carried out.
+    pub fn after(transactions: u64) -> Self {
+        let cancel = Cancel::default();
+        cancel.0.fuse.store(transactions, Ordering::SeqCst);
+        cancel
+    }
+
+    /// Wishes an end at the next possible point.
+    pub fn request(&self) {
+        self.0.wished.store(true, Ordering::SeqCst);
+    }
+
+    /// Takes the wish back, for the next job.
+    pub fn reset(&self) {
+        self.0.wished.store(false, Ordering::SeqCst);
+    }
+
+    /// The end is wished.
+    pub fn is_requested(&self) -> bool {
+        self.0.wished.load(Ordering::SeqCst)
+    }
+
+    /// Called before each transaction: whether it may not begin any more.
+    pub fn stops_transaction(&self) -> bool {
+        let left = self.0.fuse.load(Ordering::SeqCst);
+        if left == 0 {
+            self.request();
+        } else if left != u64::MAX {
+            self.0.fuse.store(left - 1, Ordering::SeqCst);
+        }
+        self.is_requested()
+    }
+}
+
+/// All that a procedure gets: a wire, a clock, the wish to end and the trace.
+pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
+    /// The wire.
+    pub wire: &'a mut W,
+    /// The time.
+    pub clock: &'a dyn Clock,
+    /// The wish to end.
+    pub cancel: &'a Cancel,
+    /// Who watches the line.
+    pub trace: &'a mut Trace,
+}

@@ -1,0 +1,222 @@
+//! `serial:PATH` — a serial port, usually a USB–RS-485 converter. DTR and RTS are left as opening makes them.
+
+use std::io::{ErrorKind, Read, Write};
+use std::sync::Arc;
+use std::time::Duration;
+
+use serialport::{ClearBuffer, SerialPort, SerialPortType};
+
+use super::{ByteLink, Clock, LinkError, LinkErrorKind};
+use crate::units::{CharacterFormat, Moment, Parity};
+
+/// A serial port of this machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortInfo {
+    /// Path or name, as a link takes it.
+    pub path: String,
+    /// What the system says about the adapter: maker and product; empty where it says nothing.
+    pub description: String,
+    /// Serial number of a USB adapter.
+    pub serial_number: Option<String>,
+}
+
+/// The serial ports of this machine, by name. A pseudo-terminal is never listed and can be opened all the same.
+///
+/// # Errors
+/// When the system does not tell.
+pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
+    if !platform::lists_ports() {
+        return Ok(Vec::new());
+    }
+    let found = serialport::available_ports()
+        .map_err(|error| LinkError::new("serial ports", LinkErrorKind::Other(error.description)))?;
+    let mut ports: Vec<PortInfo> = found
+        .into_iter()
+        .map(|port| {
+            let (description, serial_number) = match port.port_type {
+                SerialPortType::UsbPort(usb) => {
+                    let words: Vec<String> = [usb.manufacturer, usb.product].into_iter().flatten().collect();
+                    (words.join(" "), usb.serial_number)
+                }
+                _ => (String::new(), None),
+            };
+            PortInfo { path: port.port_name, description, serial_number }
+        })
+        .collect();
+    ports.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(ports)
+}
+
+/// An open serial port.
+pub struct SerialLink {
+    port: Box<dyn SerialPort>,
+    target: String,
+    clock: Arc<dyn Clock>,
+}
+
+impl SerialLink {
+    /// Opens a port for this program alone.
+    ///
+    /// # Errors
+    /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
+    /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or what the system says.
+    pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+        let port = serialport::new(path, format.baud.bits_per_second())
+            .parity(parity(format.parity))
+            .timeout(Duration::from_millis(10))
+            .open()
+            .map_err(|error| LinkError::new(path, opening(path, &error)))?;
+        let link = SerialLink { port, target: path.to_owned(), clock };
+        link.warn_of_parity(format);
+        // What arrived before we came is nobody's reply; where it cannot be cleared, the first frame is found broken
+        // and asked for again.
+        let _ = link.port.clear(ClearBuffer::Input);
+        Ok(link)
+    }
+
+    fn warn_of_parity(&self, format: CharacterFormat) {
+        if let Ok(actual) = self.port.parity()
+            && actual != parity(format.parity)
+        {
+            tracing::warn!(
+                "{}: the port does not take {} parity; the encoder may not understand",
+                self.target,
+                format.parity
+            );
+        }
+    }
+
+    fn lost(&self, error: &std::io::Error) -> LinkError {
+        LinkError::during_use(&self.target, error)
+    }
+}
+
+impl ByteLink for SerialLink {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let time_to_leave = Duration::from_secs(5);
+        self.port
+            .set_timeout(time_to_leave)
+            .map_err(std::io::Error::from)
+            .and_then(|()| self.port.write_all(bytes))
+            .map_err(|error| self.lost(&error))
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let mut buffer = [0; 512];
+        loop {
+            let left = until.since(self.clock.now());
+            self.port.set_timeout(left).map_err(|error| self.lost(&error.into()))?;
+            match self.port.read(&mut buffer) {
+                Ok(0) => return Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
+                Ok(count) => {
+                    into.extend(buffer.iter().take(count));
+                    return Ok(());
+                }
+                Err(error) if error.kind() == ErrorKind::TimedOut => {
+                    if self.clock.now() >= until {
+                        return Ok(());
+                    }
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(self.lost(&error)),
+            }
+        }
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        let set = self
+            .port
+            .set_baud_rate(format.baud.bits_per_second())
+            .and_then(|()| self.port.set_parity(parity(format.parity)));
+        self.warn_of_parity(format);
+        set.map_err(|_| LinkError::new(&self.target, LinkErrorKind::Format(format.to_string())))
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.port.bytes_to_read().map(drop).map_err(|error| self.lost(&error.into()))
+    }
+}
+
+fn parity(parity: Parity) -> serialport::Parity {
+    match parity {
+        Parity::None => serialport::Parity::None,
+        Parity::Even => serialport::Parity::Even,
+        Parity::Odd => serialport::Parity::Odd,
+    }
+}
+
+fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
+    match error.kind {
+        serialport::ErrorKind::Io(ErrorKind::NotFound) => LinkErrorKind::NotFound,
+        serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::denied(path),
+        serialport::ErrorKind::NoDevice if platform::exists(path) => LinkErrorKind::Busy,
+        serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
+        _ if platform::is_no_port(path) => LinkErrorKind::NotAPort,
+        serialport::ErrorKind::InvalidInput => LinkErrorKind::Format(error.description.clone()),
+        _ => LinkErrorKind::Other(error.description.clone()),
+    }
+}
+
+#[cfg(unix)]
+mod platform {
+    //! Ports are files, and a group owns them.
+
+    use std::os::unix::fs::{FileTypeExt, MetadataExt};
+    use std::path::Path;
+
+    use super::LinkErrorKind;
+
+    /// serialport looks into this folder without checking that it is there.
+    pub(super) fn lists_ports() -> bool {
+        !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
+    }
+
+    pub(super) fn exists(path: &str) -> bool {
+        Path::new(path).exists()
+    }
+
+    pub(super) fn is_no_port(path: &str) -> bool {
+        std::fs::metadata(path).is_ok_and(|file| !file.file_type().is_char_device())
+    }
+
+    pub(super) fn denied(path: &str) -> LinkErrorKind {
+        let group = std::fs::metadata(path).ok().and_then(|file| group_name(file.gid()));
+        LinkErrorKind::Permission { group }
+    }
+
+    /// Name of a group other than root's: joining that would be no advice.
+    fn group_name(gid: u32) -> Option<String> {
+        let groups = std::fs::read_to_string("/etc/group").ok()?;
+        let id = gid.to_string();
+        groups
+            .lines()
+            .find(|line| line.split(':').nth(2) == Some(&id))
+            .and_then(|line| line.split(':').next())
+            .filter(|name| *name != "root")
+            .map(ToOwned::to_owned)
+    }
+}
+
+#[cfg(not(unix))]
+mod platform {
+    //! Ports have names (`COM3`) and no owner; a port in use answers "access denied".
+
+    use super::LinkErrorKind;
+
+    pub(super) fn lists_ports() -> bool {
+        true
+    }
+
+    pub(super) fn exists(path: &str) -> bool {
+        serialport::available_ports()
+            .is_ok_and(|ports| ports.iter().any(|port| port.port_name.eq_ignore_ascii_case(path)))
+    }
+
+    pub(super) fn is_no_port(_path: &str) -> bool {
+        false
+    }
+
+    pub(super) fn denied(_path: &str) -> LinkErrorKind {
+        LinkErrorKind::Busy
+    }
+}

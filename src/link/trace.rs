@@ -1,0 +1,173 @@
+//! The trace tap: every frame that goes over a wire, with what is secret masked, for whoever watches; and its text form,
+//! which `replay:` reads.
+//!
+//! ```text
+//! # encoder-studio trace 1
+//! 0.031204 > 40 42 02
+//! 0.047511 < 40 42 00 0E 05 31 38
+//! ```
+//! Seconds, `>` sent or `<` received, bytes; `**` is a masked byte. Lines that begin with `#` are comments.
+
+use std::fmt;
+use std::io::{self, Write};
+use std::time::Duration;
+
+use crate::bits::{HexError, MaskedBytes};
+use crate::units::Moment;
+
+/// Which way bytes went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From us.
+    Sent,
+    /// To us.
+    Received,
+}
+
+/// One frame on the wire.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TraceEntry {
+    /// When its first byte was sent or received.
+    pub at: Moment,
+    /// Which way it went.
+    pub direction: Direction,
+    /// What may be shown of it.
+    pub bytes: MaskedBytes,
+}
+
+type Watcher = Box<dyn FnMut(&TraceEntry) + Send>;
+
+/// Who watches a wire.
+#[derive(Default)]
+pub struct Trace {
+    watchers: Vec<Watcher>,
+}
+
+impl fmt::Debug for Trace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Trace({} watchers)", self.watchers.len())
+    }
+}
+
+impl Trace {
+    /// Tells every frame from now on to `watcher`, which must not wait.
+    pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
+        self.watchers.push(Box::new(watcher));
+    }
+
+    /// Tells a frame to all who watch.
+    pub fn record(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
+        if bytes.is_empty() {
+            return;
+        }
+        let entry = TraceEntry { at, direction, bytes };
+        for watcher in &mut self.watchers {
+            watcher(&entry);
+        }
+    }
+}
+
+const HEADER: &str = "# encoder-studio trace 1";
+
+/// Begins a trace file.
+///
+/// # Errors
+/// What the writer says.
+pub fn write_header(file: &mut impl Write) -> io::Result<()> {
+    writeln!(file, "{HEADER}")
+}
+
+/// Adds a line to a trace file.
+///
+/// # Errors
+/// What the writer says.
+pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> {
+    let sign = match entry.direction {
+        Direction::Sent => '>',
+        Direction::Received => '<',
+    };
+    writeln!(file, "{:.6} {sign} {}", entry.at.since_start().as_secs_f64(), entry.bytes)
+}
+
+/// Why a text is not a trace.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TraceFileError {
+    /// The first line is not that of a trace file.
+    #[error("it does not begin with \"{HEADER}\"")]
+    Header,
+    /// A line is not time, direction and bytes.
+    #[error("line {line}: not of the form \"0.031204 > 40 42 02\"")]
+    Line {
+        /// Counted from 1.
+        line: usize,
+    },
+    /// The bytes of a line.
+    #[error("line {line}: {source}")]
+    Hex {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with them.
+        source: HexError,
+    },
+}
+
+/// Reads a trace file.
+///
+/// # Errors
+/// With the line's number when it is not one.
+pub fn read_trace(text: &str) -> Result<Vec<TraceEntry>, TraceFileError> {
+    let mut lines = text.lines().zip(1..);
+    if lines.next().map(|(line, _)| line.trim_end()) != Some(HEADER) {
+        return Err(TraceFileError::Header);
+    }
+    lines
+        .filter(|(text, _)| !text.trim().is_empty() && !text.trim_start().starts_with('#'))
+        .map(|(text, line)| read_entry(text, line))
+        .collect()
+}
+
+fn read_entry(text: &str, line: usize) -> Result<TraceEntry, TraceFileError> {
+    let malformed = || TraceFileError::Line { line };
+    let (time, rest) = text.trim_start().split_once(' ').ok_or_else(malformed)?;
+    let seconds: f64 = time.parse().map_err(|_| malformed())?;
+    let elapsed = Duration::try_from_secs_f64(seconds).map_err(|_| malformed())?;
+    let (direction, bytes) = match rest.trim_start().split_at_checked(1) {
+        Some((">", bytes)) => (Direction::Sent, bytes),
+        Some(("<", bytes)) => (Direction::Received, bytes),
+        _ => return Err(malformed()),
+    };
+    let bytes = bytes.parse().map_err(|source| TraceFileError::Hex { line, source })?;
+    Ok(TraceEntry { at: Moment::after_start(elapsed), direction, bytes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trace_is_read_as_it_was_written() {
+        let text = "# encoder-studio trace 1\n0.031204 > 40 4F 02 ** ** **\n0.047511 < 40 4F 02 0D\n";
+        let entries = read_trace(text).unwrap();
+        assert_eq!(entries.len(), 2);
+        assert_eq!(entries[1].at, Moment::after_start(Duration::from_micros(47_511)));
+        let mut written = Vec::new();
+        write_header(&mut written).unwrap();
+        for entry in &entries {
+            write_entry(&mut written, entry).unwrap();
+        }
+        assert_eq!(String::from_utf8(written).unwrap(), text);
+    }
+
+    #[test]
+    fn a_broken_trace_names_the_line() {
+        let cases = [
+            ("", "it does not begin with \"# encoder-studio trace 1\""),
+            ("# encoder-studio trace 1\n\n0.1 = 40", "line 3: not of the form \"0.031204 > 40 42 02\""),
+            ("# encoder-studio trace 1\n-1 > 40", "line 2: not of the form \"0.031204 > 40 42 02\""),
+            ("# encoder-studio trace 1\n# note\n1 > 4G", "line 3: 'G' is not a hexadecimal digit"),
+        ];
+        for (text, message) in cases {
+            assert_eq!(read_trace(text).unwrap_err().to_string(), message);
+        }
+    }
+}

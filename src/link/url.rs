@@ -1,0 +1,231 @@
+//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; what the parameters mean is the
+//! business of whoever opens the link.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Which kind of wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// The virtual device in this process.
+    Sim,
+    /// A serial port.
+    Serial,
+    /// The same bytes through a serial device server.
+    Tcp,
+    /// A recorded trace.
+    Replay,
+}
+
+impl Scheme {
+    const ALL: [(Scheme, &'static str); 4] =
+        [(Scheme::Sim, "sim"), (Scheme::Serial, "serial"), (Scheme::Tcp, "tcp"), (Scheme::Replay, "replay")];
+
+    /// The word before the colon.
+    pub fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
+    }
+}
+
+/// A link as the user writes it. Its text is the same on the command line and in the window.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkUrl {
+    /// Kind of wire.
+    pub scheme: Scheme,
+    /// Path, host and port, or file; empty for `sim:`.
+    pub target: String,
+    /// The parameters after the question mark.
+    pub query: Query,
+}
+
+/// Parameters in the order written. Names are lower case; each stands once.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Query(Vec<(String, String)>);
+
+/// Why a text is not a link.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UrlError {
+    /// No colon, or a word before it that names no kind of link.
+    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp: or replay:")]
+    Scheme(String),
+    /// The port, host or file is missing.
+    #[error("{scheme}: needs {what}")]
+    Target {
+        /// The word before the colon.
+        scheme: &'static str,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A parameter that is not of the form name=value.
+    #[error("{0:?} is not of the form name=value")]
+    Parameter(String),
+    /// A parameter that stands twice.
+    #[error("{0} stands twice")]
+    Twice(String),
+    /// A parameter that this link does not take.
+    #[error("{name} is not a parameter of {scheme}: links; known are {known}")]
+    Unknown {
+        /// What was written.
+        name: String,
+        /// The word before the colon.
+        scheme: &'static str,
+        /// What could be written.
+        known: String,
+    },
+    /// A value that cannot be used.
+    #[error("{name}={value}: {allowed}")]
+    Value {
+        /// The parameter.
+        name: String,
+        /// What was written.
+        value: String,
+        /// What could be written.
+        allowed: String,
+    },
+}
+
+impl FromStr for LinkUrl {
+    type Err = UrlError;
+
+    fn from_str(text: &str) -> Result<Self, UrlError> {
+        let text = text.trim();
+        let scheme_error = || UrlError::Scheme(text.to_owned());
+        let (word, rest) = text.split_once(':').ok_or_else(scheme_error)?;
+        let (scheme, _) =
+            Scheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
+        let (target, query) = rest.split_once('?').unwrap_or((rest, ""));
+        let url = LinkUrl { scheme, target: target.to_owned(), query: query.parse()? };
+        url.check_target()?;
+        Ok(url)
+    }
+}
+
+impl LinkUrl {
+    fn check_target(&self) -> Result<(), UrlError> {
+        let missing = |what| Err(UrlError::Target { scheme: self.scheme.word(), what });
+        match self.scheme {
+            Scheme::Sim if !self.target.is_empty() => Err(UrlError::Parameter(self.target.clone())),
+            Scheme::Serial if self.target.is_empty() => missing("a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
+            Scheme::Replay if self.target.is_empty() => missing("a file, as in replay:capture.trace"),
+            Scheme::Tcp if !self.has_host_and_port() => missing("host and port, as in tcp:192.168.0.7:4001"),
+            _ => Ok(()),
+        }
+    }
+
+    fn has_host_and_port(&self) -> bool {
+        self.target.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
+    }
+}
+
+impl fmt::Display for LinkUrl {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.scheme.word(), self.target)?;
+        for (at, (name, value)) in self.query.0.iter().enumerate() {
+            let separator = if at == 0 { '?' } else { '&' };
+            write!(f, "{separator}{name}={value}")?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Query {
+    type Err = UrlError;
+
+    fn from_str(text: &str) -> Result<Self, UrlError> {
+        let mut query = Query::default();
+        for parameter in text.split('&').filter(|parameter| !parameter.is_empty()) {
+            let (name, value) = parameter.split_once('=').ok_or_else(|| UrlError::Parameter(parameter.to_owned()))?;
+            let name = name.to_ascii_lowercase();
+            if query.get(&name).is_some() {
+                return Err(UrlError::Twice(name));
+            }
+            query.0.push((name, value.to_owned()));
+        }
+        Ok(query)
+    }
+}
+
+impl Query {
+    /// The value of a parameter.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+    }
+
+    /// All parameters in the order written.
+    pub fn pairs(&self) -> &[(String, String)] {
+        &self.0
+    }
+
+    /// Those parameters that are not in `names`.
+    pub fn without(&self, names: &[&str]) -> Vec<(String, String)> {
+        self.0.iter().filter(|(name, _)| !names.contains(&name.as_str())).cloned().collect()
+    }
+
+    /// Reads a parameter; `None` when it was left out.
+    ///
+    /// # Errors
+    /// When `read` makes nothing of the value; `allowed` says what could be written.
+    pub fn read<T>(
+        &self,
+        name: &str,
+        allowed: &str,
+        read: impl FnOnce(&str) -> Option<T>,
+    ) -> Result<Option<T>, UrlError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        match read(value) {
+            Some(value) => Ok(Some(value)),
+            None => {
+                Err(UrlError::Value { name: name.to_owned(), value: value.to_owned(), allowed: allowed.to_owned() })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_are_taken_apart_and_written_as_they_were() {
+        for text in [
+            "sim:",
+            "sim:?seed=7&fault=drop:0.01",
+            "serial:/dev/ttyUSB0?baud=9600&parity=even&address=0x40&echo=auto",
+            "serial:COM3",
+            "tcp:192.168.0.7:4001",
+            "tcp:[::1]:4001?baud=9600",
+            "replay:captures/monday.trace",
+        ] {
+            assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), text);
+        }
+        let url: LinkUrl = "SERIAL:/dev/ttyUSB0?Baud=19200".parse().unwrap();
+        assert_eq!((url.scheme, url.target.as_str()), (Scheme::Serial, "/dev/ttyUSB0"));
+        assert_eq!(url.query.get("baud"), Some("19200"));
+    }
+
+    #[test]
+    fn what_is_no_link_is_told_why() {
+        let cases = [
+            ("", "\"\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
+            ("/dev/ttyUSB0", "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
+            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
+            ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
+            ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
+            ("tcp:host:99999", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
+            ("replay:", "replay: needs a file, as in replay:capture.trace"),
+            ("serial:x?baud", "\"baud\" is not of the form name=value"),
+            ("serial:x?baud=1&baud=2", "baud stands twice"),
+        ];
+        for (text, message) in cases {
+            assert_eq!(text.parse::<LinkUrl>().unwrap_err().to_string(), message);
+        }
+    }
+
+    #[test]
+    fn a_bad_value_names_what_is_allowed() {
+        let query: Query = "baud=fast".parse().unwrap();
+        let error = query.read("baud", "a number", |value| value.parse::<u32>().ok()).unwrap_err();
+        assert_eq!(error.to_string(), "baud=fast: a number");
+        assert_eq!(query.read("parity", "", |value| value.parse::<u32>().ok()), Ok(None));
+    }
+}

@@ -1,0 +1,30 @@
+//! What differs between two profiles, or between a profile and a device.
+
+/// One thing that is not the same on both sides.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Its name, as `read` takes it: `field:1@3+2`.
+    pub item: String,
+    /// Its value on the left; bytes as upper-case hex.
+    pub left: String,
+    /// Its value on the right.
+    pub right: String,
+}
+
+/// What a comparison found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Comparison {
+    /// Only what differs, in the order of the device's memory.
+    pub differences: Vec<Difference>,
+    /// Number of things compared: a byte of a data field counts one, and so does its status byte.
+    pub compared: u64,
+    /// Items that only one side has, or that one side cannot read.
+    pub missing: Vec<String>,
+}
+
+impl Comparison {
+    /// Nothing differs and nothing is missing.
+    pub fn is_equal(&self) -> bool {
+        self.differences.is_empty() && self.missing.is_empty()
+    }
+}

@@ -1,0 +1,141 @@
+//! The names of things in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Something that can be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Item {
+    /// A data field or a part of it.
+    Field(FieldRange),
+    /// The status byte of a data field.
+    Status(u8),
+    /// An analogue channel.
+    Analogue(u8),
+    /// The counter.
+    Counter,
+    /// The encoder's address.
+    Address,
+    /// The stored interface settings.
+    Settings,
+}
+
+/// A data field or a part of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FieldRange {
+    /// The field's number, FFh for the extended label.
+    pub field: u8,
+    /// First byte.
+    pub start: usize,
+    /// Number of bytes; `None`: to the end of the field.
+    pub count: Option<usize>,
+}
+
+/// Why a text names nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{0:?} is not an item; items are field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings"
+)]
+pub struct ItemError(pub String);
+
+impl FromStr for Item {
+    type Err = ItemError;
+
+    fn from_str(text: &str) -> Result<Self, ItemError> {
+        let error = || ItemError(text.to_owned());
+        let item = match text.split_once(':') {
+            Some(("field", range)) => Item::Field(read_range(range).ok_or_else(error)?),
+            Some(("status", field)) => Item::Status(read_byte(field).ok_or_else(error)?),
+            Some(("analogue", channel)) => Item::Analogue(read_byte(channel).ok_or_else(error)?),
+            None if text == "counter" => Item::Counter,
+            None if text == "address" => Item::Address,
+            None if text == "settings" => Item::Settings,
+            _ => return Err(error()),
+        };
+        Ok(item)
+    }
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Item::Field(range) => range.fmt(f),
+            Item::Status(field) => write!(f, "status:{field}"),
+            Item::Analogue(channel) => write!(f, "analogue:0x{channel:02X}"),
+            Item::Counter => f.write_str("counter"),
+            Item::Address => f.write_str("address"),
+            Item::Settings => f.write_str("settings"),
+        }
+    }
+}
+
+impl FieldRange {
+    /// A part of a field.
+    pub fn new(field: u8, start: usize, count: usize) -> Self {
+        FieldRange { field, start, count: Some(count) }
+    }
+
+    /// A byte of a field of that number lies in this range.
+    pub fn contains(&self, field: u8, address: usize) -> bool {
+        self.field == field
+            && address >= self.start
+            && self.count.is_none_or(|count| address < self.start.saturating_add(count))
+    }
+}
+
+impl fmt::Display for FieldRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.start, self.count) {
+            (0, None) => write!(f, "field:{}", self.field),
+            (start, None) => write!(f, "field:{}@{start}", self.field),
+            (start, Some(count)) => write!(f, "field:{}@{start}+{count}", self.field),
+        }
+    }
+}
+
+fn read_range(text: &str) -> Option<FieldRange> {
+    let Some((field, place)) = text.split_once('@') else {
+        return Some(FieldRange { field: read_byte(text)?, start: 0, count: None });
+    };
+    let (start, count) = match place.split_once('+') {
+        Some((start, count)) => (read_number(start)?, Some(read_number(count).filter(|count| *count > 0)?)),
+        None => (read_number(place)?, None),
+    };
+    Some(FieldRange { field: read_byte(field)?, start, count })
+}
+
+fn read_byte(text: &str) -> Option<u8> {
+    u8::try_from(read_number(text)?).ok()
+}
+
+fn read_number(text: &str) -> Option<usize> {
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(hex) => usize::from_str_radix(hex, 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_are_read_and_written() {
+        for text in
+            ["field:0", "field:1@3+2", "field:255@16", "status:1", "analogue:0x48", "counter", "address", "settings"]
+        {
+            assert_eq!(text.parse::<Item>().unwrap().to_string(), text);
+        }
+        assert_eq!("field:0x1@0x10+0x2".parse::<Item>().unwrap().to_string(), "field:1@16+2");
+        assert_eq!("analogue:72".parse::<Item>().unwrap(), Item::Analogue(0x48));
+    }
+
+    #[test]
+    fn what_is_no_item_is_told() {
+        for text in
+            ["", "field", "field:", "field:256", "field:1@", "field:1@0+0", "field:1@+2", "counter:1", "Field:1"]
+        {
+            assert_eq!(text.parse::<Item>(), Err(ItemError(text.to_owned())), "{text}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! HIPERFACE: what is saved of an encoder, how two differ, and what restoring would do.
+
+mod compare;
+mod edit;
+mod item;
+mod plan;
+mod record;
+mod restore;
+
+pub use compare::{compare, runs};
+pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
+pub use item::{FieldRange, Item, ItemError};
+pub use plan::{Base, HiperfacePlan, Op, Scalar};
+pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
+pub use restore::{DeviceState, PlanError, Restore, RestoreOptions, plan_restore};

@@ -1,0 +1,284 @@
+//! What is saved of a HIPERFACE encoder. An access code is never part of it.
+
+use super::{FieldRange, Item};
+use crate::bits::parse_hex;
+use crate::profile::ProfileError;
+use crate::profile::ron_text::{Entries, Unknown, Writer};
+use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
+
+/// A HIPERFACE encoder as it is saved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HiperfaceProfile {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// Address and interface settings: recorded, neither compared nor restored.
+    pub interface: Interface,
+    /// Values that change by themselves: recorded, neither compared nor restored.
+    pub recorded: Recorded,
+    /// What belongs to the mounting and never goes onto another encoder by itself.
+    pub mounting: Vec<MountingMark>,
+    /// Data fields in ascending order.
+    pub fields: Vec<FieldImage>,
+    /// Unknown entries of the fields, by field number.
+    pub unknown_in_fields: Vec<(u8, Unknown)>,
+}
+
+/// Who an encoder is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileIdentity {
+    /// Serial number; empty where the encoder does not tell.
+    pub serial_number: String,
+    /// Type byte.
+    pub encoder_type: u8,
+    /// Family or designation.
+    pub encoder_name: String,
+    /// Firmware version.
+    pub firmware_version: String,
+    /// Firmware date, `DD.MM.YY`.
+    pub firmware_date: String,
+    /// EEPROM size.
+    pub eeprom_bytes: u32,
+    /// Options byte of the type label.
+    pub options: u8,
+    /// Content of data field FFh.
+    pub extended_label: Option<Vec<u8>>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Address and interface settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    /// 40h…5Fh.
+    pub address: u8,
+    /// Stored settings.
+    pub settings: LineSettings,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Values that change by themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Position in steps.
+    pub position: Option<u32>,
+    /// Counter.
+    pub counter: Option<u32>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Part of a data field that holds a value of the mounting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MountingMark {
+    /// Where it stands.
+    pub range: FieldRange,
+    /// What it is.
+    pub meaning: String,
+}
+
+/// A data field.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct FieldImage {
+    /// Its number.
+    pub number: u8,
+    /// Its status byte.
+    pub status: DataFieldStatus,
+    /// Its bytes, as many as the status says; `None` where the access code is not known.
+    pub bytes: Option<Vec<u8>>,
+}
+
+impl HiperfaceProfile {
+    /// The first bytes of a commutation offset as this program stores it.
+    pub const COMMUTATION_MAGIC: &'static [u8] = b"CO1";
+    /// Bytes of a commutation offset as this program stores it.
+    pub const COMMUTATION_BYTES: usize = 16;
+
+    /// Marks what is recognised as a value of the mounting.
+    pub fn mark_mounting(&mut self) {
+        for field in &self.fields {
+            let Some(bytes) = &field.bytes else { continue };
+            let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
+            for (_, block) in blocks.filter(|(block, _)| block.starts_with(Self::COMMUTATION_MAGIC)) {
+                let start = block * Self::COMMUTATION_BYTES;
+                self.mounting.push(MountingMark {
+                    range: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
+                    meaning: "commutation offset".to_owned(),
+                });
+            }
+        }
+    }
+
+    /// A byte of a data field belongs to the mounting.
+    pub fn is_mounting(&self, field: u8, address: usize) -> bool {
+        self.mounting.iter().any(|mark| mark.range.contains(field, address))
+    }
+
+    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let identity = read_identity(entries.structure("identity")?)?;
+        let interface = read_interface(entries.structure("interface")?)?;
+        let recorded = match entries.structure("recorded") {
+            Ok(recorded) => read_recorded(recorded)?,
+            Err(ProfileError::Missing { .. }) => Recorded::default(),
+            Err(error) => return Err(error),
+        };
+        let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
+        let mut fields: Vec<FieldImage> = Vec::new();
+        let mut unknown_in_fields = Vec::new();
+        for entries in entries.structures("fields")? {
+            let path = entries.path_of("number");
+            let (field, unknown) = read_field(entries)?;
+            if fields.iter().any(|other| other.number == field.number) {
+                return Err(ProfileError::Value { path, what: format!("field {} stands twice", field.number) });
+            }
+            if !unknown.is_empty() {
+                unknown_in_fields.push((field.number, unknown));
+            }
+            fields.push(field);
+        }
+        fields.sort_by_key(|field| field.number);
+        Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, unknown_in_fields })
+    }
+
+    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+        self.write_identity(writer);
+        writer.open("interface", '(');
+        writer.entry("address", &format!("0x{:02X}", self.interface.address), "");
+        let settings = self.interface.settings;
+        writer.entry("settings", &format!("0x{:02X}", settings.byte()), &settings.to_string());
+        writer.unknown(&self.interface.unknown);
+        writer.close(')');
+        writer.comment("recorded, not restored");
+        writer.open("recorded", '(');
+        if let Some(position) = self.recorded.position {
+            writer.entry("position", &position.to_string(), "steps");
+        }
+        if let Some(counter) = self.recorded.counter {
+            writer.entry("counter", &counter.to_string(), "");
+        }
+        writer.unknown(&self.recorded.unknown);
+        writer.close(')');
+        writer.comment("belongs to the mounting: never restored onto another encoder by itself");
+        writer.open("mounting", '[');
+        for mark in &self.mounting {
+            let item = super::super::ron_text::quoted(&mark.range.to_string());
+            let meaning = super::super::ron_text::quoted(&mark.meaning);
+            writer.entry_in_list(&format!("(item: {item}, meaning: {meaning})"));
+        }
+        writer.close(']');
+        writer.open("fields", '[');
+        for field in &self.fields {
+            let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);
+            write_field(writer, field, unknown.map(|(_, unknown)| unknown));
+        }
+        writer.close(']');
+    }
+
+    fn write_identity(&self, writer: &mut Writer) {
+        let identity = &self.identity;
+        writer.open("identity", '(');
+        writer.text("serial_number", &identity.serial_number);
+        writer.entry("encoder_type", &format!("0x{:02X}", identity.encoder_type), "");
+        writer.text("encoder_name", &identity.encoder_name);
+        writer.text("firmware_version", &identity.firmware_version);
+        writer.text("firmware_date", &identity.firmware_date);
+        writer.entry("eeprom_bytes", &identity.eeprom_bytes.to_string(), "");
+        writer.entry("options", &format!("0x{:02X}", identity.options), "");
+        if let Some(label) = &identity.extended_label {
+            writer.bytes("extended_label", label);
+        }
+        writer.unknown(&identity.unknown);
+        writer.close(')');
+    }
+}
+
+fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown>) {
+    writer.open("", '(');
+    writer.entry("number", &field.number.to_string(), "");
+    writer.entry("status", &format!("0x{:02X}", field.status.byte()), &field.status.to_string());
+    match &field.bytes {
+        Some(bytes) => writer.bytes("bytes", bytes),
+        None => writer.comment("locked: the access code is not known, so there are no bytes"),
+    }
+    if let Some(unknown) = unknown {
+        writer.unknown(unknown);
+    }
+    writer.close(')');
+}
+
+const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
+
+fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
+    Ok(ProfileIdentity {
+        serial_number: entries.required("serial_number", "a text")?,
+        encoder_type: entries.required("encoder_type", BYTE)?,
+        encoder_name: entries.optional("encoder_name", "a text")?.unwrap_or_default(),
+        firmware_version: entries.optional("firmware_version", "a text")?.unwrap_or_default(),
+        firmware_date: entries.optional("firmware_date", "a text")?.unwrap_or_default(),
+        eeprom_bytes: entries.optional("eeprom_bytes", "a whole number")?.unwrap_or_default(),
+        options: entries.optional("options", BYTE)?.unwrap_or_default(),
+        extended_label: read_bytes(&mut entries, "extended_label")?,
+        unknown: entries.rest(),
+    })
+}
+
+fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
+    Ok(Interface {
+        address: entries.required("address", BYTE)?,
+        settings: LineSettings::from_byte(entries.required("settings", BYTE)?),
+        unknown: entries.rest(),
+    })
+}
+
+fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
+    Ok(Recorded {
+        position: entries.optional("position", "a number from 0 to 4294967295")?,
+        counter: entries.optional("counter", "a number from 0 to 16777215")?,
+        unknown: entries.rest(),
+    })
+}
+
+fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
+    let path = entries.path_of("item");
+    let item: String = entries.required("item", "a text such as \"field:0@0+16\"")?;
+    let Ok(Item::Field(range)) = item.parse::<Item>() else {
+        return Err(ProfileError::Value { path, what: format!("{item:?} is not of the form field:N@ADDR+COUNT") });
+    };
+    Ok(MountingMark { range, meaning: entries.optional("meaning", "a text")?.unwrap_or_default() })
+}
+
+fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
+    let number: u8 = entries.required("number", "a number from 0 to 254")?;
+    let status = DataFieldStatus::from_byte(entries.required("status", BYTE)?);
+    let wrong = |entries: &Entries, name: &str, what: String| ProfileError::Value { path: entries.path_of(name), what };
+    if !status.exists() {
+        return Err(wrong(
+            &entries,
+            "status",
+            format!("{:02X}h is not the status of an existing field", status.byte()),
+        ));
+    }
+    let bytes = read_bytes(&mut entries, "bytes")?;
+    if let Some(bytes) = &bytes
+        && bytes.len() != status.size().bytes()
+    {
+        let what = format!("{} bytes where the status says {}", bytes.len(), status.size().bytes());
+        return Err(wrong(&entries, "bytes", what));
+    }
+    Ok((FieldImage { number, status, bytes }, entries.rest()))
+}
+
+/// A list of hex lines, or one text.
+fn read_bytes(entries: &mut Entries, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
+    const EXPECTED: &str = "a list of texts with hexadecimal bytes";
+    let path = entries.path_of(name);
+    let Some(value) = entries.optional::<ron::Value>(name, EXPECTED)? else { return Ok(None) };
+    let lines = match value {
+        ron::Value::String(line) => vec![line],
+        value => value
+            .into_rust::<Vec<String>>()
+            .map_err(|_| ProfileError::Shape { path: path.clone(), expected: EXPECTED })?,
+    };
+    let bytes = lines.iter().map(|line| parse_hex(line)).collect::<Result<Vec<_>, _>>();
+    bytes.map(|rows| Some(rows.concat())).map_err(|error| ProfileError::Value { path, what: error.to_string() })
+}

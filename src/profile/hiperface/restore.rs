@@ -1,0 +1,556 @@
+//! What restoring a profile would do: only what differs, in the fewest writes, and nothing that belongs to another
+//! encoder's mounting.
+
+use std::ops::Range;
+
+use super::{Base, FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile, Op, runs};
+use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+
+/// What a restore may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RestoreOptions {
+    /// The profile may go onto an encoder with another serial number.
+    pub allow_other_device: bool,
+    /// Values of the mounting may go onto another encoder.
+    pub with_mounting: bool,
+    /// A field that has another size and is not the last may be deleted and created again, with all that come after it.
+    pub recreate: bool,
+}
+
+/// An encoder's memory as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeviceState {
+    /// Serial number.
+    pub serial_number: String,
+    /// Free memory and number of fields.
+    pub memory: FreeMemory,
+    /// All fields in ascending order.
+    pub fields: Vec<FieldImage>,
+}
+
+/// What a restore would do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restore {
+    /// The operations.
+    pub plan: HiperfacePlan,
+    /// Things that are already as the profile says.
+    pub unchanged: u64,
+    /// Fields that only the encoder has, or that one side cannot read: left alone.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<FieldRange>,
+}
+
+/// Why a profile cannot be restored.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// The profile was read from another encoder.
+    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    OtherDevice {
+        /// In the profile.
+        profile: String,
+        /// In the encoder.
+        device: String,
+    },
+    /// Only the last field changes its size.
+    #[error("field {field} has {device} bytes in the encoder and {profile} in the profile, and is not the last")]
+    SizeFixed {
+        /// The field.
+        field: u8,
+        /// Bytes in the profile.
+        profile: usize,
+        /// Bytes in the encoder.
+        device: usize,
+    },
+    /// Fields are created in ascending order.
+    #[error("field {field} cannot be created before field {missing}")]
+    Gap {
+        /// The field.
+        field: u8,
+        /// The field that neither side has.
+        missing: u8,
+    },
+    /// The EEPROM is too small.
+    #[error("{needed} bytes are needed and {free} are free")]
+    NoMemory {
+        /// Bytes that the plan needs.
+        needed: usize,
+        /// Bytes that are free.
+        free: usize,
+    },
+    /// A field has to be created again and its content cannot be read.
+    #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
+    WouldLose {
+        /// The field.
+        field: u8,
+        /// Its code.
+        code: CodeNumber,
+    },
+    /// Fields are created in ascending order.
+    #[error("field {field} cannot be created: the next one is {next}")]
+    NotNext {
+        /// The field asked for.
+        field: u8,
+        /// The only one that can be created.
+        next: u8,
+    },
+    /// Only the last field is deleted or changes its size.
+    #[error("field {field} is not the last: that is {last}")]
+    NotLast {
+        /// The field asked for.
+        field: u8,
+        /// The only one that can.
+        last: u8,
+    },
+    /// There is no such field.
+    #[error("field {field} does not exist; the encoder has {count}")]
+    NoSuchField {
+        /// The field asked for.
+        field: u8,
+        /// Number of fields.
+        count: u8,
+    },
+    /// WE is 0.
+    #[error("field {field} is write protected")]
+    WriteProtected {
+        /// The field.
+        field: u8,
+    },
+    /// Bytes beyond the end of the field.
+    #[error("field {field} has bytes 0 to {last}; {count} bytes at {start} do not fit")]
+    OutOfField {
+        /// The field.
+        field: u8,
+        /// Its last byte.
+        last: usize,
+        /// First byte to write.
+        start: usize,
+        /// Bytes to write.
+        count: usize,
+    },
+    /// The content of the field cannot be read.
+    #[error("field {field} cannot be read: access code {code} is not known")]
+    CodeUnknown {
+        /// The field.
+        field: u8,
+        /// Its code.
+        code: CodeNumber,
+    },
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &HiperfaceProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    let same_device = profile.identity.serial_number == device.serial_number;
+    if !same_device && !options.allow_other_device {
+        return Err(PlanError::OtherDevice {
+            profile: profile.identity.serial_number.clone(),
+            device: device.serial_number.clone(),
+        });
+    }
+    let mut planner = Planner {
+        profile,
+        device,
+        keep_mounting: !same_device && !options.with_mounting,
+        ops: Vec::new(),
+        unchanged: 0,
+        missing: Vec::new(),
+        mounting_left: Vec::new(),
+        touched: Vec::new(),
+    };
+    planner.check_order()?;
+    let recreated = planner.first_to_recreate(options.recreate)?;
+    planner.check_memory(recreated)?;
+    let mut kept = device.fields.clone();
+    if let Some(first) = recreated {
+        planner.delete_from(first)?;
+        kept.truncate(usize::from(first));
+    }
+    for target in planner.targets(recreated) {
+        match kept.iter().find(|field| field.number == target.number) {
+            Some(now) => planner.change(now, &target),
+            None => planner.create(&target),
+        }
+    }
+    Ok(planner.finish())
+}
+
+struct Planner<'a> {
+    profile: &'a HiperfaceProfile,
+    device: &'a DeviceState,
+    keep_mounting: bool,
+    ops: Vec<Op>,
+    unchanged: u64,
+    missing: Vec<String>,
+    mounting_left: Vec<FieldRange>,
+    touched: Vec<u8>,
+}
+
+impl Planner<'_> {
+    /// Fields that are to be created have to follow each other.
+    fn check_order(&self) -> Result<(), PlanError> {
+        let mut next = self.device.memory.fields;
+        for field in self.profile.fields.iter().filter(|field| field.number >= self.device.memory.fields) {
+            if field.number != next {
+                return Err(PlanError::Gap { field: field.number, missing: next });
+            }
+            next = next.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    /// The first field whose size has to change although fields follow it.
+    fn first_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
+        let last = self.device.fields.last().map(|field| field.number);
+        for target in &self.profile.fields {
+            let Some(now) = self.device.fields.iter().find(|field| field.number == target.number) else { continue };
+            if now.status.size() != target.status.size() && Some(now.number) != last {
+                if allowed {
+                    return Ok(Some(now.number));
+                }
+                return Err(PlanError::SizeFixed {
+                    field: now.number,
+                    profile: target.status.size().bytes(),
+                    device: now.status.size().bytes(),
+                });
+            }
+        }
+        Ok(None)
+    }
+
+    fn check_memory(&self, recreated: Option<u8>) -> Result<(), PlanError> {
+        let blocks =
+            |fields: &[FieldImage]| fields.iter().map(|f| usize::from(f.status.size().blocks())).sum::<usize>();
+        let mut after: Vec<FieldImage> =
+            self.device.fields.iter().filter(|now| self.target_of(now.number).is_none()).cloned().collect();
+        after.extend(self.targets(recreated));
+        after.sort_by_key(|field| field.number);
+        after.dedup_by_key(|field| field.number);
+        let have = blocks(&self.device.fields) + usize::from(self.device.memory.blocks);
+        let needed = blocks(&after);
+        if needed > have {
+            let now = blocks(&self.device.fields);
+            return Err(PlanError::NoMemory {
+                needed: needed.saturating_sub(now) * FieldSize::BLOCK,
+                free: self.device.memory.bytes(),
+            });
+        }
+        Ok(())
+    }
+
+    fn target_of(&self, number: u8) -> Option<&FieldImage> {
+        self.profile.fields.iter().find(|field| field.number == number)
+    }
+
+    /// The fields as they are to be: those of the profile, and, where fields are created again, the encoder's own that
+    /// the profile does not have.
+    fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
+        let mut targets = self.profile.fields.clone();
+        if let Some(first) = recreated {
+            let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_of(f.number).is_none());
+            targets.extend(own.cloned());
+            targets.sort_by_key(|field| field.number);
+            // What the profile has no bytes for keeps its own.
+            for target in targets.iter_mut().filter(|target| target.bytes.is_none() && target.number >= first) {
+                let own = self.device.fields.iter().find(|field| field.number == target.number);
+                target.bytes =
+                    own.filter(|own| own.status.size() == target.status.size()).and_then(|own| own.bytes.clone());
+            }
+        }
+        targets
+    }
+
+    fn delete_from(&mut self, first: u8) -> Result<(), PlanError> {
+        for now in self.device.fields.iter().rev().filter(|field| field.number >= first) {
+            if now.bytes.is_none() {
+                return Err(PlanError::WouldLose { field: now.number, code: now.status.code() });
+            }
+            self.touched.push(now.number);
+            self.ops.push(Op::Define { field: now.number, from: Some(now.status), to: now.status.deleted() });
+        }
+        Ok(())
+    }
+
+    /// What a new field holds is not known, so all of it is written; then it is protected if it has to be.
+    fn create(&mut self, target: &FieldImage) {
+        let writable = target.status.with_write_enable(true);
+        let first = if target.bytes.is_some() { writable } else { target.status };
+        self.ops.push(Op::Define { field: target.number, from: None, to: first });
+        if let Some(bytes) = &target.bytes {
+            for range in self.allowed(target.number, 0..bytes.len()) {
+                self.store(target.number, writable, range, None, bytes);
+            }
+        }
+        if first != target.status {
+            self.ops.push(Op::Define { field: target.number, from: Some(first), to: target.status });
+        }
+    }
+
+    fn change(&mut self, now: &FieldImage, target: &FieldImage) {
+        // A field that one side cannot read is left alone.
+        let (Some(old), Some(new)) = (&now.bytes, &target.bytes) else {
+            if now != target {
+                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+            }
+            return;
+        };
+        let mut stores: Vec<(Range<usize>, bool)> = Vec::new();
+        for run in runs(old, new) {
+            stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
+        }
+        if new.len() > old.len() {
+            // The part that the last field grows by: its content is not known.
+            stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
+        }
+        self.unchanged += u64::from(now.status == target.status);
+        let changed: usize = runs(old, new).iter().map(ExactSizeIterator::len).sum();
+        self.unchanged += (old.len().min(new.len()) - changed) as u64;
+
+        let can_write_first = now.status.is_writable() && now.status.size() >= target.status.size();
+        let working =
+            if stores.is_empty() || can_write_first { now.status } else { target.status.with_write_enable(true) };
+        if working != now.status {
+            self.define(now.number, now.status, working);
+        }
+        for (range, known) in stores {
+            self.store(now.number, working, range, known.then_some(old.as_slice()), new);
+        }
+        if working != target.status {
+            self.define(now.number, working, target.status);
+        }
+    }
+
+    /// The parts of a range that may be written: all, or all but the values of the mounting.
+    fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
+        if !self.keep_mounting {
+            return vec![range];
+        }
+        let mut allowed: Vec<Range<usize>> = Vec::new();
+        let mut left: Vec<Range<usize>> = Vec::new();
+        for at in range {
+            let part = if self.profile.is_mounting(field, at) { &mut left } else { &mut allowed };
+            match part.last_mut() {
+                Some(run) if run.end == at => run.end += 1,
+                _ => part.push(at..at + 1),
+            }
+        }
+        self.mounting_left.extend(left.into_iter().map(|run| FieldRange::new(field, run.start, run.len())));
+        allowed
+    }
+
+    fn define(&mut self, field: u8, from: DataFieldStatus, to: DataFieldStatus) {
+        self.touched.push(field);
+        self.ops.push(Op::Define { field, from: Some(from), to });
+    }
+
+    fn store(&mut self, field: u8, status: DataFieldStatus, range: Range<usize>, old: Option<&[u8]>, new: &[u8]) {
+        let (Ok(address), Some(new)) = (u8::try_from(range.start), new.get(range.clone())) else { return };
+        if old.is_some() {
+            self.touched.push(field);
+        }
+        let old = old.and_then(|old| old.get(range)).map(<[u8]>::to_vec);
+        self.ops.push(Op::Store { field, address, status, old, new: new.to_vec() });
+    }
+
+    fn finish(mut self) -> Restore {
+        for now in &self.device.fields {
+            if self.target_of(now.number).is_none() {
+                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+            }
+        }
+        let fields = self.device.fields.iter().filter(|field| self.touched.contains(&field.number)).cloned().collect();
+        Restore {
+            plan: HiperfacePlan {
+                base: Base { field_count: self.device.memory.fields, fields, scalars: Vec::new() },
+                ops: self.ops,
+            },
+            unchanged: self.unchanged,
+            missing: self.missing,
+            mounting_left: self.mounting_left,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Interface, MountingMark, ProfileIdentity, Recorded};
+    use super::*;
+    use crate::protocol::hiperface::LineSettings;
+
+    fn field(number: u8, status: u8, bytes: &[(usize, u8)]) -> FieldImage {
+        let status = DataFieldStatus::from_byte(status);
+        let mut content = vec![0; status.size().bytes()];
+        for (at, byte) in bytes {
+            content[*at] = *byte;
+        }
+        FieldImage { number, status, bytes: Some(content) }
+    }
+
+    fn locked(number: u8, status: u8) -> FieldImage {
+        FieldImage { number, status: DataFieldStatus::from_byte(status), bytes: None }
+    }
+
+    fn profile(serial_number: &str, fields: Vec<FieldImage>) -> HiperfaceProfile {
+        HiperfaceProfile {
+            identity: ProfileIdentity {
+                serial_number: serial_number.to_owned(),
+                encoder_type: 0x37,
+                encoder_name: String::new(),
+                firmware_version: String::new(),
+                firmware_date: String::new(),
+                eeprom_bytes: 2048,
+                options: 1,
+                extended_label: None,
+                unknown: Default::default(),
+            },
+            interface: Interface { address: 0x40, settings: LineSettings::FACTORY, unknown: Default::default() },
+            recorded: Recorded::default(),
+            mounting: Vec::new(),
+            fields,
+            unknown_in_fields: Vec::new(),
+        }
+    }
+
+    fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
+        DeviceState {
+            serial_number: "A".to_owned(),
+            memory: FreeMemory { blocks: free_blocks, fields: fields.len() as u8 },
+            fields,
+        }
+    }
+
+    /// Operations in short: `C9>A9` define, `@3+2` store.
+    fn ops(
+        profile: &HiperfaceProfile,
+        device: &DeviceState,
+        options: RestoreOptions,
+    ) -> Result<Vec<String>, PlanError> {
+        let restore = plan_restore(profile, device, options)?;
+        let short = |op: &Op| match op {
+            Op::Define { field, from: None, to } => format!("{field}:new {:02X}", to.byte()),
+            Op::Define { field, from: Some(from), to } => format!("{field}:{:02X}>{:02X}", from.byte(), to.byte()),
+            Op::Store { field, address, new, .. } => format!("{field}@{address}+{}", new.len()),
+            other => format!("{other:?}"),
+        };
+        Ok(restore.plan.ops.iter().map(short).collect())
+    }
+
+    #[test]
+    fn plans_by_case() {
+        type Case = (&'static str, Vec<FieldImage>, Vec<FieldImage>, &'static [&'static str]);
+        let cases: [Case; 11] = [
+            ("nothing differs", vec![field(0, 0xC9, &[])], vec![field(0, 0xC9, &[])], &[]),
+            (
+                "only differing runs are written",
+                vec![field(0, 0xC9, &[(3, 1), (4, 2), (9, 1)])],
+                vec![field(0, 0xC9, &[])],
+                &["0@3+2", "0@9+1"],
+            ),
+            (
+                "a protected field is unlocked, written and locked",
+                vec![field(0, 0x88, &[(0, 1)])],
+                vec![field(0, 0x88, &[])],
+                &["0:88>C8", "0@0+1", "0:C8>88"],
+            ),
+            (
+                "a field that becomes protected is written first",
+                vec![field(0, 0x88, &[(0, 1)])],
+                vec![field(0, 0xC8, &[])],
+                &["0@0+1", "0:C8>88"],
+            ),
+            (
+                "a field that becomes writable is written afterwards",
+                vec![field(0, 0xC8, &[(0, 1)])],
+                vec![field(0, 0x88, &[])],
+                &["0:88>C8", "0@0+1"],
+            ),
+            ("only the protection differs", vec![field(0, 0x88, &[])], vec![field(0, 0xC8, &[])], &["0:C8>88"]),
+            (
+                "the last field grows: its new part is written whole",
+                vec![field(0, 0xC9, &[(1, 7)])],
+                vec![field(0, 0xC8, &[])],
+                &["0:C8>C9", "0@1+1", "0@16+16"],
+            ),
+            (
+                "the last field shrinks",
+                vec![field(0, 0xC8, &[(1, 7)])],
+                vec![field(0, 0xC9, &[])],
+                &["0@1+1", "0:C9>C8"],
+            ),
+            (
+                "missing fields are created, surplus ones left",
+                vec![field(0, 0xC8, &[]), field(1, 0xA8, &[])],
+                vec![field(0, 0xC8, &[])],
+                &["1:new E8", "1@0+16", "1:E8>A8"],
+            ),
+            ("a locked field is left alone", vec![locked(0, 0xE8)], vec![field(0, 0xC8, &[])], &[]),
+            ("an unreadable field is left alone", vec![field(0, 0xE8, &[(0, 1)])], vec![locked(0, 0xE8)], &[]),
+        ];
+        for (label, wanted, now, expected) in cases {
+            let got = ops(&profile("A", wanted), &device(100, now), RestoreOptions::default());
+            assert_eq!(got.unwrap(), expected, "{label}");
+        }
+    }
+
+    #[test]
+    fn another_size_needs_consent_to_create_again() {
+        let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xC8, &[])]);
+        let now = device(1, vec![field(0, 0xC8, &[]), field(1, 0xC8, &[]), field(2, 0x88, &[(0, 9)])]);
+        let error = ops(&wanted, &now, RestoreOptions::default()).unwrap_err();
+        assert_eq!(error, PlanError::SizeFixed { field: 0, profile: 32, device: 16 });
+        let recreate = RestoreOptions { recreate: true, ..RestoreOptions::default() };
+        assert_eq!(
+            ops(&wanted, &now, recreate).unwrap(),
+            [
+                "2:88>08", "1:C8>48", "0:C8>48", "0:new C9", "0@0+32", "1:new C8", "1@0+16", "2:new C8", "2@0+16",
+                "2:C8>88"
+            ]
+        );
+        let unreadable = device(1, vec![field(0, 0xC8, &[]), locked(1, 0xE8)]);
+        let error = ops(&wanted, &unreadable, recreate).unwrap_err();
+        assert!(matches!(error, PlanError::WouldLose { field: 1, .. }));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_before_anything_is_written() {
+        let now = device(1, vec![field(0, 0xC8, &[])]);
+        let too_large = profile("A", vec![field(0, 0xC8, &[]), field(1, 0xC9, &[])]);
+        let error = ops(&too_large, &now, RestoreOptions::default()).unwrap_err();
+        assert_eq!(error, PlanError::NoMemory { needed: 32, free: 16 });
+        let gap = profile("A", vec![field(2, 0xC8, &[])]);
+        assert_eq!(ops(&gap, &now, RestoreOptions::default()), Err(PlanError::Gap { field: 2, missing: 1 }));
+    }
+
+    #[test]
+    fn another_encoder_keeps_its_mounting() {
+        let mut wanted = profile("B", vec![field(0, 0xC9, &[(2, 1), (3, 1), (4, 1), (20, 1)])]);
+        wanted.mounting.push(MountingMark { range: FieldRange::new(0, 3, 10), meaning: String::new() });
+        let now = device(10, vec![field(0, 0xC9, &[])]);
+        assert!(matches!(ops(&wanted, &now, RestoreOptions::default()), Err(PlanError::OtherDevice { .. })));
+        let other = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+        assert_eq!(ops(&wanted, &now, other).unwrap(), ["0@2+1", "0@20+1"]);
+        let restore = plan_restore(&wanted, &now, other).unwrap();
+        assert_eq!(restore.mounting_left, [FieldRange::new(0, 3, 2)]);
+        let with_mounting = RestoreOptions { with_mounting: true, ..other };
+        assert_eq!(ops(&wanted, &now, with_mounting).unwrap(), ["0@2+3", "0@20+1"]);
+    }
+
+    #[test]
+    fn what_stays_is_counted() {
+        let restore = plan_restore(
+            &profile("A", vec![field(0, 0xC9, &[(3, 1)])]),
+            &device(10, vec![field(0, 0xC9, &[]), field(1, 0xC8, &[])]),
+            RestoreOptions::default(),
+        )
+        .unwrap();
+        assert_eq!(restore.unchanged, 1 + 31);
+        assert_eq!(restore.missing, ["field:1"]);
+        assert_eq!(restore.plan.write_cycles(), 1);
+    }
+}

@@ -1,0 +1,13 @@
+//! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
+//! `store`, devices are read and written by `device`.
+
+mod difference;
+mod document;
+pub mod hiperface;
+mod plan;
+mod ron_text;
+
+pub use difference::{Comparison, Difference};
+pub use document::{Body, Document, ProfileError, SCHEMA};
+pub use plan::{Consent, Plan, PlanId};
+pub use ron_text::Unknown;

@@ -1,0 +1,198 @@
+//! RON for profiles. The `ron` crate reads; what this program does not know is kept as it was read. Writing is done
+//! here, because a profile is for people: hexadecimal numbers, sixteen bytes a line, comments.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use ron::Value;
+use serde::de::DeserializeOwned;
+
+use super::ProfileError;
+
+/// Entries that this program does not know, by name.
+pub type Unknown = BTreeMap<String, Value>;
+
+/// The entries of a structure, taken out one by one; what is left at the end is unknown.
+pub(super) struct Entries {
+    path: String,
+    entries: BTreeMap<String, Value>,
+}
+
+impl Entries {
+    /// Opens the structure `value`, which stands at `path`.
+    pub(super) fn open(path: &str, value: Value) -> Result<Self, ProfileError> {
+        let Value::Map(map) = unwrapped(value) else {
+            return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+        };
+        let mut entries = BTreeMap::new();
+        for (key, value) in map {
+            let Value::String(name) = key else {
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: "names before the colons" });
+            };
+            entries.insert(name, value);
+        }
+        Ok(Entries { path: path.to_owned(), entries })
+    }
+
+    /// Where an entry stands, for messages.
+    pub(super) fn path_of(&self, name: &str) -> String {
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// Takes a plain value; `None` when it is not there.
+    pub(super) fn optional<T: DeserializeOwned>(
+        &mut self,
+        name: &str,
+        expected: &'static str,
+    ) -> Result<Option<T>, ProfileError> {
+        let Some(value) = self.entries.remove(name) else { return Ok(None) };
+        if matches!(value, Value::Option(None)) {
+            return Ok(None);
+        }
+        unwrapped(value).into_rust().map(Some).map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
+    }
+
+    /// Takes a plain value that has to be there.
+    pub(super) fn required<T: DeserializeOwned>(
+        &mut self,
+        name: &str,
+        expected: &'static str,
+    ) -> Result<T, ProfileError> {
+        self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
+    }
+
+    /// Takes a structure that has to be there.
+    pub(super) fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
+        let path = self.path_of(name);
+        let value = self.entries.remove(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
+        Entries::open(&path, value)
+    }
+
+    /// Takes a list of structures; empty when it is not there.
+    pub(super) fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
+        let path = self.path_of(name);
+        match self.entries.remove(name).map(unwrapped) {
+            None => Ok(Vec::new()),
+            Some(Value::Seq(values)) => values
+                .into_iter()
+                .enumerate()
+                .map(|(at, value)| Entries::open(&format!("{path}[{at}]"), value))
+                .collect(),
+            Some(_) => Err(ProfileError::Shape { path, expected: "a list: […]" }),
+        }
+    }
+
+    /// What nobody took.
+    pub(super) fn rest(self) -> Unknown {
+        self.entries
+    }
+}
+
+/// `Some(x)` may be written where `x` is meant.
+fn unwrapped(value: Value) -> Value {
+    match value {
+        Value::Option(Some(inner)) => *inner,
+        other => other,
+    }
+}
+
+/// Writes a profile's text.
+#[derive(Default)]
+pub(super) struct Writer {
+    out: String,
+    depth: usize,
+}
+
+impl Writer {
+    /// A comment on a line of its own.
+    pub(super) fn comment(&mut self, text: &str) {
+        self.line(&format!("// {text}"));
+    }
+
+    /// `name: value,` with the value as it stands, and a comment behind it.
+    pub(super) fn entry(&mut self, name: &str, value: &str, comment: &str) {
+        let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
+        self.line(&format!("{name}: {value},{behind}"));
+    }
+
+    /// An element of a list, as it stands.
+    pub(super) fn entry_in_list(&mut self, value: &str) {
+        self.line(&format!("{value},"));
+    }
+
+    /// `name: "text",`.
+    pub(super) fn text(&mut self, name: &str, text: &str) {
+        self.entry(name, &quoted(text), "");
+    }
+
+    /// Bytes as a list of lines of sixteen.
+    pub(super) fn bytes(&mut self, name: &str, bytes: &[u8]) {
+        self.open(name, '[');
+        for row in bytes.chunks(16) {
+            self.line(&format!("\"{}\",", crate::bits::hex(row)));
+        }
+        self.close(']');
+    }
+
+    /// Everything unknown, as it was read.
+    pub(super) fn unknown(&mut self, unknown: &Unknown) {
+        for (name, value) in unknown {
+            let text = value_text(value);
+            self.entry(name, &text, "");
+        }
+    }
+
+    /// Begins a structure or list; without name inside a list and at the top.
+    pub(super) fn open(&mut self, name: &str, bracket: char) {
+        let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
+        self.line(&head);
+        self.depth += 1;
+    }
+
+    /// Ends a structure or list.
+    pub(super) fn close(&mut self, bracket: char) {
+        self.depth = self.depth.saturating_sub(1);
+        let comma = if self.depth == 0 { "" } else { "," };
+        self.line(&format!("{bracket}{comma}"));
+    }
+
+    /// The text.
+    pub(super) fn finish(self) -> String {
+        self.out
+    }
+
+    fn line(&mut self, text: &str) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.out, "{:indent$}{text}", "", indent = self.depth * 4);
+    }
+}
+
+/// A RON string.
+pub(super) fn quoted(text: &str) -> String {
+    ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
+}
+
+/// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.
+fn value_text(value: &Value) -> String {
+    let is_name = |text: &str| {
+        text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    match value {
+        Value::Map(map) => {
+            let named = map.iter().all(|(key, _)| matches!(key, Value::String(name) if is_name(name)));
+            let entries: Vec<String> = map
+                .iter()
+                .map(|(key, value)| match key {
+                    Value::String(name) if named => format!("{name}: {}", value_text(value)),
+                    key => format!("{}: {}", value_text(key), value_text(value)),
+                })
+                .collect();
+            let (open, close) = if named && !entries.is_empty() { ('(', ')') } else { ('{', '}') };
+            format!("{open}{}{close}", entries.join(", "))
+        }
+        Value::Seq(values) => format!("[{}]", values.iter().map(value_text).collect::<Vec<_>>().join(", ")),
+        Value::Option(Some(inner)) => format!("Some({})", value_text(inner)),
+        other => ron::to_string(other).unwrap_or_else(|_| "()".to_owned()),
+    }
+}
