@@ -17,3 +17,7 @@ pub mod store;
 
 // floor 4: what one does with a device
 pub mod device;
+pub mod worker;
+
+// floor 5: what the program can do, without drawing
+pub mod app;

@@ -73,14 +73,6 @@ pub enum Error {
         /// The greatest position.
         last: u64,
     },
-    /// There is no data field of that number.
-    #[error("data field {field} does not exist; the encoder has {fields}")]
-    NoSuchField {
-        /// What was asked for.
-        field: u8,
-        /// How many there are.
-        fields: u8,
-    },
     /// Bytes beyond the end of a data field.
     #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
     OutOfField {

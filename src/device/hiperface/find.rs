@@ -4,6 +4,7 @@
 //! probes with 52h, never with 50h, which would take codes out of an encoder's queue. Broadcast comes last and only when
 //! the user says that one encoder is connected, because several would answer at once.
 
+use std::fmt;
 use std::time::Duration;
 
 use super::master::Trouble;
@@ -48,6 +49,16 @@ pub enum Attempt {
         /// How.
         format: CharacterFormat,
     },
+}
+
+impl fmt::Display for Attempt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Attempt::Listening => f.write_str("listening"),
+            Attempt::DefaultWindow => f.write_str("waiting for power-on"),
+            Attempt::Probing { address, format } => write!(f, "{address:02X}h at {format}"),
+        }
+    }
 }
 
 /// How a search ended.

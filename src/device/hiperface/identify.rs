@@ -2,8 +2,8 @@
 
 use super::{Error, Master, read_range};
 use crate::protocol::hiperface::{
-    CodeNumber, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, Reply, Request, SerialLabel,
-    StatusCode, TypeLabel,
+    CodeNumber, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply, Request,
+    SerialLabel, StatusCode, TypeLabel,
 };
 
 /// An encoder as it presents itself.
@@ -65,7 +65,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
     let geometry =
         geometry.or_else(|| extended.and_then(|label| label.geometry)).or_else(|| row.and_then(|row| row.geometry));
     let kit = row.filter(|_| label.encoder_type != TypeLabel::EXTENDED).map(|row| row.kit);
-    let address = master.station().address;
+    let address = read_address(master)?;
     Ok(Identity { address, label, serial, memory, name, geometry, kit, extended_label })
 }
 
@@ -78,6 +78,22 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
         Reply::TypeLabel(label) => Ok(label),
         other => Err(Error::Unexpected(format!("type label: {other:?}"))),
     }
+}
+
+/// Reads the stored interface settings.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
+    Ok(read_type_label(master)?.settings)
+}
+
+/// Asks who answers at the session's address: after a broadcast that is the encoder's own.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
+    master.ask_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
 /// Reads data field FFh whole: 4Ch for its size, then 4Ah with code 0.

@@ -52,6 +52,8 @@ pub(super) struct Timed {
     pub(super) reply: Reply,
     /// The falling edge of the start bit of the reply's address.
     pub(super) at: Moment,
+    /// The address it came from.
+    pub(super) sender: u8,
 }
 
 impl<'a> Master<'a> {
@@ -250,7 +252,7 @@ impl<'a> Master<'a> {
             self.collect_codes()?;
         }
         match answered.answer {
-            Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at }),
+            Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at, sender: answered.sender }),
             Answer::Rejected { codes, .. } => Err(Error::Rejected { command: request.command(), codes }),
         }
     }

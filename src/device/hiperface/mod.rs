@@ -17,9 +17,9 @@ pub mod write;
 
 pub use error::Error;
 pub use fields::{read_all_fields, read_field, read_field_status, read_range};
-pub use identify::{Identity, identify, read_extended_label, read_status};
+pub use identify::{Identity, identify, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;
 pub use position::{PositionReading, ensure_standstill, read_analogue, read_counter, read_position};
 pub use reset::{change_line_for_now, reset};
-pub use save::{SaveOptions, save};
+pub use save::{SaveOptions, profile_of, save};
 pub use station::{Codes, Echo, PARAMETERS, Station};

@@ -32,11 +32,11 @@ pub fn save(
     // Neither is needed for a restore: an encoder that refuses them is saved all the same.
     let position = refused(read_position(master, identity.geometry).map(|reading| reading.raw))?;
     let counter = refused(read_counter(master))?;
-    Ok(profile(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
+    Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
 /// A profile of an encoder with these fields.
-pub(super) fn profile(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
+pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {
             serial_number: identity.serial.serial_number.clone(),

@@ -1,0 +1,202 @@
+//! Errors in words for a person: what happened, and what to do. The one place where it is done.
+
+use std::path::Path;
+
+use super::Text;
+use crate::device::hiperface::Error;
+use crate::device::hiperface::write::Interrupted;
+use crate::link::{LinkError, LinkErrorKind};
+use crate::profile::ProfileError;
+use crate::profile::hiperface::PlanError;
+use crate::protocol::hiperface::StatusCode;
+use crate::store::{FileError, FileProblem, StoreError};
+use crate::worker::{JobError, OpenError};
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![encoder(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotKept(error) => vec![Text::new("write.not_kept").with_text("why", file(error))],
+        JobError::Worn { used, cost, limit } => {
+            vec![Text::new("write.worn").with("used", used).with("cost", cost).with("limit", limit)]
+        }
+        JobError::Interrupted { interrupted, backup, planned } => interruption(interrupted, backup, *planned),
+    }
+}
+
+fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) -> Vec<Text> {
+    let done = interrupted.done.ops;
+    let mut texts = vec![match &interrupted.cause {
+        Error::Cancelled => Text::new("write.cancelled").with("done", done).with("planned", planned),
+        cause => {
+            let text = Text::new("write.interrupted").with("done", done).with("planned", planned);
+            text.with_text("cause", encoder(cause))
+        }
+    }];
+    let unlocked = interrupted.left_unlocked.iter();
+    texts.extend(unlocked.map(|field| Text::new("write.left_unlocked").with("field", field)));
+    texts.push(Text::new("write.backup").with("backup", backup.display()));
+    texts
+}
+
+/// An exchange with a HIPERFACE encoder that failed.
+pub fn encoder(error: &Error) -> Text {
+    match error {
+        Error::Link(error) => link(error),
+        Error::NoReply { address, command, tries, echo_heard } => {
+            let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
+            Text::new(id)
+                .with("address", format!("{address:02X}h"))
+                .with("command", command.row().name)
+                .with("tries", tries)
+        }
+        Error::Damaged { command, tries, cause } => {
+            Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries).with("why", cause)
+        }
+        Error::NeverSilent => Text::new("encoder.never_silent"),
+        Error::Rejected { command, codes } => {
+            let code_needed = codes.contains(&StatusCode::WRONG_CODE);
+            let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
+            let words: Vec<String> = codes.iter().map(ToString::to_string).collect();
+            Text::new(id).with("command", command.row().name).with("codes", words.join(", "))
+        }
+        Error::Unclear { command, cause } => {
+            Text::new("encoder.unclear").with("command", command.row().name).with_text("cause", encoder(cause))
+        }
+        Error::Cancelled => Text::new("encoder.cancelled"),
+        Error::Moving { readings } => {
+            let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
+            Text::new("encoder.moving").with("readings", words.join(", "))
+        }
+        Error::NotAKit { encoder } => Text::new("encoder.not_a_kit").with("encoder", encoder),
+        Error::PositionRange { wanted, last } => {
+            Text::new("encoder.position_range").with("wanted", wanted).with("last", last)
+        }
+        Error::OutOfField { field, address, count, size } => {
+            out_of_field(*field, size.saturating_sub(1), *address, *count)
+        }
+        Error::CodeUnknown { field, number } => code_unknown(*field, number),
+        Error::Changed { item } => Text::new("encoder.changed").with("item", item),
+        Error::NotVerified { item, expected, got } => {
+            Text::new("encoder.not_verified").with("item", item).with("expected", expected).with("got", got)
+        }
+        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+    }
+}
+
+/// A plan that cannot be made.
+pub fn plan(error: &PlanError) -> Text {
+    match error {
+        PlanError::OtherDevice { profile, device } => {
+            Text::new("plan.other_device").with("profile", profile).with("device", device)
+        }
+        PlanError::SizeFixed { field, profile, device } => {
+            Text::new("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
+        }
+        PlanError::Gap { field, missing } => Text::new("plan.gap").with("field", field).with("missing", missing),
+        PlanError::NoMemory { needed, free } => Text::new("plan.no_memory").with("needed", needed).with("free", free),
+        PlanError::WouldLose { field, code } => Text::new("plan.would_lose").with("field", field).with("code", code),
+        PlanError::NotNext { field, next } => Text::new("plan.not_next").with("field", field).with("next", next),
+        PlanError::NotLast { field, last } => Text::new("plan.not_last").with("field", field).with("last", last),
+        PlanError::NoSuchField { field, count: 0 } => Text::new("encoder.no_fields").with("field", field),
+        PlanError::NoSuchField { field, count } => {
+            Text::new("encoder.no_field").with("field", field).with("count", count).with("last", count - 1)
+        }
+        PlanError::WriteProtected { field } => Text::new("plan.write_protected").with("field", field),
+        PlanError::OutOfField { field, last, start, count } => out_of_field(*field, *last, *start, *count),
+        PlanError::CodeUnknown { field, code } => code_unknown(*field, code),
+    }
+}
+
+fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
+    Text::new("encoder.out_of_field").with("field", field).with("last", last).with("start", start).with("count", count)
+}
+
+fn code_unknown(field: u8, number: impl ToString) -> Text {
+    Text::new("encoder.code_unknown").with("field", field).with("number", number)
+}
+
+/// A wire.
+pub fn link(error: &LinkError) -> Text {
+    let target = &error.target;
+    match &error.kind {
+        LinkErrorKind::NotFound if target.contains(':') && !cfg!(windows) => {
+            Text::new("link.host_not_found").with("target", target)
+        }
+        LinkErrorKind::NotFound => Text::new("link.not_found").with("target", target),
+        LinkErrorKind::Permission { group: Some(group) } => {
+            Text::new("link.permission_group").with("target", target).with("group", group)
+        }
+        LinkErrorKind::Permission { group: None } => Text::new("link.permission").with("target", target),
+        LinkErrorKind::Busy => Text::new("link.busy").with("target", target),
+        LinkErrorKind::NotAPort => Text::new("link.not_a_port").with("target", target),
+        LinkErrorKind::Unreachable(why) => Text::new("link.unreachable").with("target", target).with("why", why),
+        LinkErrorKind::Lost => Text::new("link.lost").with("target", target),
+        LinkErrorKind::Format(format) => Text::new("link.format").with("target", target).with("format", format),
+        LinkErrorKind::NotRecorded(request) => {
+            Text::new("link.not_recorded").with("target", target).with("request", request)
+        }
+        LinkErrorKind::Other(why) => Text::new("link.other").with("target", target).with("why", why),
+    }
+}
+
+/// A link that cannot be opened.
+pub fn open(error: &OpenError) -> Text {
+    match error {
+        OpenError::Url(why) => Text::new("link.url").with("why", why),
+        OpenError::Sim(why) => Text::new("link.url").with("why", why),
+        OpenError::Link(error) => link(error),
+        OpenError::File(error) => file(error),
+        OpenError::Recording { path, cause } => Text::new("link.recording").with("path", path).with("why", cause),
+        OpenError::Store(error) => store(error),
+    }
+}
+
+/// A file.
+pub fn file(error: &FileError) -> Text {
+    let path = error.path.display();
+    match &error.problem {
+        FileProblem::NotFound => Text::new("file.not_found").with("path", path),
+        FileProblem::NoFolder => Text::new("file.no_folder").with("path", path),
+        FileProblem::NotFolder => Text::new("file.not_a_folder").with("path", path),
+        FileProblem::IsFolder => Text::new("file.is_folder").with("path", path),
+        FileProblem::Exists => Text::new("file.exists").with("path", path),
+        FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
+        FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),
+        FileProblem::DiskFull => Text::new("file.disk_full").with("path", path),
+        FileProblem::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
+        FileProblem::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
+        FileProblem::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),
+    }
+}
+
+/// The program's folders.
+pub fn store(error: &StoreError) -> Text {
+    match error {
+        StoreError::NoHome => Text::new("store.no_home"),
+        StoreError::File(error) => file(error),
+        StoreError::EncoderTypes { path, cause } => {
+            Text::new("store.encoder_types").with("path", path.display()).with("why", cause)
+        }
+    }
+}
+
+/// A profile in a file.
+pub fn profile(path: &Path, error: &ProfileError) -> Text {
+    let path = path.display();
+    match error {
+        ProfileError::Schema { found, known } => {
+            Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
+        }
+        ProfileError::Device(found) => {
+            Text::new("profile.device").with("path", path).with("found", found).with("known", "hiperface")
+        }
+        error => Text::new("profile.invalid").with("path", path).with("why", error),
+    }
+}
+
+/// What the logbook could not take.
+pub fn logbook(why: &str) -> Text {
+    Text::new("write.logbook").with("why", why)
+}

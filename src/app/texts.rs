@@ -1,0 +1,139 @@
+//! Texts in English and German from one table (`assets/texts.ron`).
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+/// A language of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// English; the command line always speaks it.
+    English,
+    /// German.
+    German,
+}
+
+/// A text of the table with its arguments: what is said, before it is known in which language.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Text {
+    id: &'static str,
+    arguments: Vec<(&'static str, Argument)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Argument {
+    Words(String),
+    Text(Text),
+}
+
+/// The table.
+#[derive(Debug)]
+pub struct Texts(BTreeMap<String, Row>);
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    en: String,
+    de: String,
+}
+
+static BUILT_IN: LazyLock<Texts> = LazyLock::new(|| {
+    // That it parses is tested; without it every text would be its own name.
+    Texts(ron::from_str(Texts::SOURCE).unwrap_or_default())
+});
+
+impl Text {
+    /// The text of that name in the table.
+    pub fn new(id: &'static str) -> Self {
+        Text { id, arguments: Vec::new() }
+    }
+
+    /// With words, a number or a name for `{name}`.
+    #[must_use]
+    pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
+        self.arguments.push((name, Argument::Words(value.to_string())));
+        self
+    }
+
+    /// With another text for `{name}`.
+    #[must_use]
+    pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
+        self.arguments.push((name, Argument::Text(text)));
+        self
+    }
+
+    /// The text's name in the table.
+    pub fn id(&self) -> &'static str {
+        self.id
+    }
+
+    /// The words in a language.
+    pub fn words(&self, language: Language) -> String {
+        let Some(row) = BUILT_IN.0.get(self.id) else { return self.id.to_owned() };
+        let template = match language {
+            Language::English => &row.en,
+            Language::German => &row.de,
+        };
+        // One pass over the template: an argument may contain braces of its own.
+        let mut words = String::new();
+        let mut rest = template.as_str();
+        while let Some((before, after)) = rest.split_once('{') {
+            words.push_str(before);
+            let Some((name, behind)) = after.split_once('}') else { break };
+            match self.arguments.iter().find(|(own, _)| *own == name) {
+                Some((_, Argument::Words(value))) => words.push_str(value),
+                Some((_, Argument::Text(text))) => words.push_str(&text.words(language)),
+                None => words.push_str(name),
+            }
+            rest = behind;
+        }
+        words.push_str(rest);
+        words
+    }
+}
+
+impl Texts {
+    /// The table's source.
+    pub const SOURCE: &'static str = include_str!("../../assets/texts.ron");
+
+    /// The table that ships with the program.
+    pub fn built_in() -> &'static Texts {
+        &BUILT_IN
+    }
+
+    /// Names of all texts.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn places(template: &str) -> Vec<&str> {
+        let mut places: Vec<&str> =
+            template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name).collect();
+        places.sort_unstable();
+        places.dedup();
+        places
+    }
+
+    #[test]
+    fn both_languages_say_the_same_things() {
+        let table: BTreeMap<String, Row> = ron::from_str(Texts::SOURCE).unwrap();
+        assert!(!table.is_empty());
+        for (id, row) in &table {
+            assert!(!row.en.is_empty() && !row.de.is_empty(), "{id}");
+            assert_eq!(places(&row.en), places(&row.de), "{id}");
+        }
+    }
+
+    #[test]
+    fn arguments_are_filled_in_once() {
+        let text = Text::new("link.busy").with("target", "{target}");
+        assert!(text.words(Language::English).starts_with("{target} is in use"));
+        assert!(text.words(Language::German).starts_with("{target} wird von"));
+    }
+}

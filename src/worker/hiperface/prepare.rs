@@ -1,0 +1,175 @@
+//! From a change that a user wants to a plan. Reads; writes nothing.
+
+use super::{Change, JobError, Prepared};
+use crate::device::hiperface::write::{read_guarded_fields, read_memory};
+use crate::device::hiperface::{
+    Error, Identity, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
+};
+use crate::profile::hiperface::{
+    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar, plan_create,
+    plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
+};
+use crate::protocol::hiperface::{CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
+use crate::store::Logbook;
+use crate::worker::{Progress, Session};
+
+pub(super) fn prepare(
+    session: &mut Session,
+    change: Change,
+    tell: &mut dyn FnMut(Progress),
+) -> Result<Prepared, JobError> {
+    let types = session.types.clone();
+    let mut master = session.master();
+    let identity = identify(&mut master, &types)?;
+    let mut prepared = Prepared {
+        plan: HiperfacePlan { base: Base::default(), ops: Vec::new() },
+        identity,
+        cycles_seen: None,
+        unchanged: 0,
+        missing: Vec::new(),
+        mounting_left: Vec::new(),
+        wanted_position: None,
+    };
+    match change {
+        Change::Restore { profile, options } => restore(&mut master, &mut prepared, &profile, options, tell)?,
+        Change::SetPosition { wanted, exact, synchronise, kit } => {
+            set_position(&mut master, &mut prepared, wanted, exact, synchronise, kit)?;
+        }
+        other => prepared.plan = single(&mut master, other)?,
+    }
+    prepared.cycles_seen = cycles_seen(session, &prepared.identity);
+    Ok(prepared)
+}
+
+fn cycles_seen(session: &Session, identity: &Identity) -> Option<u64> {
+    let path = session.store.logbook_path();
+    if !path.exists() {
+        return Some(0);
+    }
+    let key = super::commit::device_key(identity, session.is_virtual);
+    match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(&key)) {
+        Ok(cycles) => Some(cycles),
+        Err(error) => {
+            tracing::warn!("{error}");
+            None
+        }
+    }
+}
+
+fn restore(
+    master: &mut Master<'_>,
+    prepared: &mut Prepared,
+    profile: &HiperfaceProfile,
+    options: RestoreOptions,
+    tell: &mut dyn FnMut(Progress),
+) -> Result<(), JobError> {
+    let serial_number = prepared.identity.serial.serial_number.clone();
+    if profile.identity.serial_number != serial_number && !options.allow_other_device {
+        // Known before the fields are read.
+        return Err(
+            PlanError::OtherDevice { profile: profile.identity.serial_number.clone(), device: serial_number }.into()
+        );
+    }
+    let memory = read_memory(master)?;
+    let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+    let fields = read_all_fields(master, memory.fields, progress)?;
+    let restore = plan_restore(profile, &DeviceState { serial_number, memory, fields }, options)?;
+    prepared.plan = restore.plan;
+    prepared.unchanged = restore.unchanged;
+    prepared.missing = restore.missing;
+    prepared.mounting_left = restore.mounting_left;
+    Ok(())
+}
+
+fn set_position(
+    master: &mut Master<'_>,
+    prepared: &mut Prepared,
+    wanted: u32,
+    exact: bool,
+    synchronise: bool,
+    kit: bool,
+) -> Result<(), JobError> {
+    if synchronise && !prepared.identity.kit.unwrap_or(kit) {
+        return Err(Error::NotAKit { encoder: prepared.identity.name.clone() }.into());
+    }
+    let range = prepared.identity.geometry.and_then(Geometry::range);
+    if let Some(range) = range.filter(|range| u64::from(wanted) >= *range) {
+        return Err(Error::PositionRange { wanted: wanted.into(), last: range - 1 }.into());
+    }
+    let now = ensure_standstill(master, prepared.identity.geometry)?;
+    let to = if exact { wanted } else { nearest_in_phase(now, wanted, range) };
+    prepared.wanted_position = (to != wanted).then_some(wanted);
+    let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
+    // Synchronising aligns the tracks even where the position stays.
+    let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
+    prepared.plan = plan_scalar(fields, Scalar::Position(now), op);
+    Ok(())
+}
+
+fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobError> {
+    let memory = read_memory(master)?;
+    let plan = match change {
+        Change::Store { range, bytes } => {
+            let field = existing(master, memory, range.field)?;
+            if range.count.is_some_and(|count| count != bytes.len()) {
+                let (last, count) = (field.status.size().bytes() - 1, bytes.len());
+                return Err(PlanError::OutOfField { field: range.field, last, start: range.start, count }.into());
+            }
+            plan_store(memory.fields, &field, range.start, &bytes)?
+        }
+        Change::CreateField { number, status } => plan_create(memory, number, status)?,
+        Change::LockField { number, lock } => {
+            let field = existing(master, memory, number)?;
+            plan_redefine(memory, &field, field.status.with_write_enable(!lock))?
+        }
+        Change::ResizeField { number, size } => {
+            let field = existing(master, memory, number)?;
+            plan_redefine(memory, &field, field.status.with_size(size))?
+        }
+        Change::DeleteField { number } => {
+            let field = existing(master, memory, number)?;
+            plan_delete(memory, &field)?
+        }
+        Change::ChangeCode { number, new } => change_code(master, number, new)?,
+        Change::SetAddress(to) => {
+            let from = master.station().address;
+            let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
+            plan_scalar(memory.fields, Scalar::Address(from), op)
+        }
+        Change::Configure(to) => {
+            let from: LineSettings = read_settings(master)?;
+            plan_scalar(memory.fields, Scalar::Settings(from), (from != to).then_some(Op::Configure { from, to }))
+        }
+        Change::ClearCounter => {
+            let from = read_counter(master)?;
+            plan_scalar(memory.fields, Scalar::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
+        }
+        Change::IncrementCounter => {
+            let from = read_counter(master)?;
+            plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
+        }
+        Change::Restore { .. } | Change::SetPosition { .. } => {
+            return Err(Error::Unexpected("not a single change".to_owned()).into());
+        }
+    };
+    Ok(plan)
+}
+
+fn change_code(
+    master: &mut Master<'_>,
+    number: CodeNumber,
+    new: crate::protocol::hiperface::AccessCode,
+) -> Result<HiperfacePlan, JobError> {
+    let old = master.station().codes.get(number);
+    let (memory, fields) = read_guarded_fields(master, number)?;
+    let ops = if old == new { vec![] } else { vec![Op::ChangeCode { number, old, new }] };
+    Ok(HiperfacePlan { base: Base { field_count: memory.fields, fields, scalars: Vec::new() }, ops })
+}
+
+/// The field, which has to be there.
+fn existing(master: &mut Master<'_>, memory: FreeMemory, number: u8) -> Result<FieldImage, JobError> {
+    if number >= memory.fields {
+        return Err(PlanError::NoSuchField { field: number, count: memory.fields }.into());
+    }
+    Ok(read_field(master, number)?)
+}
