@@ -21,3 +21,4 @@ pub mod worker;
 
 // floor 5: what the program can do, without drawing
 pub mod app;
+pub mod cli;

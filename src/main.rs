@@ -1,3 +1,7 @@
 //! The program: arguments → a command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    encoder_studio::cli::run()
+}

@@ -18,13 +18,15 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Number of things compared: a byte of a data field counts one, and so does its status byte.
     pub compared: u64,
-    /// Items that only one side has, or that one side cannot read.
-    pub missing: Vec<String>,
+    /// Items that only the left side has, or that the right side cannot read.
+    pub only_left: Vec<String>,
+    /// Items that only the right side has, or that the left side cannot read.
+    pub only_right: Vec<String>,
 }
 
 impl Comparison {
-    /// Nothing differs and nothing is missing.
-    pub fn is_equal(&self) -> bool {
-        self.differences.is_empty() && self.missing.is_empty()
+    /// Items that only one side has.
+    pub fn missing(&self) -> Vec<String> {
+        self.only_left.iter().chain(&self.only_right).cloned().collect()
     }
 }

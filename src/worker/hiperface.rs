@@ -78,6 +78,13 @@ pub enum Change {
         /// Its status.
         status: DataFieldStatus,
     },
+    /// Give a field another status: protection, access code, or, for the last, size.
+    Redefine {
+        /// Its number.
+        number: u8,
+        /// Its status from then on; it exists.
+        status: DataFieldStatus,
+    },
     /// Write-protect a field, or make it writable.
     LockField {
         /// Its number.

@@ -16,7 +16,8 @@ pub fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
     for number in numbers {
         match (find(left, number), find(right, number)) {
             (Some(left), Some(right)) => compare_fields(&left, &right, &mut comparison),
-            _ => comparison.missing.push(whole(number)),
+            (Some(_), None) => comparison.only_left.push(whole(number)),
+            (None, _) => comparison.only_right.push(whole(number)),
         }
     }
     comparison
@@ -34,7 +35,8 @@ fn compare_fields(left: &FieldImage, right: &FieldImage, comparison: &mut Compar
     match (&left.bytes, &right.bytes) {
         (Some(a), Some(b)) => compare_bytes(left.number, a, b, comparison),
         (None, None) => {}
-        _ => comparison.missing.push(whole(left.number)),
+        (Some(_), None) => comparison.only_left.push(whole(left.number)),
+        (None, Some(_)) => comparison.only_right.push(whole(left.number)),
     }
 }
 
@@ -49,9 +51,11 @@ fn compare_bytes(number: u8, left: &[u8], right: &[u8], comparison: &mut Compari
             right: part(right),
         });
     }
-    let longest = left.len().max(right.len());
-    if longest > common {
-        comparison.missing.push(FieldRange::new(number, common, longest - common).to_string());
+    let rest = |side: &[u8]| FieldRange::new(number, common, side.len() - common).to_string();
+    if left.len() > common {
+        comparison.only_left.push(rest(left));
+    } else if right.len() > common {
+        comparison.only_right.push(rest(right));
     }
 }
 
@@ -91,7 +95,7 @@ mod tests {
         let items: Vec<(&str, &str, &str)> =
             comparison.differences.iter().map(|d| (d.item.as_str(), d.left.as_str(), d.right.as_str())).collect();
         assert_eq!(items, [("status:0", "C8", "88"), ("field:0@3+2", "0000", "0815"), ("field:0@15+1", "00", "01")]);
-        assert_eq!(comparison.missing, ["field:2"]);
+        assert_eq!(comparison.only_left, ["field:2"]);
         assert_eq!(comparison.compared, 1 + 16 + 1);
     }
 
@@ -101,6 +105,7 @@ mod tests {
             &[field(0, 0xC8, Some(&[0; 16])), field(1, 0xE8, Some(&[0; 16]))],
             &[field(0, 0xC9, Some(&[0; 32])), field(1, 0xE8, None)],
         );
-        assert_eq!(comparison.missing, ["field:0@16+16", "field:1"]);
+        assert_eq!(comparison.only_right, ["field:0@16+16"]);
+        assert_eq!(comparison.only_left, ["field:1"]);
     }
 }

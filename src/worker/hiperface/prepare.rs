@@ -118,6 +118,10 @@ fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobE
             plan_store(memory.fields, &field, range.start, &bytes)?
         }
         Change::CreateField { number, status } => plan_create(memory, number, status)?,
+        Change::Redefine { number, status } => {
+            let field = existing(master, memory, number)?;
+            plan_redefine(memory, &field, status)?
+        }
         Change::LockField { number, lock } => {
             let field = existing(master, memory, number)?;
             plan_redefine(memory, &field, field.status.with_write_enable(!lock))?

@@ -1,0 +1,175 @@
+//! `do`: actions that are more than writing a value.
+
+use serde_json::json;
+
+use super::args::{Action, Common, Do, parse_code};
+use super::inspect::codes_text;
+use super::output::{Lines, Output};
+use super::runner::{Runner, unexpected};
+use super::write::{change_and_show, out_of_range, parse_number, settings};
+use super::{Done, Failure, Result};
+use crate::device::hiperface::check::{Line, Step, Verdict};
+use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
+use crate::worker::{Change, HiperfaceJob, HiperfaceOutput};
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    let change = match (act.action, words.as_slice()) {
+        (Action::Reset, []) => return reset(common, output),
+        (Action::Check, []) => return check(common, output, false),
+        (Action::Check, ["restart"]) => return check(common, output, true),
+        (Action::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
+        (Action::SetPosition, [wanted]) => set_position(act, wanted, false)?,
+        (Action::Synchronise, [wanted]) => set_position(act, wanted, true)?,
+        (Action::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
+            Change::CreateField { number: field(number)?, status: new_status(rest)? }
+        }
+        (Action::ResizeField, [number, bytes]) => Change::ResizeField { number: field(number)?, size: size(bytes)? },
+        (Action::LockField, [number]) => Change::LockField { number: field(number)?, lock: true },
+        (Action::UnlockField, [number]) => Change::LockField { number: field(number)?, lock: false },
+        (Action::DeleteField, [number]) => Change::DeleteField { number: field(number)? },
+        (Action::ChangeCode, [number, new]) => change_code(number, new)?,
+        (Action::IncrementCounter, []) => Change::IncrementCounter,
+        (Action::ClearCounter, []) => Change::ClearCounter,
+        (Action::Reset | Action::IncrementCounter | Action::ClearCounter, _) => return Err(usage("no argument")),
+        (Action::Check, _) => return Err(usage("nothing or \"restart\"")),
+        (Action::ConfigureForNow, _) => return Err(usage("one settings byte, as in 0xE5")),
+        (Action::SetPosition | Action::Synchronise, _) => return Err(usage("one position")),
+        (Action::CreateField, _) => {
+            return Err(usage("NUMBER SIZE or NUMBER STATUS, then code=N, ce=0 or 1, we=0 or 1"));
+        }
+        (Action::ResizeField, _) => return Err(usage("NUMBER SIZE")),
+        (Action::LockField | Action::UnlockField | Action::DeleteField, _) => return Err(usage("one field number")),
+        (Action::ChangeCode, _) => return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX")),
+    };
+    let name = clap::ValueEnum::to_possible_value(&act.action).map(|value| value.get_name().to_owned());
+    change_and_show(common, output, change, &act.consent, &name.unwrap_or_default())
+}
+
+fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
+    let wanted = u32::try_from(number).map_err(|_| out_of_range("position", text, 0, u32::MAX.into()))?;
+    Ok(Change::SetPosition { wanted, exact: act.exact, synchronise, kit: act.kit })
+}
+
+fn change_code(number: &str, new: &str) -> Result<Change> {
+    let number =
+        parse_number(number).ok_or_else(|| Failure::Usage(format!("{number:?} is not a number"))).and_then(|n| {
+            u8::try_from(n).ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("access code", number, 0, 3))
+        })?;
+    // The message does not repeat what may be a code.
+    let new = parse_code(new).ok_or_else(|| Failure::Usage("the new code is two hex digits".to_owned()))?;
+    Ok(Change::ChangeCode { number, new })
+}
+
+fn field(text: &str) -> Result<u8> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a field number")))?;
+    u8::try_from(number).ok().filter(|n| *n < 0xFF).ok_or_else(|| out_of_range("data field", text, 0, 254))
+}
+
+fn size(text: &str) -> Result<FieldSize> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a size")))?;
+    usize::try_from(number)
+        .ok()
+        .and_then(FieldSize::from_bytes)
+        .ok_or_else(|| Failure::Failed(vec![format!("size {text}: a data field has 16 to 128 bytes, in steps of 16.")]))
+}
+
+/// `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. A field is writable and needs its code unless told otherwise.
+fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
+    let [first, options @ ..] = words else { return Err(Failure::Usage("a size is missing".to_owned())) };
+    let is_hex = first.starts_with("0x") || first.starts_with("0X");
+    let number =
+        parse_number(first).ok_or_else(|| Failure::Usage(format!("{first:?} is not a size or a status byte")))?;
+    let mut status = match u8::try_from(number) {
+        Ok(byte) if is_hex && DataFieldStatus::from_byte(byte).exists() => DataFieldStatus::from_byte(byte),
+        _ => DataFieldStatus::new(size(first)?, CodeNumber::ZERO, true),
+    };
+    let (mut code, mut required, mut writable) = (status.code(), status.code_required(), status.is_writable());
+    for option in options {
+        match option.split_once('=') {
+            Some(("code", value)) => {
+                code = value.parse().ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("code", value, 0, 3))?;
+            }
+            Some(("ce", value)) => required = flag("ce", value)?,
+            Some(("we", value)) => writable = flag("we", value)?,
+            _ => return Err(Failure::Usage(format!("{option:?} is not code=N, ce=0, ce=1, we=0 or we=1"))),
+        }
+    }
+    status = DataFieldStatus::new(status.size(), code, required).with_write_enable(writable);
+    Ok(status)
+}
+
+fn flag(name: &str, value: &str) -> Result<bool> {
+    match value {
+        "0" => Ok(false),
+        "1" => Ok(true),
+        _ => Err(Failure::Usage(format!("{name}={value}: 0 or 1"))),
+    }
+}
+
+fn reset(common: &Common, output: &Output) -> Result {
+    match Runner::open(common)?.run(HiperfaceJob::Reset)? {
+        HiperfaceOutput::Reset(codes) => {
+            let list: Vec<u8> = codes.iter().map(|code| code.byte()).collect();
+            output.show(&json!({"done": "reset", "codes": list}), &format!("restarted: {}", codes_text(&codes)))?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
+    let settings = settings(value)?;
+    match Runner::open(common)?.run(HiperfaceJob::ConfigureForNow(settings))? {
+        HiperfaceOutput::Configured => {
+            let text = format!("until the next restart: {settings}\n");
+            output.show(&json!({"done": "configure-for-now", "settings": settings.byte()}), &text)?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn check(common: &Common, output: &Output, restart: bool) -> Result {
+    let lines = match Runner::open(common)?.run(HiperfaceJob::Check { restart })? {
+        HiperfaceOutput::Check(lines) => lines,
+        other => return Err(unexpected(&other)),
+    };
+    let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
+    let list: Vec<_> = lines
+        .iter()
+        .map(|line| json!({"step": step(line.step), "verdict": verdict(line.verdict), "findings": line.findings}))
+        .collect();
+    output.show(&json!({"done": "check", "ok": good, "steps": list}), &check_text(&lines))?;
+    if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
+}
+
+fn check_text(lines: &[Line]) -> String {
+    let mut text = Lines::default();
+    for line in lines {
+        let findings = if line.findings.is_empty() { "–".to_owned() } else { line.findings.join("; ") };
+        text.add(step(line.step), format!("{:9}  {findings}", verdict(line.verdict)));
+    }
+    text.text()
+}
+
+fn step(step: Step) -> &'static str {
+    match step {
+        Step::Restart => "restart",
+        Step::Status => "status",
+        Step::Identity => "identity",
+        Step::Position => "position",
+        Step::Limits => "limits",
+        Step::DataFields => "data fields",
+    }
+}
+
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Good => "good",
+        Verdict::Attention => "attention",
+        Verdict::Bad => "bad",
+    }
+}

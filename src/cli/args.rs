@@ -1,0 +1,272 @@
+//! What can be written on the command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::link::LinkUrl;
+use crate::profile::hiperface::Item;
+use crate::protocol::hiperface::{AccessCode, CodeNumber};
+
+/// Configure position encoders at a desk: read, compare, write, verify, save and restore.
+#[derive(Parser)]
+#[command(name = "encoder-studio", version, subcommand_required = true, arg_required_else_help = true)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    pub(super) common: Common,
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Args)]
+pub(super) struct Common {
+    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT or replay:FILE, with ?name=value&…
+    #[arg(long, global = true, value_name = "URL")]
+    pub(super) link: Option<LinkUrl>,
+    /// Print JSON.
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    /// An access code other than 55h, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
+    #[arg(long = "code", global = true, value_name = "N=HEX")]
+    pub(super) codes: Vec<Code>,
+    /// Record every frame into a file that replay: plays back; access codes are masked.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub(super) trace: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// Serial ports on this machine.
+    Ports,
+    /// Every address, speed and parity that answers.
+    Find(Find),
+    /// Who is there.
+    Identify(Device),
+    /// Errors and warnings, decoded; reads the whole error queue.
+    Status(Device),
+    /// The position.
+    Position(Position),
+    /// One value: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    Read(Read),
+    /// Read everything that can be restored, and what identifies the device.
+    Save(Save),
+    /// What differs, field by field.
+    Diff(Diff),
+    /// Read back and compare; changes nothing.
+    Verify(Verify),
+    /// Make the device as the profile says.
+    Restore(Restore),
+    /// Write one value.
+    Write(Write),
+    /// reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, delete-field,
+    /// change-code, increment-counter, clear-counter, configure-for-now.
+    Do(Do),
+    /// Explain captured bytes, offline.
+    Decode(Decode),
+    /// Be a device, on a pseudo-terminal or a TCP port.
+    Simulate(Simulate),
+}
+
+#[derive(Args)]
+pub(super) struct Device {
+    pub(super) device: DeviceKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum DeviceKind {
+    /// HIPERFACE motor-feedback encoder.
+    Hiperface,
+}
+
+#[derive(Args)]
+pub(super) struct Find {
+    pub(super) device: DeviceKind,
+    /// Exactly one encoder is connected: also ask by broadcast.
+    #[arg(long)]
+    pub(super) one_encoder: bool,
+    /// Wait so long for the encoder to be switched off and on, and ask within its default window.
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) power_cycle: Option<u64>,
+}
+
+#[derive(Args)]
+pub(super) struct Position {
+    pub(super) device: DeviceKind,
+    /// Number of lines.
+    #[arg(long, default_value_t = 1)]
+    pub(super) count: u64,
+    /// Time between two readings in milliseconds; 0: as fast as the line allows.
+    #[arg(long, default_value_t = 100, value_name = "MS")]
+    pub(super) interval: u64,
+}
+
+#[derive(Args)]
+pub(super) struct Read {
+    pub(super) device: DeviceKind,
+    pub(super) item: Item,
+}
+
+#[derive(Args)]
+pub(super) struct Save {
+    pub(super) device: DeviceKind,
+    /// The profile to write.
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    pub(super) file: PathBuf,
+    /// Fail when a data field cannot be read because its access code is not known.
+    #[arg(long)]
+    pub(super) complete: bool,
+}
+
+#[derive(Args)]
+pub(super) struct Diff {
+    pub(super) left: PathBuf,
+    /// Another profile; without it, --link.
+    pub(super) right: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(super) struct Verify {
+    pub(super) file: PathBuf,
+}
+
+#[derive(Args)]
+pub(super) struct Restore {
+    pub(super) file: PathBuf,
+    /// Print exactly the operations that would be carried out; write nothing.
+    #[arg(long)]
+    pub(super) dry_run: bool,
+    #[command(flatten)]
+    pub(super) consent: Consenting,
+    /// The profile may be of another serial number.
+    #[arg(long)]
+    pub(super) allow_other_device: bool,
+    /// Also restore values of the mounting onto another serial number.
+    #[arg(long)]
+    pub(super) with_mounting: bool,
+    /// Delete and create again where a field has another size and is not the last.
+    #[arg(long)]
+    pub(super) recreate: bool,
+}
+
+#[derive(Args)]
+pub(super) struct Consenting {
+    /// Write without asking.
+    #[arg(long)]
+    pub(super) yes: bool,
+    /// Write although the device counts as worn.
+    #[arg(long)]
+    pub(super) force_wear: bool,
+}
+
+#[derive(Args)]
+pub(super) struct Write {
+    pub(super) device: DeviceKind,
+    pub(super) item: Item,
+    /// A number (decimal or 0x), or hex bytes for a field.
+    #[arg(allow_hyphen_values = true)]
+    pub(super) value: String,
+    #[command(flatten)]
+    pub(super) consent: Consenting,
+}
+
+#[derive(Args)]
+pub(super) struct Do {
+    pub(super) device: DeviceKind,
+    pub(super) action: Action,
+    #[arg(allow_negative_numbers = true)]
+    pub(super) arguments: Vec<String>,
+    #[command(flatten)]
+    pub(super) consent: Consenting,
+    /// set-position: exactly this value, also when it breaks the phase to the sine signal.
+    #[arg(long)]
+    pub(super) exact: bool,
+    /// synchronise: the encoder is a kit, where its type does not tell.
+    #[arg(long)]
+    pub(super) kit: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Action {
+    /// Restart the encoder and read its status.
+    Reset,
+    /// The start-up sequence with a verdict a line; "check restart" restarts first.
+    Check,
+    /// POSITION: the nearest value that keeps the phase to the sine signal.
+    SetPosition,
+    /// POSITION: for kit encoders, aligns the code tracks as well.
+    Synchronise,
+    /// NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1].
+    CreateField,
+    /// NUMBER SIZE: the last field only.
+    ResizeField,
+    /// NUMBER: write protect.
+    LockField,
+    /// NUMBER: make writable.
+    UnlockField,
+    /// NUMBER: the last field only.
+    DeleteField,
+    /// NUMBER HEX: the present code is given with --code.
+    ChangeCode,
+    /// Counter + 1.
+    IncrementCounter,
+    /// Counter to 0.
+    ClearCounter,
+    /// SETTINGS: interface settings until the next restart.
+    ConfigureForNow,
+}
+
+#[derive(Args)]
+pub(super) struct Decode {
+    pub(super) protocol: DeviceKind,
+    /// A frame as hex bytes; several frames as one argument each.
+    #[arg(required = true)]
+    pub(super) hex: Vec<String>,
+}
+
+#[derive(Args)]
+pub(super) struct Simulate {
+    pub(super) device: DeviceKind,
+    /// Make a pseudo-terminal and a symbolic link to it here.
+    #[arg(long, value_name = "PATH", required_unless_present = "listen", conflicts_with = "listen")]
+    pub(super) pty: Option<PathBuf>,
+    /// Listen at HOST:PORT.
+    #[arg(long, value_name = "ADDR")]
+    pub(super) listen: Option<String>,
+    /// Seed of the faults.
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
+    /// drop:P, flip:P, garbage:P, delay:MS, silent-after:N, die-in-store:N; comma separated.
+    #[arg(long, value_name = "SPEC")]
+    pub(super) fault: Option<String>,
+    /// A property of the virtual encoder, as after sim:? (model=sel37, rpm=60, echo=on …); repeatable.
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub(super) settings: Vec<String>,
+}
+
+/// An access code with its number.
+#[derive(Clone, Copy)]
+pub(super) struct Code {
+    pub(super) number: CodeNumber,
+    pub(super) code: AccessCode,
+}
+
+impl FromStr for Code {
+    type Err = String;
+
+    /// The message never repeats the text: it may be a code.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || "an access code is given as N=HEX with N from 0 to 3, as in 2=1A".to_owned();
+        let (number, code) = text.split_once('=').ok_or_else(form)?;
+        let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
+        Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
+    }
+}
+
+/// An access code: one or two hex digits, with or without `0x` or a final `h`.
+pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
+    match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
+        [byte] => Some(AccessCode::new(*byte)),
+        _ => None,
+    }
+}

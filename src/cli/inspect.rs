@@ -1,0 +1,270 @@
+//! Commands that only look: `ports`, `find`, `identify`, `status`, `position`, `read`.
+
+use std::time::{Duration, Instant};
+
+use serde_json::{Value as Json, json};
+
+use super::args::{Common, Find, Position};
+use super::output::{Lines, Output};
+use super::runner::{Ended, Runner, failed, unexpected};
+use super::{Done, Failure, Result};
+use crate::app::explain;
+use crate::bits::{hex, hex_compact};
+use crate::device::hiperface::find::{FindOptions, Findings, Found};
+use crate::device::hiperface::{Error, Identity, PositionReading};
+use crate::link;
+use crate::profile::hiperface::Item;
+use crate::protocol::hiperface::{EncoderTypes, LineSettings, StatusCode};
+use crate::worker::{HiperfaceJob, HiperfaceOutput, JobError, Value};
+
+pub(super) fn ports(output: &Output) -> Result {
+    let ports = link::ports().map_err(|error| failed(&explain::link(&error)))?;
+    let list: Vec<Json> = ports
+        .iter()
+        .map(|port| json!({"path": port.path, "description": port.description, "serial_number": port.serial_number}))
+        .collect();
+    let mut lines = Lines::default();
+    for port in &ports {
+        lines.add(&port.path, &port.description);
+    }
+    let text = if ports.is_empty() { "no serial ports\n".to_owned() } else { lines.text() };
+    output.show(&json!({ "ports": list }), &text)?;
+    Ok(Done::Well)
+}
+
+pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+    let mut runner = Runner::open(common)?;
+    let power_cycle = find.power_cycle.map(Duration::from_secs);
+    let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
+    match runner.run(HiperfaceJob::Find(options))? {
+        HiperfaceOutput::Found(Findings::Searched(found)) => {
+            show_found(output, &found)?;
+            if found.is_empty() {
+                return Err(Failure::Failed(vec![
+                    "No encoder answered. Check supply and wiring (A/B); with one encoder connected, try --one-encoder \
+                     and --power-cycle 30."
+                        .to_owned(),
+                ]));
+            }
+            Ok(Done::Well)
+        }
+        HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
+            "Somebody else talks on this line ({bytes} bytes in a second), so nothing was sent. Disconnect the drive or \
+             controller, then try again."
+        )])),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn show_found(output: &Output, found: &[Found]) -> Result<()> {
+    let types = EncoderTypes::built_in();
+    let name =
+        |found: &Found| types.find(found.label.encoder_type).map_or("unknown type".to_owned(), |row| row.name.clone());
+    let list: Vec<Json> = found
+        .iter()
+        .map(|found| {
+            json!({
+                "address": found.address,
+                "baud": found.format.baud.bits_per_second(),
+                "parity": found.format.parity.word(),
+                "encoder_type": found.label.encoder_type,
+                "encoder_name": name(found),
+                "stored_settings": found.label.settings.byte(),
+                "link_parameters": link_parameters(found),
+            })
+        })
+        .collect();
+    let text: String = found
+        .iter()
+        .map(|found| {
+            format!(
+                "address {:02X}h at {}  {}  stored: {}  ?{}\n",
+                found.address,
+                found.format,
+                name(found),
+                found.label.settings,
+                link_parameters(found)
+            )
+        })
+        .collect();
+    output.show(&json!({ "devices": list }), &text)
+}
+
+fn link_parameters(found: &Found) -> String {
+    format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
+}
+
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    let free = identity.memory.map(|memory| memory.bytes());
+    let fields = identity.memory.map(|memory| memory.fields);
+    let json = json!({
+        "device": "hiperface",
+        "address": identity.address,
+        "encoder_type": identity.label.encoder_type,
+        "encoder_name": identity.name,
+        "serial_number": identity.serial.serial_number,
+        "firmware_version": identity.serial.firmware_version,
+        "firmware_date": identity.serial.firmware_date,
+        "eeprom_bytes": identity.label.eeprom_bytes(),
+        "free_bytes": free,
+        "data_fields": fields,
+        "baud": runner.format.baud.bits_per_second(),
+        "parity": runner.format.parity.word(),
+        "stored_settings": identity.label.settings.byte(),
+        "options": identity.label.options,
+    });
+    output.show(&json, &identity_text(&identity, &runner))?;
+    Ok(Done::Well)
+}
+
+fn identity_text(identity: &Identity, runner: &Runner) -> String {
+    let unknown = || "not told by this encoder".to_owned();
+    let mut lines = Lines::default();
+    lines
+        .add("encoder", format!("{} (type {:02X}h)", identity.name, identity.label.encoder_type))
+        .add(
+            "resolution",
+            identity
+                .geometry
+                .map_or_else(|| "not known: add periods= and turns= to the link".to_owned(), |g| g.to_string()),
+        )
+        .add("serial number", &identity.serial.serial_number)
+        .add("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
+        .add("address", format!("{:02X}h", identity.address))
+        .add("talking at", runner.format)
+        .add("stored settings", identity.label.settings)
+        .add("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
+        .add("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
+        .add("data fields", identity.memory.map_or_else(unknown, |memory| memory.fields.to_string()))
+        .add("options", format!("{:02X}h", identity.label.options));
+    if let Some(label) = identity.extended() {
+        for parameter in &label.parameters {
+            let value = parameter.value;
+            lines.add(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
+        }
+        if !label.checksum_fits {
+            lines.add("extended label", "its checksum is not the XOR of its bytes");
+        }
+    }
+    lines.text()
+}
+
+fn identity(runner: &mut Runner) -> Result<Identity> {
+    match runner.run(HiperfaceJob::Identify)? {
+        HiperfaceOutput::Identity(identity) => Ok(identity),
+        other => Err(unexpected(&other)),
+    }
+}
+
+pub(super) fn status(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let codes = match runner.run(HiperfaceJob::Status)? {
+        HiperfaceOutput::Status(codes) => codes,
+        other => return Err(unexpected(&other)),
+    };
+    let (warnings, errors): (Vec<StatusCode>, Vec<StatusCode>) = codes.iter().partition(|code| code.is_warning());
+    output.show(
+        &json!({"ok": errors.is_empty(), "errors": code_list(&errors), "warnings": code_list(&warnings)}),
+        &codes_text(&codes),
+    )?;
+    Ok(Done::Well)
+}
+
+fn code_list(codes: &[StatusCode]) -> Vec<Json> {
+    codes.iter().map(|code| json!({"code": code.byte(), "text": code.text()})).collect()
+}
+
+/// Codes one a line, or that there are none.
+pub(super) fn codes_text(codes: &[StatusCode]) -> String {
+    if codes.is_empty() {
+        return "no errors or warnings\n".to_owned();
+    }
+    let kind = |code: &StatusCode| if code.is_warning() { "warning" } else { "error" };
+    codes.iter().map(|code| format!("{:7}  {code}\n", kind(code))).collect()
+}
+
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    if identity.geometry.is_none() {
+        output.remark(&format!(
+            "The resolution of encoder type {:02X}h is not known: add periods= and turns= to the link.",
+            identity.label.encoder_type
+        ));
+    }
+    let interval = Duration::from_millis(position.interval);
+    let mut next = Instant::now();
+    for line in 0..position.count {
+        if line > 0 {
+            next = (next + interval).max(Instant::now());
+            std::thread::sleep(next.saturating_duration_since(Instant::now()));
+        }
+        match runner.try_run(HiperfaceJob::Position(identity.geometry)) {
+            Ok(HiperfaceOutput::Position(reading)) => show_position(output, &reading)?,
+            Ok(other) => return Err(unexpected(&other)),
+            Err(Ended::Job(error)) if spoilt(&error) => show_no_position(output, &error)?,
+            Err(ended) => return Err(ended.into_failure()),
+        }
+    }
+    Ok(Done::Well)
+}
+
+/// The encoder is there and has no position to give at the moment.
+fn spoilt(error: &JobError) -> bool {
+    matches!(error, JobError::Device(Error::Rejected { codes, .. })
+        if codes.iter().any(|code| code.spoils_position()))
+}
+
+fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
+    let t = reading.at.since_start().as_secs_f64();
+    let place = reading.position;
+    let mut json = json!({
+        "t_s": t,
+        "raw": reading.raw,
+        "turns": place.and_then(|place| place.turns()),
+        "steps": place.and_then(|place| place.steps()),
+        "degrees": place.and_then(|place| place.degrees()),
+        "valid": reading.valid,
+    });
+    if let (Some(millimetres), Some(object)) = (place.and_then(|place| place.millimetres()), json.as_object_mut()) {
+        object.insert("millimetres".to_owned(), json!(millimetres));
+    }
+    let words = place.map_or_else(|| format!("{} steps", reading.raw), |place| place.to_string());
+    let flag = if reading.valid { "" } else { "  not valid" };
+    output.show(&json, &format!("{t:10.3} s  {:08X}h  {words}{flag}\n", reading.raw))
+}
+
+fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
+    output.remark(&explain::job(error).iter().map(|t| t.words(crate::app::Language::English)).collect::<String>());
+    let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
+    output.show(&json, "no position\n")
+}
+
+pub(super) fn read(common: &Common, output: &Output, item: &Item) -> Result {
+    let mut runner = Runner::open(common)?;
+    let value = match runner.run(HiperfaceJob::Read(*item))? {
+        HiperfaceOutput::Value(value) => value,
+        other => return Err(unexpected(&other)),
+    };
+    let (json, text) = match &value {
+        Value::Bytes(bytes) => {
+            (json!({"item": item.to_string(), "value": hex_compact(bytes)}), format!("{}\n", hex(bytes)))
+        }
+        Value::Number(number) => (json!({"item": item.to_string(), "value": number}), number_text(item, *number)),
+    };
+    output.show(&json, &text)?;
+    Ok(Done::Well)
+}
+
+fn number_text(item: &Item, number: i64) -> String {
+    match (item, u8::try_from(number)) {
+        (Item::Settings, Ok(byte)) => format!("0x{byte:02X}  {}\n", LineSettings::from_byte(byte)),
+        (Item::Status(_), Ok(byte)) => {
+            format!("0x{byte:02X}  {}\n", crate::protocol::hiperface::DataFieldStatus::from_byte(byte))
+        }
+        (Item::Address, Ok(byte)) => format!("0x{byte:02X}\n"),
+        _ => format!("{number}\n"),
+    }
+}

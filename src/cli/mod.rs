@@ -1,0 +1,90 @@
+//! The command line: the same jobs without a window. It parses, asks for consent and prints; the work is done by the
+//! worker.
+
+mod act;
+mod args;
+mod decode;
+mod inspect;
+mod output;
+mod profiles;
+mod runner;
+mod simulate;
+mod write;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use output::Output;
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Done {
+    /// As it should: status 0.
+    Well,
+    /// `diff` or `verify` found differences: status 3.
+    Differs,
+}
+
+/// Why a command did not do what it should.
+#[derive(Debug)]
+enum Failure {
+    /// It was called wrongly: status 2.
+    Usage(String),
+    /// The device or the operation failed: status 1. One to four lines.
+    Failed(Vec<String>),
+    /// Whoever reads our output has gone: nothing more to say.
+    NobodyReads,
+}
+
+type Result<T = Done> = std::result::Result<T, Failure>;
+
+/// Runs the command that the arguments of this process name.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let status = u8::try_from(error.exit_code()).unwrap_or(2);
+            // When help cannot be printed there is nobody to tell.
+            let _ = error.print();
+            return ExitCode::from(status);
+        }
+    };
+    output::log_to_stderr();
+    match dispatch(arguments) {
+        Ok(Done::Well) | Err(Failure::NobodyReads) => ExitCode::SUCCESS,
+        Ok(Done::Differs) => ExitCode::from(3),
+        Err(Failure::Failed(lines)) => {
+            for (at, line) in lines.iter().enumerate() {
+                eprintln!("{}{line}", if at == 0 { "error: " } else { "" });
+            }
+            ExitCode::FAILURE
+        }
+        Err(Failure::Usage(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(arguments: Arguments) -> Result {
+    let Arguments { common, command } = arguments;
+    let output = Output::new(common.json);
+    match command {
+        Command::Ports => inspect::ports(&output),
+        Command::Find(find) => inspect::find(&common, &output, &find),
+        Command::Identify(_) => inspect::identify(&common, &output),
+        Command::Status(_) => inspect::status(&common, &output),
+        Command::Position(position) => inspect::position(&common, &output, &position),
+        Command::Read(read) => inspect::read(&common, &output, &read.item),
+        Command::Save(save) => profiles::save(&common, &output, &save),
+        Command::Diff(diff) => profiles::diff(&common, &output, &diff),
+        Command::Verify(verify) => profiles::verify(&common, &output, &verify.file),
+        Command::Restore(restore) => profiles::restore(&common, &output, &restore),
+        Command::Write(write) => write::write(&common, &output, &write),
+        Command::Do(act) => act::act(&common, &output, &act),
+        Command::Decode(decode) => decode::decode(&output, &decode.hex),
+        Command::Simulate(simulate) => simulate::simulate(&simulate),
+    }
+}

@@ -1,0 +1,63 @@
+//! What is printed: text in columns, or one JSON object.
+
+use std::io::{self, IsTerminal, Write};
+
+use serde_json::Value;
+
+use super::Failure;
+
+/// Where results go.
+pub(super) struct Output {
+    json: bool,
+}
+
+/// Lines of label and value, aligned.
+#[derive(Default)]
+pub(super) struct Lines(Vec<(String, String)>);
+
+impl Lines {
+    pub(super) fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
+        self.0.push((label.into(), value.to_string()));
+        self
+    }
+
+    pub(super) fn text(&self) -> String {
+        let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
+        self.0.iter().map(|(label, value)| format!("{label:width$}  {value}\n")).collect()
+    }
+}
+
+impl Output {
+    pub(super) fn new(json: bool) -> Self {
+        Output { json }
+    }
+
+    /// Prints a result in the form that was asked for.
+    pub(super) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
+        let printed = if self.json { format!("{json}\n") } else { text.to_owned() };
+        let mut out = io::stdout().lock();
+        match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::NobodyReads),
+            Err(error) => Err(Failure::Failed(vec![format!("The result cannot be printed: {error}.")])),
+        }
+    }
+
+    /// Says something that is not a result.
+    pub(super) fn remark(&self, text: &str) {
+        eprintln!("{text}");
+    }
+}
+
+/// Warnings of the program itself; details with RUST_LOG-like verbosity are for the log file of the window.
+pub(super) fn log_to_stderr() {
+    let subscriber = tracing_subscriber::fmt()
+        .with_writer(io::stderr)
+        .with_ansi(io::stderr().is_terminal())
+        .with_target(false)
+        .without_time()
+        .with_max_level(tracing::Level::WARN)
+        .finish();
+    // A second subscriber cannot be set; the first one serves.
+    let _ = tracing::subscriber::set_global_default(subscriber);
+}

@@ -1,0 +1,177 @@
+//! Opening a link and running jobs on it: progress and codes to stderr, Ctrl-C to the worker.
+
+use std::fs::File;
+use std::io::{BufWriter, IsTerminal, Write, stderr};
+use std::path::Path;
+use std::sync::Arc;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::args::{Code, Common};
+use super::{Failure, Result};
+use crate::app::explain;
+use crate::app::{Language, Text};
+use crate::link::{write_entry, write_header};
+use crate::protocol::hiperface::StatusCode;
+use crate::store::Store;
+use crate::units::CharacterFormat;
+use crate::worker::{Event, HiperfaceJob, HiperfaceOutput, Job, JobError, JobOutput, Progress, Session, Worker, open};
+
+/// A session on its thread.
+pub(super) struct Runner {
+    worker: Worker,
+    /// How the line is set: for `identify`.
+    pub(super) format: CharacterFormat,
+}
+
+/// A job that ended early.
+pub(super) enum Ended {
+    /// With this error.
+    Job(Box<JobError>),
+    /// The worker itself is gone.
+    Worker,
+}
+
+impl Runner {
+    /// Opens the link of the command line.
+    pub(super) fn open(common: &Common) -> Result<Self> {
+        let Some(url) = &common.link else {
+            return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
+        };
+        let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
+        let mut session = open(url, store).map_err(|error| match error {
+            crate::worker::OpenError::Url(_) | crate::worker::OpenError::Sim(_) => {
+                Failure::Usage(explain::open(&error).words(Language::English))
+            }
+            error => failed(&explain::open(&error)),
+        })?;
+        for Code { number, code } in codes(common)? {
+            session.codes_mut().set(number, code);
+        }
+        if let Some(path) = &common.trace {
+            record(&mut session, path)?;
+        }
+        let format = session.station().format;
+        let cancel = session.cancel();
+        ctrlc::set_handler(move || {
+            if cancel.is_requested() {
+                std::process::exit(130);
+            }
+            cancel.request();
+        })
+        .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
+        let worker = Worker::spawn(session, Arc::new(|| ()))
+            .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
+        Ok(Runner { worker, format })
+    }
+
+    /// Runs a job to its end.
+    pub(super) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput> {
+        self.try_run(job).map_err(Ended::into_failure)
+    }
+
+    /// Runs a job to its end and lets the caller look at an error.
+    pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
+        let id = self.worker.submit(Job::Hiperface(job)).map_err(|_| Ended::Worker)?;
+        let bar = Bar::default();
+        loop {
+            match self.worker.events().recv().map_err(|_| Ended::Worker)? {
+                Event::Progress(of, progress) if of == id => bar.show(&progress),
+                Event::Codes(codes) => name_codes(&codes),
+                Event::Finished(of, output) if of == id => {
+                    let JobOutput::Hiperface(output) = *output;
+                    return Ok(output);
+                }
+                Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => return Err(Ended::Job(error)),
+                _ => {}
+            }
+        }
+    }
+}
+
+impl Ended {
+    pub(super) fn into_failure(self) -> Failure {
+        match self {
+            Ended::Job(error) => {
+                Failure::Failed(explain::job(&error).iter().map(|text| text.words(Language::English)).collect())
+            }
+            Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
+        }
+    }
+}
+
+/// A failure with one text.
+pub(super) fn failed(text: &Text) -> Failure {
+    Failure::Failed(vec![text.words(Language::English)])
+}
+
+/// A job gave a result of another kind: a defect of this program, told rather than hidden.
+pub(super) fn unexpected(output: &HiperfaceOutput) -> Failure {
+    Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
+}
+
+/// Every code that an encoder announced, on a line of its own.
+pub(super) fn name_codes(codes: &[StatusCode]) {
+    for code in codes {
+        let kind = if code.is_warning() { "warning" } else { "error" };
+        eprintln!("encoder {kind}: {code}");
+    }
+}
+
+/// Codes of the environment, then those of the command line.
+fn codes(common: &Common) -> Result<Vec<Code>> {
+    let mut codes = Vec::new();
+    if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
+        for code in text.split(',').filter(|code| !code.trim().is_empty()) {
+            codes.push(code.trim().parse().map_err(|why| Failure::Usage(format!("ENCODER_STUDIO_CODES: {why}")))?);
+        }
+    }
+    codes.extend(&common.codes);
+    Ok(codes)
+}
+
+fn record(session: &mut Session, path: &Path) -> Result<()> {
+    let cannot = |error: std::io::Error| {
+        Failure::Failed(vec![format!("{}: the trace cannot be recorded: {error}.", path.display())])
+    };
+    let mut file = BufWriter::new(File::create(path).map_err(cannot)?);
+    write_header(&mut file).map_err(cannot)?;
+    let name = path.display().to_string();
+    let mut works = true;
+    session.watch(move |entry| {
+        // Flushed at each frame, so that a trace is complete however the program ends.
+        if works && write_entry(&mut file, entry).and_then(|()| file.flush()).is_err() {
+            works = false;
+            tracing::warn!("{name}: the trace is incomplete, writing to it failed");
+        }
+    });
+    Ok(())
+}
+
+/// Progress on a terminal; silence elsewhere.
+struct Bar(ProgressBar);
+
+impl Default for Bar {
+    fn default() -> Self {
+        let target = if stderr().is_terminal() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+            bar.set_style(style);
+        }
+        Bar(bar)
+    }
+}
+
+impl Bar {
+    fn show(&self, progress: &Progress) {
+        self.0.set_length(progress.total);
+        self.0.set_position(progress.done);
+        self.0.set_message(progress.what.clone());
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

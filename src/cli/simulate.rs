@@ -1,0 +1,266 @@
+//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port. This is the one place that pumps
+//! a virtual device with the machine's clock.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use super::args::Simulate;
+use super::{Done, Failure, Result};
+use crate::link::{Clock, RealClock};
+use crate::sim::ByteDevice;
+use crate::sim::hiperface::{Bus, Config};
+use crate::units::{Baud, CharacterFormat};
+
+/// How long to wait for bytes when the device has nothing to say: also how late an interrupt is noticed.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+pub(super) fn simulate(arguments: &Simulate) -> Result {
+    let config = config(arguments)?;
+    let ended = Arc::new(AtomicBool::new(false));
+    let end = ended.clone();
+    ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
+        .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
+    let mut device = Device { bus: config.bus(), clock: RealClock::start() };
+    match (&arguments.pty, &arguments.listen) {
+        (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
+        (None, Some(address)) => listen(address, &mut device, &ended)?,
+        (None, None) => return Err(Failure::Usage("simulate needs --pty PATH or --listen ADDR".to_owned())),
+    }
+    Ok(Done::Well)
+}
+
+fn config(arguments: &Simulate) -> Result<Config> {
+    let mut pairs: Vec<(String, String)> = Vec::new();
+    for setting in &arguments.settings {
+        let (name, value) =
+            setting.split_once('=').ok_or_else(|| Failure::Usage(format!("{setting:?} is not NAME=VALUE")))?;
+        pairs.push((name.to_owned(), value.to_owned()));
+    }
+    pairs.extend(arguments.seed.map(|seed| ("seed".to_owned(), seed.to_string())));
+    pairs.extend(arguments.fault.clone().map(|fault| ("fault".to_owned(), fault)));
+    Config::from_pairs(&pairs).map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// A virtual device in real time.
+struct Device {
+    bus: Bus,
+    clock: RealClock,
+}
+
+/// What reading from a client gave.
+enum Heard {
+    Bytes(usize),
+    Nothing,
+    /// The client has gone.
+    End,
+}
+
+impl Device {
+    /// Serves one client until it goes or the program is interrupted. `baud` is what the client's side is set to, where
+    /// that can be seen.
+    fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
+        self.bus.connect(self.clock.now());
+        let mut buffer = [0; 512];
+        while !ended.load(Ordering::SeqCst) {
+            let now = self.clock.now();
+            let wait = self.bus.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
+            let heard = client.read(&mut buffer, wait)?;
+            let now = self.clock.now();
+            self.follow_format(client.baud());
+            match heard {
+                Heard::Bytes(count) => self.bus.on_bytes(now, buffer.get(..count).unwrap_or_default()),
+                Heard::Nothing => {}
+                Heard::End => return Ok(()),
+            }
+            let reply = self.bus.poll(self.clock.now());
+            if !reply.is_empty() {
+                client.write(&reply)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parity cannot be seen from this end, and over TCP not even the speed: there the client is taken to be right.
+    fn follow_format(&mut self, baud: Option<Baud>) {
+        let now = self.clock.now();
+        let active =
+            self.bus.encoder(0).and_then(|encoder| encoder.settings_at(now)).and_then(|settings| settings.format());
+        if let Some(active) = active {
+            let format = CharacterFormat { baud: baud.unwrap_or(active.baud), parity: active.parity };
+            self.bus.set_host_format(now, format);
+        }
+    }
+}
+
+trait Client {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard>;
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<()>;
+    fn baud(&self) -> Option<Baud>;
+}
+
+impl Client for TcpStream {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard> {
+        self.set_read_timeout(Some(wait.max(Duration::from_micros(100))))?;
+        match Read::read(self, buffer) {
+            Ok(0) => Ok(Heard::End),
+            Ok(count) => Ok(Heard::Bytes(count)),
+            Err(error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
+            {
+                Ok(Heard::Nothing)
+            }
+            Err(_) => Ok(Heard::End),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.write_all(bytes)
+    }
+
+    fn baud(&self) -> Option<Baud> {
+        None
+    }
+}
+
+fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> {
+    let cannot = |error: std::io::Error| Failure::Failed(vec![format!("{address}: cannot listen there: {error}.")]);
+    let listener = TcpListener::bind(address).map_err(cannot)?;
+    listener.set_nonblocking(true).map_err(cannot)?;
+    ready(&listener.local_addr().map_err(cannot)?.to_string())?;
+    while !ended.load(Ordering::SeqCst) {
+        match listener.accept() {
+            Ok((mut client, _)) => {
+                // A client that cannot be served is gone; the next one may come.
+                let _ = client
+                    .set_nonblocking(false)
+                    .and_then(|()| client.set_nodelay(true))
+                    .and_then(|()| device.serve(&mut client, ended));
+            }
+            Err(_) => std::thread::sleep(PATIENCE),
+        }
+    }
+    Ok(())
+}
+
+/// One line on stdout that scripts wait for.
+fn ready(place: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "ready hiperface {place}")
+        .and_then(|()| out.flush())
+        .map_err(|error| Failure::Failed(vec![format!("The result cannot be printed: {error}.")]))
+}
+
+#[cfg(unix)]
+mod terminal {
+    //! Pseudo-terminals. The other side is opened by the client alone: when it closes it, that is seen here as a
+    //! hang-up, and the virtual device's power comes back with the next client.
+
+    use std::io::{ErrorKind, Read, Write};
+    use std::os::unix::fs::symlink;
+    use std::path::{Path, PathBuf};
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::time::Duration;
+
+    use serialport::{SerialPort, TTYPort};
+
+    use super::{Client, Device, Failure, Heard, PATIENCE, Result, ready};
+    use crate::units::Baud;
+
+    pub(super) fn serve(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
+        let cannot = |what: String| Failure::Failed(vec![format!("{}: {what}.", path.display())]);
+        let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
+        let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
+        // Until a client sets another speed, the terminal has that of the encoder.
+        let _ = slave.set_baud_rate(9600);
+        drop(slave);
+        let _link = Link::make(path, Path::new(&name)).map_err(|error| cannot(error.to_string()))?;
+        ready(&path.display().to_string())?;
+        while !ended.load(Ordering::SeqCst) {
+            device.serve(&mut master, ended).map_err(|error| cannot(error.to_string()))?;
+            wait_for_client(&mut master, ended);
+        }
+        Ok(())
+    }
+
+    /// A symbolic link that goes with this program.
+    struct Link {
+        path: PathBuf,
+        target: PathBuf,
+    }
+
+    impl Link {
+        /// A link that points nowhere is left over from an earlier run and is replaced; anything else is not ours.
+        fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
+            if path.is_symlink() && !path.exists() {
+                std::fs::remove_file(path)?;
+            }
+            symlink(target, path)?;
+            Ok(Link { path: path.to_owned(), target: target.to_owned() })
+        }
+    }
+
+    impl Drop for Link {
+        fn drop(&mut self) {
+            if std::fs::read_link(&self.path).is_ok_and(|target| target == self.target) {
+                // It was ours; when it cannot be removed, the next run replaces it.
+                let _ = std::fs::remove_file(&self.path);
+            }
+        }
+    }
+
+    fn wait_for_client(master: &mut TTYPort, ended: &AtomicBool) {
+        while !ended.load(Ordering::SeqCst) {
+            match master.bytes_to_read() {
+                Ok(0) if hung_up(master) => std::thread::sleep(PATIENCE / 4),
+                _ => return,
+            }
+        }
+    }
+
+    /// No client has the other side open.
+    fn hung_up(master: &mut TTYPort) -> bool {
+        let _ = master.set_timeout(Duration::ZERO);
+        matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)
+    }
+
+    impl Client for TTYPort {
+        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard> {
+            self.set_timeout(wait)?;
+            match Read::read(self, buffer) {
+                Ok(0) => Ok(Heard::End),
+                Ok(count) => Ok(Heard::Bytes(count)),
+                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
+                    Ok(Heard::Nothing)
+                }
+                Err(_) => Ok(Heard::End),
+            }
+        }
+
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+            // A client that went away in between does not hear the reply, as with a real line.
+            let _ = self.write_all(bytes);
+            Ok(())
+        }
+
+        fn baud(&self) -> Option<Baud> {
+            self.baud_rate().ok().and_then(Baud::new)
+        }
+    }
+}
+
+#[cfg(not(unix))]
+mod terminal {
+    //! There are no pseudo-terminals here.
+
+    use std::path::Path;
+    use std::sync::atomic::AtomicBool;
+
+    use super::{Device, Failure, Result};
+
+    pub(super) fn serve(_path: &Path, _device: &mut Device, _ended: &AtomicBool) -> Result<()> {
+        Err(Failure::Usage("there are no pseudo-terminals on this system: use --listen ADDR".to_owned()))
+    }
+}
