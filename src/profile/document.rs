@@ -134,3 +134,101 @@ impl Document {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::hiperface::{FieldImage, FieldRange};
+    use crate::protocol::hiperface::DataFieldStatus;
+
+    const SHORT: &str = r#"(
+        schema: 1, device: "hiperface",
+        identity: (serial_number: "A1", encoder_type: 0x37),
+        interface: (address: 0x40, settings: 0xE4),
+        fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
+    )"#;
+
+    fn profile(text: &str) -> HiperfaceProfile {
+        let Body::Hiperface(profile) = Document::parse(text).unwrap().body;
+        profile
+    }
+
+    #[test]
+    fn a_profile_written_by_hand_is_read() {
+        let profile = profile(SHORT);
+        assert_eq!(profile.identity.serial_number, "A1");
+        let bytes = Some((0..16).collect());
+        let status = DataFieldStatus::from_byte(0xC8);
+        assert_eq!(profile.fields, [FieldImage { number: 0, status, bytes }]);
+        assert_eq!(profile.recorded.position, None);
+    }
+
+    #[test]
+    fn what_is_not_known_is_kept() {
+        let text = SHORT
+            .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
+            .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
+            .replace("number: 0,", "number: 0, label: \"motor\",");
+        let document = Document::parse(&text).unwrap();
+        let written = document.emit();
+        for kept in ["owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""] {
+            assert!(written.contains(kept), "{kept} is not in\n{written}");
+        }
+        assert_eq!(Document::parse(&written), Ok(document));
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let mut document = Document::parse(SHORT).unwrap();
+        let Body::Hiperface(profile) = &mut document.body;
+        profile.recorded.position = Some(0x000E_0531);
+        profile.identity.extended_label = Some(vec![0x53; 64]);
+        profile.identity.serial_number = "quote \" and \\ and ä".to_owned();
+        let mut offset = b"CO1".to_vec();
+        offset.resize(32, 0);
+        let status = DataFieldStatus::from_byte(0x89);
+        profile.fields.push(FieldImage { number: 1, status, bytes: Some(offset) });
+        let status = DataFieldStatus::from_byte(0xE8);
+        profile.fields.push(FieldImage { number: 2, status, bytes: None });
+        profile.mark_mounting();
+        assert_eq!(profile.mounting[0].range, FieldRange::new(1, 0, 16));
+        document.note = Some("two\nlines".to_owned());
+        assert_eq!(Document::parse(&document.emit()), Ok(document));
+    }
+
+    #[test]
+    fn a_wrong_profile_is_told_where() {
+        let cases = [
+            ("", "", "line 1, column 1: "),
+            ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
+            ("schema: 1,", "", "schema is missing"),
+            ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
+            ("\"hiperface\"", "\"biss\"", "device \"biss\"; this program knows \"hiperface\""),
+            ("\"A1\"", "17", "identity.serial_number must be a text"),
+            ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
+            ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
+            ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
+            ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
+            ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
+            ("fields: [", "mounting: [(item: \"counter\")], fields: [", "mounting[0].item: \"counter\" is not"),
+        ];
+        for (old, new, message) in cases {
+            let text = if old.is_empty() { String::new() } else { SHORT.replacen(old, new, 1) };
+            let error = Document::parse(&text).unwrap_err().to_string();
+            assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
+        }
+    }
+
+    #[test]
+    fn the_profiles_that_ship_are_read() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+            let document = Document::parse(&text).unwrap();
+            assert_eq!(document.emit(), text, "as the program writes it");
+            count += 1;
+        }
+        assert_eq!(count, 3);
+    }
+}

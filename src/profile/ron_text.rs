@@ -21,8 +21,14 @@ pub(super) struct Entries {
 impl Entries {
     /// Opens the structure `value`, which stands at `path`.
     pub(super) fn open(path: &str, value: Value) -> Result<Self, ProfileError> {
-        let Value::Map(map) = unwrapped(value) else {
-            return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+        let map = match unwrapped(value) {
+            Value::Map(map) => map,
+            // How the crate reads an empty structure: `()` and `( )`.
+            Value::Unit => ron::Map::new(),
+            Value::Seq(values) if values.is_empty() => ron::Map::new(),
+            _ => {
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+            }
         };
         let mut entries = BTreeMap::new();
         for (key, value) in map {
@@ -125,11 +131,13 @@ impl Writer {
         self.entry(name, &quoted(text), "");
     }
 
-    /// Bytes as a list of lines of sixteen.
+    /// Bytes as a list of lines of sixteen, with what they are as text behind them.
     pub(super) fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
-            self.line(&format!("\"{}\",", crate::bits::hex(row)));
+            let printable = |byte: &u8| if matches!(byte, b' '..=b'~') { char::from(*byte) } else { '.' };
+            let text: String = row.iter().map(printable).collect();
+            self.line(&format!("\"{}\", // {text}", crate::bits::hex(row)));
         }
         self.close(']');
     }
@@ -163,7 +171,7 @@ impl Writer {
 
     fn line(&mut self, text: &str) {
         // Writing to a String cannot fail.
-        let _ = writeln!(self.out, "{:indent$}{text}", "", indent = self.depth * 4);
+        let _ = writeln!(self.out, "{:indent$}{}", "", text.trim_end(), indent = self.depth * 4);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{FieldRange, Item};
 use crate::bits::parse_hex;
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Unknown, Writer};
+use crate::profile::ron_text::{Entries, Unknown, Writer, quoted};
 use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
@@ -148,7 +148,7 @@ impl HiperfaceProfile {
         writer.entry("settings", &format!("0x{:02X}", settings.byte()), &settings.to_string());
         writer.unknown(&self.interface.unknown);
         writer.close(')');
-        writer.comment("recorded, not restored");
+        writer.comment("recorded, neither compared nor restored; the position belongs to the mounting");
         writer.open("recorded", '(');
         if let Some(position) = self.recorded.position {
             writer.entry("position", &position.to_string(), "steps");
@@ -158,14 +158,15 @@ impl HiperfaceProfile {
         }
         writer.unknown(&self.recorded.unknown);
         writer.close(')');
-        writer.comment("belongs to the mounting: never restored onto another encoder by itself");
-        writer.open("mounting", '[');
-        for mark in &self.mounting {
-            let item = super::super::ron_text::quoted(&mark.range.to_string());
-            let meaning = super::super::ron_text::quoted(&mark.meaning);
-            writer.entry_in_list(&format!("(item: {item}, meaning: {meaning})"));
+        if !self.mounting.is_empty() {
+            writer.comment("belongs to the mounting: never restored onto another encoder by itself");
+            writer.open("mounting", '[');
+            for mark in &self.mounting {
+                let (item, meaning) = (quoted(&mark.range.to_string()), quoted(&mark.meaning));
+                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning})"));
+            }
+            writer.close(']');
         }
-        writer.close(']');
         writer.open("fields", '[');
         for field in &self.fields {
             let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);

@@ -1,0 +1,183 @@
+//! The rules of the house that the compiler does not know: floors point down, protocol code is pure, simulators do not
+//! know procedures, consent is given by a person, and every text is in the table.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Rooms directly under `src/` and their floors.
+const ROOMS: [(&str, u8); 13] = [
+    ("units", 1),
+    ("bits", 1),
+    ("protocol", 2),
+    ("profile", 2),
+    ("link", 3),
+    ("sim", 3),
+    ("store", 3),
+    ("device", 4),
+    ("worker", 4),
+    ("app", 5),
+    ("cli", 5),
+    ("lib", 6),
+    ("main", 6),
+];
+
+struct Source {
+    path: String,
+    room: String,
+    text: String,
+}
+
+impl Source {
+    /// Lines of code with their numbers: no comments, no tests.
+    fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        self.text
+            .lines()
+            .enumerate()
+            .take_while(|(_, line)| !line.starts_with("#[cfg(test)]"))
+            .map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
+    }
+
+    fn is_test(&self) -> bool {
+        self.path.contains("/tests") || self.path.contains("vectors")
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    collect(&root, &mut files);
+    files
+        .into_iter()
+        .map(|file| {
+            let inside = file.strip_prefix(&root).unwrap();
+            let room = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs").to_owned();
+            let path = format!("src/{}", inside.display());
+            Source { path, room, text: fs::read_to_string(&file).unwrap() }
+        })
+        .collect()
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+fn floor(room: &str) -> u8 {
+    let found = ROOMS.iter().find(|(name, _)| *name == room);
+    found.unwrap_or_else(|| panic!("src/{room} is no room of the house: see ARCHITECTURE.md")).1
+}
+
+/// Rooms named behind `crate::` in a line: `crate::link::Clock`, `crate::{bits, units}`.
+fn rooms_used(line: &str) -> Vec<&str> {
+    line.split("crate::")
+        .skip(1)
+        .flat_map(|rest| match rest.strip_prefix('{') {
+            Some(list) => list.split([',', '}']).map(str::trim).collect::<Vec<_>>(),
+            None => vec![rest],
+        })
+        .map(|path| path.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default())
+        .filter(|name| ROOMS.iter().any(|(room, _)| room == name))
+        .collect()
+}
+
+#[test]
+fn floors_point_down_only() {
+    for source in sources() {
+        let own = floor(&source.room);
+        for (line, code) in source.code() {
+            for used in rooms_used(code) {
+                assert!(floor(used) <= own, "{}:{line} reaches up to {used}", source.path);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_lower_floors_are_pure() {
+    const FORBIDDEN: [&str; 12] = [
+        "std::net",
+        "std::fs",
+        "std::io",
+        "std::thread",
+        "std::sync",
+        "std::process",
+        "Instant",
+        "SystemTime",
+        "crossbeam",
+        "serialport",
+        "egui",
+        "jiff",
+    ];
+    for source in sources().iter().filter(|source| floor(&source.room) <= 2 && !source.is_test()) {
+        for (line, code) in source.code() {
+            let found = FORBIDDEN.iter().find(|word| code.contains(**word));
+            assert!(found.is_none(), "{}:{line} uses {}", source.path, found.unwrap());
+        }
+    }
+}
+
+#[test]
+fn simulators_have_no_clock_and_know_no_procedure() {
+    for source in sources().iter().filter(|source| source.room == "sim") {
+        for (line, code) in source.code() {
+            for word in ["crate::device", "crate::link", "std::thread", "Instant", "SystemTime"] {
+                assert!(!code.contains(word), "{}:{line} uses {word}", source.path);
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_window_and_the_command_line_give_consent() {
+    for source in sources().iter().filter(|source| !source.is_test()) {
+        for (line, code) in source.code() {
+            let gives = code.contains("Consent::to(");
+            assert!(!gives || ["app", "cli"].contains(&source.room.as_str()), "{}:{line}", source.path);
+        }
+    }
+}
+
+#[test]
+fn every_module_says_what_it_is_and_none_is_long() {
+    for source in sources() {
+        assert!(source.text.starts_with("//!"), "{} does not open with //!", source.path);
+        let length = source.text.lines().count();
+        assert!(length <= 450, "{} has {length} lines: split it by concept", source.path);
+        for (at, line) in source.text.lines().enumerate() {
+            let open = ["TODO", "FIXME", "XXX"].iter().any(|word| line.contains(word)) && !line.contains('#');
+            assert!(!open, "{}:{} has a left-over without an issue's number", source.path, at + 1);
+        }
+    }
+}
+
+#[test]
+fn every_text_is_in_the_table_and_every_row_is_used() {
+    let known: BTreeSet<String> = encoder_studio::app::Texts::built_in().ids().map(ToOwned::to_owned).collect();
+    let mut used = BTreeSet::new();
+    for source in sources().iter().filter(|source| floor(&source.room) >= 5 && !source.path.ends_with("texts.rs")) {
+        for (line, code) in source.code() {
+            for word in code.split('"').skip(1).step_by(2) {
+                let looks_like_an_id = word.split_once('.').is_some_and(|(area, name)| {
+                    known.iter().any(|id| id.starts_with(&format!("{area}.")))
+                        && !name.is_empty()
+                        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+                });
+                if looks_like_an_id {
+                    assert!(known.contains(word), "{}:{line}: \"{word}\" is not in assets/texts.ron", source.path);
+                    used.insert(word.to_owned());
+                }
+            }
+        }
+    }
+    let unused: Vec<&String> = known.difference(&used).collect();
+    assert!(unused.is_empty(), "rows of assets/texts.ron that nothing uses: {unused:?}");
+}
