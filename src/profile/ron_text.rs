@@ -21,8 +21,14 @@ pub(super) struct Entries {
 impl Entries {
     /// Opens the structure `value`, which stands at `path`.
     pub(super) fn open(path: &str, value: Value) -> Result<Self, ProfileError> {
-        let Value::Map(map) = unwrapped(value) else {
-            return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+        let map = match unwrapped(value) {
+            Value::Map(map) => map,
+            // A structure without entries, (), reads like the unit or an empty list.
+            Value::Unit => ron::Map::default(),
+            Value::Seq(values) if values.is_empty() => ron::Map::default(),
+            _ => {
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+            }
         };
         let mut entries = BTreeMap::new();
         for (key, value) in map {
