@@ -1,6 +1,6 @@
 //! What is printed: text in columns, or one JSON object.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 
 use serde_json::Value;
 
@@ -53,7 +53,7 @@ impl Output {
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)
-        .with_ansi(io::stderr().is_terminal())
+        .with_ansi(false)
         .with_target(false)
         .without_time()
         .with_max_level(tracing::Level::WARN)
