@@ -38,6 +38,7 @@ impl Runner {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
+        let codes = codes(common)?;
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = open(url, store).map_err(|error| match error {
             crate::worker::OpenError::Url(_) | crate::worker::OpenError::Sim(_) => {
@@ -45,7 +46,7 @@ impl Runner {
             }
             error => failed(&explain::open(&error)),
         })?;
-        for Code { number, code } in codes(common)? {
+        for Code { number, code } in codes {
             session.codes_mut().set(number, code);
         }
         if let Some(path) = &common.trace {
@@ -126,7 +127,9 @@ fn codes(common: &Common) -> Result<Vec<Code>> {
             codes.push(code.trim().parse().map_err(|why| Failure::Usage(format!("ENCODER_STUDIO_CODES: {why}")))?);
         }
     }
-    codes.extend(&common.codes);
+    for code in &common.codes {
+        codes.push(code.parse().map_err(|why| Failure::Usage(format!("--code: {why}")))?);
+    }
     Ok(codes)
 }
 
