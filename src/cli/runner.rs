@@ -8,6 +8,7 @@ use std::sync::Arc;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
+use super::output::say;
 use super::{Failure, Result};
 use crate::app::explain;
 use crate::app::{Language, Text};
@@ -115,7 +116,7 @@ pub(super) fn unexpected(output: &HiperfaceOutput) -> Failure {
 pub(super) fn name_codes(codes: &[StatusCode]) {
     for code in codes {
         let kind = if code.is_warning() { "warning" } else { "error" };
-        eprintln!("encoder {kind}: {code}");
+        say(&format!("encoder {kind}: {code}\n"));
     }
 }
 
