@@ -199,7 +199,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     for line in 0..position.count {
         if line > 0 {
             next = (next + interval).max(Instant::now());
-            std::thread::sleep(next.saturating_duration_since(Instant::now()));
+            runner.pause(next.saturating_duration_since(Instant::now()))?;
         }
         match runner.try_run(HiperfaceJob::Position(identity.geometry)) {
             Ok(HiperfaceOutput::Position(reading)) => show_position(output, &reading)?,

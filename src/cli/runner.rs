@@ -4,7 +4,10 @@ use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
+use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
@@ -12,7 +15,8 @@ use super::output::say;
 use super::{Failure, Result};
 use crate::app::explain;
 use crate::app::{Language, Text};
-use crate::link::{write_entry, write_header};
+use crate::device::hiperface::Error;
+use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
@@ -21,6 +25,8 @@ use crate::worker::{Event, HiperfaceJob, HiperfaceOutput, Job, JobError, JobOutp
 /// A session on its thread.
 pub(super) struct Runner {
     worker: Worker,
+    /// Ctrl-C was pressed: kept apart from the worker's wish, which ends with each job.
+    interrupted: Arc<AtomicBool>,
     /// How the line is set: for `identify`.
     pub(super) format: CharacterFormat,
 }
@@ -29,6 +35,10 @@ pub(super) struct Runner {
 pub(super) enum Ended {
     /// With this error.
     Job(Box<JobError>),
+    /// Ctrl-C, between two jobs.
+    Interrupted,
+    /// The wire was found gone between two jobs.
+    Lost(LinkError),
     /// The worker itself is gone.
     Worker,
 }
@@ -55,8 +65,10 @@ impl Runner {
         }
         let format = session.station().format;
         let cancel = session.cancel();
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let pressed = interrupted.clone();
         ctrlc::set_handler(move || {
-            if cancel.is_requested() {
+            if pressed.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
             cancel.request();
@@ -64,7 +76,7 @@ impl Runner {
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
-        Ok(Runner { worker, format })
+        Ok(Runner { worker, interrupted, format })
     }
 
     /// Runs a job to its end.
@@ -74,7 +86,12 @@ impl Runner {
 
     /// Runs a job to its end and lets the caller look at an error.
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
+        self.check_interrupt()?;
         let id = self.worker.submit(Job::Hiperface(job)).map_err(|_| Ended::Worker)?;
+        if self.interrupted.load(Ordering::SeqCst) {
+            // It came while the job was handed over, which takes back an earlier wish.
+            self.worker.stop();
+        }
         let bar = Bar::default();
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
@@ -89,6 +106,27 @@ impl Runner {
             }
         }
     }
+
+    /// Waits between two jobs; ends early when the user wishes, or when the wire is gone.
+    pub(super) fn pause(&self, duration: Duration) -> Result<()> {
+        let end = Instant::now() + duration;
+        loop {
+            self.check_interrupt().map_err(Ended::into_failure)?;
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            match self.worker.events().recv_timeout(left.min(Duration::from_millis(50))) {
+                Ok(Event::Lost(error)) => return Err(Ended::Lost(error).into_failure()),
+                Ok(_) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Worker.into_failure()),
+            }
+        }
+    }
+
+    fn check_interrupt(&self) -> std::result::Result<(), Ended> {
+        if self.interrupted.load(Ordering::SeqCst) { Err(Ended::Interrupted) } else { Ok(()) }
+    }
 }
 
 impl Ended {
@@ -97,6 +135,8 @@ impl Ended {
             Ended::Job(error) => {
                 Failure::Failed(explain::job(&error).iter().map(|text| text.words(Language::English)).collect())
             }
+            Ended::Interrupted => failed(&explain::encoder(&Error::Cancelled)),
+            Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
     }
