@@ -27,6 +27,8 @@ pub(super) struct Runner {
     worker: Worker,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which ends with each job.
     interrupted: Arc<AtomicBool>,
+    /// Codes that the encoder announced on the way of the last job.
+    pub(super) codes_met: Vec<StatusCode>,
     /// How the line is set: for `identify`.
     pub(super) format: CharacterFormat,
 }
@@ -76,7 +78,7 @@ impl Runner {
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
-        Ok(Runner { worker, interrupted, format })
+        Ok(Runner { worker, interrupted, codes_met: Vec::new(), format })
     }
 
     /// Runs a job to its end.
@@ -86,6 +88,7 @@ impl Runner {
 
     /// Runs a job to its end and lets the caller look at an error.
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
+        self.codes_met.clear();
         self.check_interrupt()?;
         let id = self.worker.submit(Job::Hiperface(job)).map_err(|_| Ended::Worker)?;
         if self.interrupted.load(Ordering::SeqCst) {
@@ -96,7 +99,10 @@ impl Runner {
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
                 Event::Progress(of, progress) if of == id => bar.show(&progress),
-                Event::Codes(codes) => name_codes(&codes),
+                Event::Codes(codes) => {
+                    name_codes(&codes);
+                    self.codes_met.extend(codes);
+                }
                 Event::Finished(of, output) if of == id => {
                     let JobOutput::Hiperface(output) = *output;
                     return Ok(output);
