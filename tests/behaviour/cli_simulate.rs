@@ -157,9 +157,10 @@ fn after_a_reset_the_encoder_is_deaf_and_then_answers() {
     // On a busy machine a question may come too late to fall on deaf ears: then once more.
     for _ in 0..5 {
         let begun = Instant::now();
-        assert!(ask(&[0x40, 0x53, 0x13], 15).is_empty());
+        assert!(ask(&[0x40, 0x53, 0x13], 25).is_empty());
         let reply = ask(&[0x40, 0x50, 0x10], 20);
-        let asked_in_time = begun.elapsed() < Duration::from_millis(45);
+        // Or it runs together with the reset into one frame of the wrong length.
+        let asked_in_time = begun.elapsed() < Duration::from_millis(55) && reply != [0x40, 0x50, 0x0C, 0x1C];
         sleep(Duration::from_millis(200));
         assert_eq!(ask(&[0x40, 0x50, 0x10], 2000), [0x40, 0x50, 0x00, 0x10]);
         if asked_in_time {
