@@ -29,7 +29,8 @@ pub(super) struct Common {
     pub(super) json: bool,
     /// An access code other than 55h, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
-    pub(super) codes: Vec<Code>,
+    // Taken as text: a message about a wrong argument repeats it, and this may be a code.
+    pub(super) codes: Vec<String>,
     /// Record every frame into a file that replay: plays back; access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
@@ -228,7 +229,7 @@ pub(super) struct Decode {
 pub(super) struct Simulate {
     pub(super) device: DeviceKind,
     /// Make a pseudo-terminal and a symbolic link to it here.
-    #[arg(long, value_name = "PATH", required_unless_present = "listen", conflicts_with = "listen")]
+    #[arg(long, value_name = "PATH", conflicts_with = "listen")]
     pub(super) pty: Option<PathBuf>,
     /// Listen at HOST:PORT.
     #[arg(long, value_name = "ADDR")]

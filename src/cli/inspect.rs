@@ -194,15 +194,20 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
             identity.label.encoder_type
         ));
     }
+    // A code that the encoder announced while it was identified is about this position too.
+    let mut spoilt_before = runner.codes_met.iter().any(|code| code.spoils_position());
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
     for line in 0..position.count {
         if line > 0 {
             next = (next + interval).max(Instant::now());
-            std::thread::sleep(next.saturating_duration_since(Instant::now()));
+            runner.pause(next.saturating_duration_since(Instant::now()))?;
         }
         match runner.try_run(HiperfaceJob::Position(identity.geometry)) {
-            Ok(HiperfaceOutput::Position(reading)) => show_position(output, &reading)?,
+            Ok(HiperfaceOutput::Position(mut reading)) => {
+                reading.valid &= !std::mem::take(&mut spoilt_before);
+                show_position(output, &reading)?;
+            }
             Ok(other) => return Err(unexpected(&other)),
             Err(Ended::Job(error)) if spoilt(&error) => show_no_position(output, &error)?,
             Err(ended) => return Err(ended.into_failure()),

@@ -57,12 +57,12 @@ pub fn run() -> ExitCode {
         Ok(Done::Differs) => ExitCode::from(3),
         Err(Failure::Failed(lines)) => {
             for (at, line) in lines.iter().enumerate() {
-                eprintln!("{}{line}", if at == 0 { "error: " } else { "" });
+                output::say(&format!("{}{line}\n", if at == 0 { "error: " } else { "" }));
             }
             ExitCode::FAILURE
         }
         Err(Failure::Usage(message)) => {
-            eprintln!("error: {message}");
+            output::say(&format!("error: {message}\n"));
             ExitCode::from(2)
         }
     }

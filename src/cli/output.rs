@@ -1,6 +1,6 @@
 //! What is printed: text in columns, or one JSON object.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 
 use serde_json::Value;
 
@@ -45,17 +45,24 @@ impl Output {
 
     /// Says something that is not a result.
     pub(super) fn remark(&self, text: &str) {
-        eprintln!("{text}");
+        say(&format!("{text}\n"));
     }
+}
+
+/// Writes to stderr. When nobody reads that either, there is nobody to tell.
+pub(super) fn say(text: &str) {
+    let mut err = io::stderr().lock();
+    let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
 }
 
 /// Warnings of the program itself; details with RUST_LOG-like verbosity are for the log file of the window.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)
-        .with_ansi(io::stderr().is_terminal())
+        .with_ansi(false)
         .with_target(false)
         .without_time()
+        .log_internal_errors(false)
         .with_max_level(tracing::Level::WARN)
         .finish();
     // A second subscriber cannot be set; the first one serves.

@@ -20,11 +20,7 @@ use crate::worker::{Change, HiperfaceJob, HiperfaceOutput, SavedProfile};
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;
     let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
-    for (field, code) in &saved.locked {
-        output.remark(&format!(
-            "Data field {field} is saved without its bytes: access code {code} is another; give it with --code {code}=HEX."
-        ));
-    }
+    name_locked(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
     let document = Document::new(now(), Body::Hiperface(saved.profile));
@@ -46,6 +42,21 @@ fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>>
     }
 }
 
+fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
+    for (field, code) in &saved.locked {
+        output.remark(&format!(
+            "Data field {field} is {what}: access code {code} is another; give it with --code {code}=HEX."
+        ));
+    }
+}
+
+/// The encoder as it is, for a comparison.
+fn device(common: &Common, output: &Output) -> Result<HiperfaceProfile> {
+    let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
+    name_locked(output, &saved, "compared without its bytes");
+    Ok(saved.profile)
+}
+
 fn load(path: &Path) -> Result<HiperfaceProfile> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
     let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
@@ -60,7 +71,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     let left = load(&diff.left)?;
     let right = match &diff.right {
         Some(path) => load(path)?,
-        None => saved(&mut Runner::open(common)?, SaveOptions::default())?.profile,
+        None => device(common, output)?,
     };
     let comparison = compare(&left.fields, &right.fields);
     let missing = comparison.missing();
@@ -69,7 +80,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
 
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(file)?;
-    let device = saved(&mut Runner::open(common)?, SaveOptions::default())?.profile;
+    let device = device(common, output)?;
     let comparison = compare(&profile.fields, &device.fields);
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();

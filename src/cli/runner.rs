@@ -4,14 +4,19 @@ use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
+use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
+use super::output::say;
 use super::{Failure, Result};
 use crate::app::explain;
 use crate::app::{Language, Text};
-use crate::link::{write_entry, write_header};
+use crate::device::hiperface::Error;
+use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
@@ -20,6 +25,10 @@ use crate::worker::{Event, HiperfaceJob, HiperfaceOutput, Job, JobError, JobOutp
 /// A session on its thread.
 pub(super) struct Runner {
     worker: Worker,
+    /// Ctrl-C was pressed: kept apart from the worker's wish, which ends with each job.
+    interrupted: Arc<AtomicBool>,
+    /// Codes that the encoder announced on the way of the last job.
+    pub(super) codes_met: Vec<StatusCode>,
     /// How the line is set: for `identify`.
     pub(super) format: CharacterFormat,
 }
@@ -28,6 +37,10 @@ pub(super) struct Runner {
 pub(super) enum Ended {
     /// With this error.
     Job(Box<JobError>),
+    /// Ctrl-C, between two jobs.
+    Interrupted,
+    /// The wire was found gone between two jobs.
+    Lost(LinkError),
     /// The worker itself is gone.
     Worker,
 }
@@ -38,6 +51,7 @@ impl Runner {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
+        let codes = codes(common)?;
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = open(url, store).map_err(|error| match error {
             crate::worker::OpenError::Url(_) | crate::worker::OpenError::Sim(_) => {
@@ -45,7 +59,7 @@ impl Runner {
             }
             error => failed(&explain::open(&error)),
         })?;
-        for Code { number, code } in codes(common)? {
+        for Code { number, code } in codes {
             session.codes_mut().set(number, code);
         }
         if let Some(path) = &common.trace {
@@ -53,8 +67,10 @@ impl Runner {
         }
         let format = session.station().format;
         let cancel = session.cancel();
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let pressed = interrupted.clone();
         ctrlc::set_handler(move || {
-            if cancel.is_requested() {
+            if pressed.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
             cancel.request();
@@ -62,7 +78,7 @@ impl Runner {
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
-        Ok(Runner { worker, format })
+        Ok(Runner { worker, interrupted, codes_met: Vec::new(), format })
     }
 
     /// Runs a job to its end.
@@ -72,12 +88,21 @@ impl Runner {
 
     /// Runs a job to its end and lets the caller look at an error.
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
+        self.codes_met.clear();
+        self.check_interrupt()?;
         let id = self.worker.submit(Job::Hiperface(job)).map_err(|_| Ended::Worker)?;
+        if self.interrupted.load(Ordering::SeqCst) {
+            // It came while the job was handed over, which takes back an earlier wish.
+            self.worker.stop();
+        }
         let bar = Bar::default();
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
                 Event::Progress(of, progress) if of == id => bar.show(&progress),
-                Event::Codes(codes) => name_codes(&codes),
+                Event::Codes(codes) => {
+                    name_codes(&codes);
+                    self.codes_met.extend(codes);
+                }
                 Event::Finished(of, output) if of == id => {
                     let JobOutput::Hiperface(output) = *output;
                     return Ok(output);
@@ -87,6 +112,27 @@ impl Runner {
             }
         }
     }
+
+    /// Waits between two jobs; ends early when the user wishes, or when the wire is gone.
+    pub(super) fn pause(&self, duration: Duration) -> Result<()> {
+        let end = Instant::now() + duration;
+        loop {
+            self.check_interrupt().map_err(Ended::into_failure)?;
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            match self.worker.events().recv_timeout(left.min(Duration::from_millis(50))) {
+                Ok(Event::Lost(error)) => return Err(Ended::Lost(error).into_failure()),
+                Ok(_) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Worker.into_failure()),
+            }
+        }
+    }
+
+    fn check_interrupt(&self) -> std::result::Result<(), Ended> {
+        if self.interrupted.load(Ordering::SeqCst) { Err(Ended::Interrupted) } else { Ok(()) }
+    }
 }
 
 impl Ended {
@@ -95,6 +141,8 @@ impl Ended {
             Ended::Job(error) => {
                 Failure::Failed(explain::job(&error).iter().map(|text| text.words(Language::English)).collect())
             }
+            Ended::Interrupted => failed(&explain::encoder(&Error::Cancelled)),
+            Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
     }
@@ -114,7 +162,7 @@ pub(super) fn unexpected(output: &HiperfaceOutput) -> Failure {
 pub(super) fn name_codes(codes: &[StatusCode]) {
     for code in codes {
         let kind = if code.is_warning() { "warning" } else { "error" };
-        eprintln!("encoder {kind}: {code}");
+        say(&format!("encoder {kind}: {code}\n"));
     }
 }
 
@@ -126,7 +174,9 @@ fn codes(common: &Common) -> Result<Vec<Code>> {
             codes.push(code.trim().parse().map_err(|why| Failure::Usage(format!("ENCODER_STUDIO_CODES: {why}")))?);
         }
     }
-    codes.extend(&common.codes);
+    for code in &common.codes {
+        codes.push(code.parse().map_err(|why| Failure::Usage(format!("--code: {why}")))?);
+    }
     Ok(codes)
 }
 

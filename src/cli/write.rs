@@ -1,11 +1,11 @@
 //! `write`, and what every writing command shares: the plan in words, consent, carrying it out.
 
-use std::io::{IsTerminal, Write as _, stderr, stdin};
+use std::io::{IsTerminal, stderr, stdin};
 
 use serde_json::{Value as Json, json};
 
 use super::args::{Common, Consenting, Write};
-use super::output::{Lines, Output};
+use super::output::{Lines, Output, say};
 use super::runner::{Runner, unexpected};
 use super::{Done, Failure, Result};
 use crate::app::{Language, explain};
@@ -175,11 +175,10 @@ pub(super) fn commit(
 }
 
 fn ask() -> Result<()> {
-    eprint!("Write? [y/N] ");
+    say("Write? [y/N] ");
     let mut answer = String::new();
-    // A terminal that cannot be written to or read from gives no consent.
-    let read = stderr().flush().and_then(|()| stdin().read_line(&mut answer));
-    if read.is_ok() && matches!(answer.trim(), "y" | "Y" | "yes") {
+    // A terminal that cannot be read from gives no consent.
+    if stdin().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "Y" | "yes") {
         return Ok(());
     }
     Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))

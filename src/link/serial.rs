@@ -145,13 +145,16 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
+/// What the system says of a device that has no speed to set, such as /dev/null.
+const NOT_A_TERMINAL: &str = "Not a typewriter";
+
 fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
     match error.kind {
         serialport::ErrorKind::Io(ErrorKind::NotFound) => LinkErrorKind::NotFound,
         serialport::ErrorKind::Io(ErrorKind::PermissionDenied) => platform::denied(path),
         serialport::ErrorKind::NoDevice if platform::exists(path) => LinkErrorKind::Busy,
         serialport::ErrorKind::NoDevice => LinkErrorKind::NotFound,
-        _ if platform::is_no_port(path) => LinkErrorKind::NotAPort,
+        _ if platform::is_no_port(path) || error.description == NOT_A_TERMINAL => LinkErrorKind::NotAPort,
         serialport::ErrorKind::InvalidInput => LinkErrorKind::Format(error.description.clone()),
         _ => LinkErrorKind::Other(error.description.clone()),
     }

@@ -298,15 +298,27 @@ pub(super) fn run(
     Ok(JobOutput::Hiperface(output))
 }
 
-fn read_item(session: &mut Session, item: Item) -> Result<Value, Error> {
+fn read_item(session: &mut Session, item: Item) -> Result<Value, JobError> {
     let mut master = session.master();
+    let value = read_value(&mut master, item);
+    if let (Item::Field(FieldRange { field, .. }) | Item::Status(field), Err(error)) = (item, &value)
+        && error.is_rejection(StatusCode::NO_SUCH_FIELD)
+    {
+        // Which ones there are says more than the encoder's refusal.
+        let count = device::write::read_memory(&mut master)?.fields;
+        return Err(PlanError::NoSuchField { field, count }.into());
+    }
+    Ok(value?)
+}
+
+fn read_value(master: &mut device::Master<'_>, item: Item) -> Result<Value, Error> {
     Ok(match item {
-        Item::Field(range) => Value::Bytes(read_part(&mut master, range)?),
-        Item::Status(field) => Value::Number(read_field_status(&mut master, field)?.byte().into()),
-        Item::Analogue(channel) => Value::Number(read_analogue(&mut master, channel)?.into()),
-        Item::Counter => Value::Number(read_counter(&mut master)?.into()),
-        Item::Address => Value::Number(device::read_address(&mut master)?.into()),
-        Item::Settings => Value::Number(device::read_settings(&mut master)?.byte().into()),
+        Item::Field(range) => Value::Bytes(read_part(master, range)?),
+        Item::Status(field) => Value::Number(read_field_status(master, field)?.byte().into()),
+        Item::Analogue(channel) => Value::Number(read_analogue(master, channel)?.into()),
+        Item::Counter => Value::Number(read_counter(master)?.into()),
+        Item::Address => Value::Number(device::read_address(master)?.into()),
+        Item::Settings => Value::Number(device::read_settings(master)?.byte().into()),
     })
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::error::Damage;
 use super::{Echo, Error, Station};
 use crate::bits::MaskedBytes;
-use crate::link::{Ctx, Direction};
+use crate::link::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::protocol::hiperface::{Answer, Command, Reply, Request, SecretFrame, StatusCode};
 use crate::units::Moment;
 
@@ -194,8 +194,7 @@ impl<'a> Master<'a> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
-        self.ctx.trace.record(sent_at, Direction::Sent, frame.masked());
-        self.ctx.wire.send(frame.bytes())?;
+        self.send(&frame, sent_at)?;
         let timing = self.station.timing();
         let end = sent_at + timing.characters(frame.bytes().len()) + timing.timeout;
         let mut echo = Vec::new();
@@ -214,8 +213,7 @@ impl<'a> Master<'a> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
-        self.ctx.trace.record(sent_at, Direction::Sent, frame.masked());
-        self.ctx.wire.send(frame.bytes())?;
+        self.send(&frame, sent_at)?;
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.judge(request, heard);
@@ -298,6 +296,17 @@ impl<'a> Master<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Sends a frame, and shows of it what may be shown: also where a recording does not know it.
+    fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
+        self.ctx.trace.record(sent_at, Direction::Sent, frame.masked());
+        self.ctx.wire.send(frame.bytes()).map_err(|mut error| {
+            if let LinkErrorKind::NotRecorded(request) = &mut error.kind {
+                *request = frame.masked().to_string();
+            }
+            error
+        })
     }
 
     /// Listens until nothing came for the time-out.

@@ -1,0 +1,154 @@
+//! What a foreign encoder is told to do, frame by frame, and the encoders that are not the usual one.
+
+use serde_json::{Value, json};
+
+use super::support::{Bench, Foreign, Ran, frame};
+
+fn act(bench: &Bench, encoder: &Foreign, arguments: &[&str]) -> Ran {
+    encoder.requests();
+    bench.run(&[&["do", "hiperface"], arguments, &["--link", &encoder.url, "--yes", "--json"]].concat())
+}
+
+#[test]
+fn data_fields_are_created_protected_resized_and_deleted() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
+    let steps: [(&[&str], &str); 7] = [
+        // The manual's field 1, with its access code required as the text demands.
+        (&["create-field", "1", "16", "code=2"], "40 4D 01 E8 55"),
+        (&["lock-field", "1"], "40 4D 01 A8 55"),
+        (&["unlock-field", "1"], "40 4D 01 E8 55"),
+        (&["resize-field", "1", "32"], "40 4D 01 E9 55"),
+        (&["delete-field", "1"], "40 4D 01 69 55"),
+        (&["create-field", "1", "0xE0"], "40 4D 01 E0 55"),
+        (&["delete-field", "1"], "40 4D 01 60 55"),
+    ];
+    for (arguments, sent) in steps {
+        act(&bench, &encoder, arguments).json();
+        assert_eq!(encoder.writes(), [frame(sent)], "{arguments:?}");
+    }
+    act(&bench, &encoder, &["create-field", "3", "16"]).fails(1, &["1", "3"]);
+    act(&bench, &encoder, &["create-field", "1", "20"]).fails(1, &["16 to 128"]);
+    act(&bench, &encoder, &["delete-field", "7"]).fails(1, &["7", "0 to 0"]);
+    act(&bench, &encoder, &["lock-field", "0"]).json();
+    let protected = bench.run(&["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"]);
+    encoder.requests();
+    protected.fails(1, &["write protected", "unlock-field 0"]);
+    assert_eq!(encoder.writes(), [""; 0]);
+}
+
+#[test]
+fn the_memory_is_not_overfilled() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--blocks", "2"]) else { return };
+    act(&bench, &encoder, &["create-field", "0", "48"]).fails(1, &["48", "32"]);
+    assert_eq!(encoder.writes(), [""; 0]);
+}
+
+#[test]
+fn a_position_is_set_in_phase_or_exactly() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    act(&bench, &encoder, &["set-position", "4096"]).json();
+    let sent = encoder.writes();
+    assert_eq!(sent.len(), 1, "{sent:?}");
+    let bytes: Vec<u32> = sent[0].split(' ').map(|byte| u32::from_str_radix(byte, 16).unwrap()).collect();
+    let set = bytes[2..6].iter().fold(0, |word, byte| word << 8 | byte);
+    // The five lowest bits are those of the sine signal, 17 here, and the rest is as near as that allows.
+    assert_eq!(set % 32, 0x000E_0531 % 32);
+    assert!(set.abs_diff(4096) <= 16, "{set}");
+
+    act(&bench, &encoder, &["set-position", "0x1234", "--exact"]).json();
+    assert_eq!(encoder.writes(), ["40 43 00 00 12 34 55 70"]);
+    // An encoder with a bearing of its own has nothing to synchronise.
+    act(&bench, &encoder, &["set-position", "0x1000000"]).fails(1, &["0 to 16777215"]);
+}
+
+#[test]
+fn an_address_is_set_whatever_the_reply_looks_like() {
+    let bench = Bench::new();
+    for reply in [&[][..], &["--reply-from", "new"], &["--no-repeat"], &["--reply-from", "new", "--no-repeat"]] {
+        let Some(encoder) = bench.encoder(reply) else { return };
+        let write = ["write", "hiperface", "address", "0x45", "--yes", "--link", &encoder.url, "--json"];
+        let told = bench.run(&write).json();
+        assert_eq!((&told["written"], &told["verified"]), (&json!(1), &json!(1)), "{reply:?}");
+        assert_eq!(encoder.writes(), [frame("40 55 45 55")]);
+        let url = format!("{}?address=0x45", encoder.url);
+        assert_eq!(bench.run(&["identify", "hiperface", "--link", &url, "--json"]).json()["address"], json!(0x45));
+    }
+}
+
+#[test]
+fn settings_are_stored_and_the_counter_is_cleared() {
+    let bench = Bench::new();
+    for reply in [&[][..], &["--no-repeat"]] {
+        let Some(encoder) = bench.encoder(&[reply, &["--counter", "0xFFFFFF"]].concat()) else { return };
+        let write = |item, value| {
+            encoder.requests();
+            bench.run(&["write", "hiperface", item, value, "--yes", "--link", &encoder.url, "--json"])
+        };
+        write("settings", "0xE5").json();
+        assert_eq!(encoder.writes(), ["40 57 E5 55 A7"], "{reply:?}");
+        write("settings", "0x97").fails(1, &["reserved"]);
+        // Counting over the end is a warning, not a failure.
+        let ran = act(&bench, &encoder, &["increment-counter"]);
+        ran.json();
+        assert!(ran.err.contains("08h"), "{ran:?}");
+        write("counter", "5").fails(2, &["increment-counter"]);
+        act(&bench, &encoder, &["increment-counter"]).json();
+        write("counter", "0").json();
+        assert_eq!(encoder.writes(), ["40 49 55 5C"]);
+    }
+}
+
+#[test]
+fn a_reset_is_waited_for() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    let ran = act(&bench, &encoder, &["reset"]);
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert_eq!(encoder.writes(), ["40 53 13"]);
+}
+
+/// The reference's extended label: rotary, 16 periods, 4096 turns.
+const LABEL: &str = "530000000010000010 0053454C33372D484642302D4B30322020202000030048 0073";
+
+#[test]
+fn an_encoder_with_an_extended_label_is_known_by_it() {
+    let bench = Bench::new();
+    let Some(encoder) =
+        bench.encoder(&["--type", "FF", "--label", &format!("{LABEL}{}", "00".repeat(30)), "--position", "0x0531"])
+    else {
+        return;
+    };
+    let told = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
+    assert_eq!((&told["encoder_type"], &told["encoder_name"]), (&json!(0xFF), &json!("SEL37-HFB0-K02")));
+    let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
+    // 512 steps a turn.
+    assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
+    assert!((line["degrees"].as_f64().unwrap() - 305.0 * 360.0 / 512.0).abs() < 1e-9, "{line}");
+}
+
+#[test]
+fn a_linear_encoder_has_millimetres() {
+    let bench = Bench::new();
+    // Linear, periods of 1,000,000 nm, 1000 of them.
+    let label = format!("00 01 000F4240 000003E8 {} {}", "20".repeat(18), "00".repeat(36));
+    let Some(encoder) = bench.encoder(&["--type", "FF", "--label", &label, "--position", "1329"]) else { return };
+    let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
+    assert_eq!((&line["turns"], &line["degrees"], &line["raw"]), (&Value::Null, &Value::Null, &json!(1329)));
+    assert!((line["millimetres"].as_f64().unwrap() - 1329.0 / 32.0).abs() < 1e-9, "{line}");
+}
+
+#[test]
+fn an_unknown_type_takes_periods_and_turns_from_the_link() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--type", "77", "--position", "0x0531"]) else { return };
+    let ran = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]);
+    let line = ran.json();
+    assert_eq!((&line["raw"], &line["turns"], &line["degrees"]), (&json!(0x0531), &Value::Null, &Value::Null));
+    assert!(ran.err.contains("periods="), "{ran:?}");
+    let url = format!("{}?periods=16&turns=4096", encoder.url);
+    let line = bench.run(&["position", "hiperface", "--link", &url, "--json"]).json();
+    assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
+}

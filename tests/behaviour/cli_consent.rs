@@ -1,0 +1,84 @@
+//! Consent, and what needs more than that: values of the mounting.
+
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::support::{Bench, Ran, ended, frame, python};
+
+/// Runs its arguments on a terminal of their own; what is typed comes from stdin.
+const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
+
+/// The program on a terminal on which somebody types an answer.
+fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
+    let program = bench.program(arguments);
+    let mut command = Command::new("python3");
+    command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());
+    command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.as_mut().unwrap().write_all(answer.as_bytes()).unwrap();
+    ended(child, Instant::now())
+}
+
+#[test]
+fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8","bytes":"0815"}]"#]) else { return };
+    if python("master.py").is_none() {
+        return;
+    }
+    let arguments = ["write", "hiperface", "field:0@1", "16", "--link", &encoder.url];
+    for no in ["n\n", "\n", "what?\n"] {
+        let ran = asked(&bench, &arguments, no);
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        for words in ["field:0@1+1", "15", "16", "nothing was written"] {
+            assert!(ran.out.contains(words), "{words}: {ran:?}");
+        }
+        assert_eq!(encoder.writes(), [""; 0]);
+    }
+    let ran = asked(&bench, &arguments, "y\n");
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
+}
+
+#[test]
+fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
+    let bench = Bench::new();
+    // A commutation offset as this program stores it, and one byte after it.
+    let fields = format!(r#"[{{"status":"C9","bytes":"434F31{}0815"}}]"#, "00".repeat(13));
+    let Some(source) = bench.encoder(&["--fields", &fields]) else { return };
+    let other = ["--serial", "XX0000001", "--fields", r#"[{"status":"C9"}]"#];
+    let Some(encoder) = bench.encoder(&other) else { return };
+    let file = bench.file("p.ron");
+    assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
+    assert!(bench.read("p.ron").contains("field:0@0+16"));
+
+    let restore = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
+    let ran = bench.run(&restore);
+    assert_eq!(ran.json()["written"], json!(2));
+    assert!(ran.err.contains("field:0@0+16") && ran.err.contains("--with-mounting"), "{ran:?}");
+    assert_eq!(encoder.writes(), [frame("40 4B 00 10 02 55 08 15")]);
+    assert_eq!(bench.run(&[&restore[..], &["--with-mounting"]].concat()).json()["written"], json!(16));
+    assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
+    // Onto its own encoder nothing is held back.
+    source.host(&["40 4B 00 00 01 55 00"]);
+    let own = bench.run(&["restore", &file, "--yes", "--link", &source.url, "--json"]).json();
+    assert_eq!(own["written"], json!(1));
+}
+
+#[test]
+fn two_writes_in_a_second_keep_two_before_images() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
+    let backups = ["00", "01", "02"].map(|byte| {
+        let arguments = ["write", "hiperface", "field:0@0+1", byte, "--yes", "--link", &encoder.url, "--json"];
+        bench.run(&arguments).json()["backup"].as_str().unwrap().to_owned()
+    });
+    let first = ["FF", "00", "01"];
+    for (backup, byte) in backups.iter().zip(first) {
+        let text = std::fs::read_to_string(backup).unwrap();
+        assert!(text.contains(&format!("\"{byte} FF")), "{backup}: {text}");
+    }
+}

@@ -1,0 +1,148 @@
+//! Encoders that say nothing, say nonsense, lose power or are unplugged.
+
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+
+use super::support::{Bench, ended, frame, signal};
+
+const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"88","bytes":"01"}]"#;
+
+#[test]
+fn a_silent_encoder_ends_a_command_within_ten_seconds() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--silent"]) else { return };
+    let ran = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
+    ran.fails(1, &["40h"]);
+    assert!(ran.took < Duration::from_secs(10), "{ran:?}");
+    // Tried again, but not for ever.
+    assert!((2..=5).contains(&encoder.requests().len()));
+}
+
+#[test]
+fn a_silent_encoder_behind_an_echo_is_told_apart() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--silent", "--echo"]) else { return };
+    let ran = bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &bench.file("p.ron")]);
+    ran.fails(1, &["40h"]);
+    assert!(ran.took < Duration::from_secs(10), "{ran:?}");
+    assert!(!bench.path("p.ron").exists());
+}
+
+#[test]
+fn nonsense_is_never_taken_for_a_value() {
+    let bench = Bench::new();
+    for seed in ["1", "2"] {
+        let Some(encoder) = bench.encoder(&["--nonsense", "--seed", seed]) else { return };
+        for arguments in [&["identify", "hiperface"][..], &["read", "hiperface", "counter"]] {
+            let ran = bench.run(&[arguments, &["--link", &encoder.url]].concat());
+            ran.fails(1, &[]);
+            assert!(ran.took < Duration::from_secs(10), "{ran:?}");
+        }
+    }
+}
+
+#[test]
+fn unplugging_ends_polling_with_one_sentence() {
+    let bench = Bench::new();
+    // Polling back to back, and with the encoder gone in a long pause between two readings.
+    for interval in ["0", "100", "60000"] {
+        let Some(mut encoder) = bench.encoder(&[]) else { return };
+        let arguments = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", interval];
+        let child = bench.program(&arguments).spawn().unwrap();
+        sleep(Duration::from_millis(700));
+        encoder.kill();
+        let ran = ended(child, Instant::now());
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        ran.says(&["lost", "unplugged"]);
+        assert!(!ran.out.is_empty(), "{ran:?}");
+        assert!(ran.took < Duration::from_secs(4), "interval {interval}: {ran:?}");
+    }
+}
+
+#[test]
+fn an_interrupt_ends_polling_at_once() {
+    let bench = Bench::new();
+    for (interval, name) in [("0", "INT"), ("100", "TERM"), ("60000", "INT")] {
+        let Some(encoder) = bench.encoder(&[]) else { return };
+        let arguments = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", interval];
+        let child = bench.program(&arguments).spawn().unwrap();
+        sleep(Duration::from_millis(700));
+        signal(&child, name);
+        let ran = ended(child, Instant::now());
+        assert!(ran.status.is_some(), "killed by the signal instead of ending: {ran:?}");
+        assert!(!ran.err.contains("panicked"), "{ran:?}");
+        assert!(ran.took < Duration::from_secs(4), "interval {interval}: {ran:?}");
+    }
+}
+
+#[test]
+fn power_lost_in_a_restore_names_the_backup_and_the_next_restore_completes() {
+    let bench = Bench::new();
+    let wanted = r#"[{"status":"C9","bytes":"00112233445566778899"},{"status":"88","bytes":"02"}]"#;
+    let Some(source) = bench.encoder(&["--fields", wanted]) else { return };
+    let Some(encoder) = bench.encoder(&["--fields", FIELDS, "--die-in-store", "1"]) else { return };
+    let file = bench.file("wanted.ron");
+    assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
+
+    let ran = bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]);
+    ran.fails(1, &["backups"]);
+    assert!(ran.took < Duration::from_secs(12), "{ran:?}");
+    let mut words = ran.err.split_whitespace().map(|word| word.trim_end_matches([';', ',', '.']));
+    let backup = words.find(|word| word.ends_with(".ron") && word.contains("backups")).unwrap();
+    assert!(Path::new(backup).is_file(), "{ran:?}");
+    // What was never repeated blindly: one store, then only reading.
+    assert_eq!(encoder.writes(), [frame("40 4B 00 00 0A 55 00 11 22 33 44 55 66 77 88 99")]);
+
+    let text = std::fs::read_to_string(backup).unwrap();
+    assert!(text.contains("GB0450179") && text.contains("08 15 FF"), "{text}");
+    let told = bench.run(&["diff", backup, &file, "--json"]).json_with(3);
+    assert!(
+        told["differences"].as_array().unwrap().iter().any(|item| item["left"].as_str().unwrap().starts_with("0815"))
+    );
+
+    bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]).json();
+    let equal = bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json();
+    assert_eq!((&equal["equal"], &equal["missing"]), (&json!(true), &json!([])));
+}
+
+#[test]
+fn noise_on_the_line_is_lived_with() {
+    let bench = Bench::new();
+    let url = "sim:?seed=3&fault=drop:0.01,flip:0.005";
+    for _ in 0..3 {
+        let ran = bench.run(&["read", "hiperface", "settings", "--link", url, "--json"]);
+        assert_eq!(ran.json()["value"], json!(0xE4));
+    }
+}
+
+#[test]
+fn a_field_left_without_its_protection_is_named_and_the_next_restore_protects_it() {
+    let bench = Bench::new();
+    let Some(source) = bench.encoder(&["--fields", r#"[{"status":"88","bytes":"0A0B0C0D"}]"#]) else { return };
+    let there = r#"[{"status":"88","bytes":"01020304"}]"#;
+    let Some(encoder) = bench.encoder(&["--fields", there, "--die-in-store", "1"]) else { return };
+    let file = bench.file("wanted.ron");
+    assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
+    let ran = bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]);
+    ran.fails(1, &["field 0", "protection", "backups"]);
+    assert!(ran.took < Duration::from_secs(15), "{ran:?}");
+    assert_eq!(encoder.writes(), [frame("40 4D 00 C8 55"), frame("40 4B 00 00 04 55 0A 0B 0C 0D")]);
+
+    bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]).json();
+    assert_eq!(encoder.host(&["40 4C 00"]), [frame("40 4C 00 88")]);
+    assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
+}
+
+#[test]
+fn a_search_is_interrupted() {
+    let bench = Bench::new();
+    let child = bench.program(&["find", "hiperface", "--link", "sim:?settings=0xE5&address=0x43"]).spawn().unwrap();
+    sleep(Duration::from_millis(1500));
+    signal(&child, "INT");
+    let ran = ended(child, Instant::now());
+    ran.fails(1, &["Cancelled"]);
+    assert!(ran.took < Duration::from_secs(5), "{ran:?}");
+}

@@ -1,0 +1,76 @@
+//! Ports of this machine, device servers, and the folder of the program.
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::time::Duration;
+
+use super::support::Bench;
+
+#[test]
+fn ports_are_listed_or_there_are_none() {
+    let bench = Bench::new();
+    assert!(bench.run(&["ports", "--json"]).json()["ports"].is_array());
+    let text = bench.run(&["ports"]);
+    assert!(text.status == Some(0) && !text.out.is_empty(), "{text:?}");
+}
+
+#[test]
+fn a_port_in_use_is_not_taken_away() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    let polling = ["position", "hiperface", "--link", &encoder.url, "--count", "100000", "--interval", "20"];
+    let mut first = bench.program(&polling).spawn().unwrap();
+    let mut line = [0];
+    // Its first line of output: it has the port.
+    first.stdout.as_mut().unwrap().read_exact(&mut line).unwrap();
+    let second = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    second.fails(1, &["in use"]);
+}
+
+/// A device server that serves one client, then ends.
+fn server(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("tcp:{}", listener.local_addr().unwrap());
+    std::thread::spawn(move || serve(listener.accept().unwrap().0));
+    url
+}
+
+#[test]
+fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
+    let bench = Bench::new();
+    let talk = |mut client: TcpStream| {
+        while client.write_all(&[0x40, 0x50]).is_ok() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    };
+    let ran = bench.run(&["identify", "hiperface", "--link", &server(talk), "--json"]);
+    ran.fails(1, &[]);
+    assert!(ran.took < Duration::from_secs(10), "{ran:?}");
+    // A search would disturb whoever talks there.
+    bench.run(&["find", "hiperface", "--link", &server(talk)]).fails(1, &["talks", "nothing was sent"]);
+}
+
+#[test]
+fn a_server_that_hangs_up_is_told() {
+    let bench = Bench::new();
+    bench.run(&["identify", "hiperface", "--link", &server(drop), "--json"]).fails(1, &["lost"]);
+    let after_a_request = |mut client: TcpStream| {
+        let _ = client.read(&mut [0; 16]);
+    };
+    let url = server(after_a_request);
+    bench.run(&["save", "hiperface", "--link", &url, "-o", &bench.file("p.ron")]).fails(1, &["lost"]);
+    assert!(!bench.path("p.ron").exists());
+}
+
+#[test]
+fn without_a_place_for_before_images_nothing_is_written() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
+    bench.write("data", "a file where the folder should be");
+    bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
+    let ran = bench.run(&["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"]);
+    ran.fails(1, &["nothing was written", "data"]);
+    assert_eq!(encoder.writes(), [""; 0]);
+}

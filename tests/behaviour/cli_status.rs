@@ -1,0 +1,72 @@
+//! Status codes: the queue as a whole, and what codes met on the way do to a value.
+
+use serde_json::{Value, json};
+
+use super::support::{Bench, Ran};
+
+fn numbers(list: &Value) -> Vec<u64> {
+    list.as_array().unwrap().iter().map(|entry| entry["code"].as_u64().unwrap()).collect()
+}
+
+fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
+    let encoder = bench.encoder(&["--status", codes])?;
+    let ran = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]);
+    let line = ran.json();
+    Some((ran, line))
+}
+
+#[test]
+fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--status", "1E080120"]) else { return };
+    let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
+    assert_eq!(told["ok"], json!(false));
+    assert_eq!(numbers(&told["errors"]), [0x01, 0x20]);
+    assert_eq!(numbers(&told["warnings"]), [0x1E, 0x08]);
+    for entry in told["errors"].as_array().unwrap().iter().chain(told["warnings"].as_array().unwrap()) {
+        assert!(entry["text"].as_str().is_some_and(|text| !text.is_empty()), "{entry}");
+    }
+    // The queue is empty now.
+    let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
+    assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
+}
+
+#[test]
+fn warnings_alone_are_ok() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--status", "1C1D1E08"]) else { return };
+    let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
+    assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])));
+    assert_eq!(numbers(&told["warnings"]), [0x1C, 0x1D, 0x1E, 0x08]);
+}
+
+#[test]
+fn a_warning_leaves_the_position_valid_and_is_named() {
+    let bench = Bench::new();
+    for codes in ["1E08", "090F"] {
+        let Some((ran, line)) = position(&bench, codes) else { return };
+        assert_eq!((&line["valid"], &line["raw"]), (&json!(true), &json!(918_833)), "{codes}");
+        for code in [&codes[..2], &codes[2..]] {
+            assert!(ran.err.contains(&format!("{code}h")), "{ran:?}");
+        }
+    }
+}
+
+#[test]
+fn a_code_about_the_position_makes_it_invalid() {
+    let bench = Bench::new();
+    for code in ["01", "06", "1F", "20", "1E23"] {
+        let Some((ran, line)) = position(&bench, code) else { return };
+        assert_eq!((&line["valid"], &line["raw"]), (&json!(false), &json!(918_833)), "{code}");
+        assert!(ran.err.contains(&format!("{}h", &code[code.len() - 2..])), "{ran:?}");
+    }
+}
+
+#[test]
+fn codes_met_on_the_way_are_named_and_the_value_is_printed() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--status", "1D06"]) else { return };
+    let ran = bench.run(&["read", "hiperface", "counter", "--link", &encoder.url, "--json"]);
+    assert_eq!(ran.json()["value"], json!(0));
+    assert!(ran.err.contains("1Dh") && ran.err.contains("06h"), "{ran:?}");
+}

@@ -1,0 +1,17 @@
+//! The built program against what its description promises: foreign encoders on real pseudo-terminals, our own virtual
+//! encoder examined by a foreign host, and everything that can be typed wrongly.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+mod cli_actions;
+mod cli_bad_input;
+mod cli_codes;
+mod cli_consent;
+mod cli_faults;
+mod cli_offline;
+mod cli_ports;
+mod cli_simulate;
+mod cli_status;
+mod foreign;
+mod support;

@@ -1,0 +1,262 @@
+//! A bench: a folder of its own, the built program, and foreign encoders and hosts (`tests/foreign`).
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Longer than anything that ends by itself: a program that still runs then hangs.
+const HANGS: Duration = Duration::from_secs(60);
+
+/// A folder with everything that a test touches.
+pub(crate) struct Bench {
+    folder: TempDir,
+    encoders: AtomicU32,
+}
+
+/// The program after its end.
+#[derive(Debug)]
+pub(crate) struct Ran {
+    pub(crate) status: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+    pub(crate) took: Duration,
+}
+
+impl Bench {
+    pub(crate) fn new() -> Self {
+        Bench { folder: TempDir::new().unwrap(), encoders: AtomicU32::new(0) }
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Path of a file as an argument.
+    pub(crate) fn file(&self, name: &str) -> String {
+        self.path(name).to_str().unwrap().to_owned()
+    }
+
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        fs::write(self.path(name), content).unwrap();
+        self.file(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// The program, about to be started.
+    pub(crate) fn program(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_encoder-studio"));
+        command
+            .args(arguments)
+            .env("HOME", self.folder.path())
+            .env("XDG_DATA_HOME", self.path("data"))
+            .env("XDG_CONFIG_HOME", self.path("config"))
+            .env_remove("ENCODER_STUDIO_CODES")
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        command
+    }
+
+    pub(crate) fn run(&self, arguments: &[&str]) -> Ran {
+        finish(self.program(arguments))
+    }
+
+    /// Everything in all files below the folder, of those that are text.
+    pub(crate) fn everything_kept(&self) -> String {
+        let mut text = String::new();
+        collect(self.folder.path(), &mut text);
+        text
+    }
+
+    /// A text without the folder's random name.
+    pub(crate) fn without_folder(&self, text: &str) -> String {
+        text.replace(self.folder.path().to_str().unwrap(), "")
+    }
+
+    /// Starts a foreign encoder; `None`, and a line that says so, where that is not possible.
+    pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
+        let number = self.encoders.fetch_add(1, Ordering::SeqCst);
+        let (link, log) = (self.file(&format!("enc{number}")), self.path(&format!("log{number}")));
+        let mut command = python("encoder.py")?;
+        command.args(["--stdin-eof", "--link", &link, "--log", log.to_str().unwrap()]).args(arguments);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let mut ready = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut ready).unwrap();
+        let encoder = Foreign { child, url: format!("serial:{link}"), link, log };
+        if ready.starts_with("ready ") {
+            return Some(encoder);
+        }
+        println!("skipped: no pseudo-terminal can be made here");
+        None
+    }
+}
+
+fn collect(folder: &Path, text: &mut String) {
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let kind = entry.file_type().unwrap();
+        // The foreign encoder's own log holds what really went over the line.
+        let foreign = entry.file_name().to_str().is_some_and(|name| name.starts_with("log"));
+        if kind.is_dir() {
+            collect(&entry.path(), text);
+        } else if kind.is_file() && !foreign {
+            text.push_str(&String::from_utf8_lossy(&fs::read(entry.path()).unwrap()));
+        }
+    }
+}
+
+/// Runs a program to its end.
+pub(crate) fn finish(mut command: Command) -> Ran {
+    let begun = Instant::now();
+    let child = command.spawn().unwrap();
+    ended(child, begun)
+}
+
+/// Waits for a program and takes what it said.
+pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
+    // What is printed fits into the pipes, except where a test polls for long; then a thread reads along.
+    let reader = |pipe: Option<Box<dyn std::io::Read + Send>>| {
+        std::thread::spawn(move || {
+            let mut text = Vec::new();
+            pipe.map(|mut pipe| pipe.read_to_end(&mut text));
+            String::from_utf8(text).unwrap()
+        })
+    };
+    let out = reader(child.stdout.take().map(|pipe| Box::new(pipe) as _));
+    let err = reader(child.stderr.take().map(|pipe| Box::new(pipe) as _));
+    let status = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        if begun.elapsed() > HANGS {
+            child.kill().unwrap();
+        }
+        sleep(Duration::from_millis(5));
+    };
+    let took = begun.elapsed();
+    // A foreign encoder notices a client that goes and comes only if some milliseconds lie between.
+    sleep(Duration::from_millis(20));
+    Ran { status: status.code(), out: out.join().unwrap(), err: err.join().unwrap(), took }
+}
+
+impl Ran {
+    /// The one JSON object that was printed; it ended well.
+    #[track_caller]
+    pub(crate) fn json(&self) -> Value {
+        assert_eq!(self.status, Some(0), "{self:?}");
+        self.json_with(0)
+    }
+
+    /// The one JSON object that was printed.
+    #[track_caller]
+    pub(crate) fn json_with(&self, status: i32) -> Value {
+        assert_eq!(self.status, Some(status), "{self:?}");
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
+    }
+
+    /// Ended with this status, without output and with one to four lines on stderr that hold all these words.
+    #[track_caller]
+    pub(crate) fn fails(&self, status: i32, words: &[&str]) {
+        assert_eq!(self.status, Some(status), "{self:?}");
+        assert_eq!(self.out, "", "{self:?}");
+        self.says(words);
+    }
+
+    /// One to four lines on stderr, besides warnings in the log, that hold all these words.
+    #[track_caller]
+    pub(crate) fn says(&self, words: &[&str]) {
+        let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();
+        let shown: Vec<&&str> = lines.iter().filter(|line| !line.is_empty()).collect();
+        assert!((1..=4).contains(&shown.len()), "{self:?}");
+        assert!(!self.err.contains("panicked"), "{self:?}");
+        for word in words {
+            assert!(lines.join("\n").contains(word), "{word:?} is not in {self:?}");
+        }
+    }
+}
+
+/// A foreign encoder that runs.
+pub(crate) struct Foreign {
+    child: Child,
+    /// For `--link`.
+    pub(crate) url: String,
+    /// The symbolic link to its terminal.
+    pub(crate) link: String,
+    log: PathBuf,
+}
+
+impl Foreign {
+    /// Request frames since the last time it was asked, in hex.
+    pub(crate) fn requests(&self) -> Vec<String> {
+        let text = fs::read_to_string(&self.log).unwrap_or_default();
+        fs::write(&self.log, "").unwrap();
+        text.lines().map(str::to_owned).collect()
+    }
+
+    /// Requests that write, of those since the last time.
+    pub(crate) fn writes(&self) -> Vec<String> {
+        let reads = ["42", "44", "46", "4A", "4C", "4E", "50", "52", "56"];
+        self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
+    }
+
+    /// Pulls the plug.
+    pub(crate) fn kill(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+
+    /// Sends frames as another host would; the checksum is added.
+    pub(crate) fn host(&self, frames: &[&str]) -> Vec<String> {
+        host(&self.link, &[&["--sum"], frames].concat())
+    }
+}
+
+impl Drop for Foreign {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// A foreign host at a path or `tcp:HOST:PORT`: a line a reply, `-` for none.
+pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
+    let mut command = python("master.py").unwrap();
+    let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
+    let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
+    let Output { status, stdout, stderr } = command.args(options).arg(path).args(frames).output().unwrap();
+    assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+    sleep(Duration::from_millis(20));
+    String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+/// Python with one of the foreign programs; `None`, and a line that says so, where there is none.
+pub(crate) fn python(script: &str) -> Option<Command> {
+    let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !there {
+        println!("skipped: python3 is not installed");
+        return None;
+    }
+    let mut command = Command::new("python3");
+    command.arg("-B").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
+    Some(command)
+}
+
+/// A frame with its checksum, the XOR of all bytes, as the foreign encoder logs it.
+pub(crate) fn frame(bytes: &str) -> String {
+    let sum = bytes.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).fold(0, |sum, byte| sum ^ byte);
+    format!("{bytes} {sum:02X}")
+}
+
+/// Asks a program to end, by the signal of that name.
+pub(crate) fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
