@@ -34,8 +34,10 @@ fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) -> Vec
             text.with_text("cause", encoder(cause))
         }
     }];
-    let unlocked = interrupted.left_unlocked.iter();
-    texts.extend(unlocked.map(|field| Text::new("write.left_unlocked").with("field", field)));
+    if !interrupted.left_unlocked.is_empty() {
+        let fields: Vec<String> = interrupted.left_unlocked.iter().map(ToString::to_string).collect();
+        texts.push(Text::new("write.left_unlocked").with("fields", fields.join(", ")));
+    }
     texts.push(Text::new("write.backup").with("backup", backup.display()));
     texts
 }

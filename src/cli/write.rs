@@ -210,6 +210,10 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .map(|op| {
             let (old, new) = match op {
                 Op::Store { old, new, .. } => (old.as_deref().map(hex_compact), Some(hex_compact(new))),
+                Op::Define { from, to, .. } => {
+                    let byte = |status: DataFieldStatus| format!("{:02X}", status.byte());
+                    (from.map(byte), Some(byte(*to)))
+                }
                 // An access code is shown nowhere.
                 Op::ChangeCode { .. } => (None, None),
                 op => {
