@@ -1,0 +1,7 @@
+//! What the worker, the procedures and the virtual encoder do together, in virtual time: the same code as at a desk, with
+//! every moment of the line in the test's hands. One module a behaviour.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+mod find;
+mod plan_rules;
+mod support;
