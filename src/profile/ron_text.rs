@@ -21,8 +21,14 @@ pub(super) struct Entries {
 impl Entries {
     /// Opens the structure `value`, which stands at `path`.
     pub(super) fn open(path: &str, value: Value) -> Result<Self, ProfileError> {
-        let Value::Map(map) = unwrapped(value) else {
-            return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+        let map = match unwrapped(value) {
+            Value::Map(map) => map,
+            // `()`, on one line and on two: a structure without entries.
+            Value::Unit => Default::default(),
+            Value::Seq(values) if values.is_empty() => Default::default(),
+            _ => {
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+            }
         };
         let mut entries = BTreeMap::new();
         for (key, value) in map {
