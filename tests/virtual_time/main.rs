@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod find;
+mod interruption;
 mod keeping;
 mod plan_rules;
 mod support;

@@ -172,7 +172,7 @@ impl<'a> Master<'a> {
         loop {
             tries += 1;
             let trouble = match self.attempt(request)? {
-                Ok(answer) => return self.settle(request, answer).map(|_| tries),
+                Ok(answer) => return self.acknowledge(request, answer).map(|()| tries),
                 Err(trouble) => trouble,
             };
             let failure = self.may_try_again(request, tries, trouble);
@@ -255,6 +255,17 @@ impl<'a> Master<'a> {
             Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at, sender: answered.sender }),
             Answer::Rejected { codes, .. } => Err(Error::Rejected { command: request.command(), codes }),
         }
+    }
+
+    /// As [`settle`](Self::settle), for what changes the encoder. Codes that a reply announces are left to the next
+    /// exchange, which announces them again: no wish to end comes between a change and its being counted, and after 55h
+    /// and 67h the encoder is no longer to be found where it was asked.
+    pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
+        if matches!(answered.answer, Answer::Reply { .. }) {
+            self.station.troubled_since = None;
+            return Ok(());
+        }
+        self.shielded(|master| master.settle(request, answered)).map(drop)
     }
 
     /// Reads the whole queue into the station: 50h until the error bit is gone.
