@@ -6,4 +6,5 @@ mod find;
 mod interruption;
 mod keeping;
 mod plan_rules;
+mod position;
 mod support;
