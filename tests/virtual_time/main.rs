@@ -7,4 +7,5 @@ mod interruption;
 mod keeping;
 mod plan_rules;
 mod position;
+mod settings;
 mod support;

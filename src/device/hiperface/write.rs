@@ -322,6 +322,20 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.item(), expected, got }
 }
 
+/// Checks that nobody answers at an address: two encoders at one address can never be told apart again.
+///
+/// # Errors
+/// [`Error::AddressTaken`], where anything comes back; the wire, or the user's wish.
+pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
+    let before = std::mem::replace(&mut master.station().address, address.byte());
+    let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
+    master.station().address = before;
+    match answers?.iter().all(|answer| matches!(answer, Err(Trouble::Silence { .. }))) {
+        true => Ok(()),
+        false => Err(Error::AddressTaken { address: address.byte() }),
+    }
+}
+
 /// Free memory and number of fields.
 ///
 /// # Errors
