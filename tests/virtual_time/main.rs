@@ -5,6 +5,7 @@
 mod find;
 mod interruption;
 mod keeping;
+mod lost_replies;
 mod plan_rules;
 mod position;
 mod settings;
