@@ -6,6 +6,7 @@ mod find;
 mod interruption;
 mod keeping;
 mod lost_replies;
+mod noise;
 mod plan_rules;
 mod position;
 mod settings;

@@ -20,6 +20,9 @@ const PATIENCE: Duration = Duration::from_secs(8);
 /// Most codes an encoder queues is four; the fifth reading finds the queue empty.
 const MOST_CODES: u32 = 5;
 
+/// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
+const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
+
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
     ctx: Ctx<'a>,
@@ -129,6 +132,14 @@ impl<'a> Master<'a> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
+    /// Does what reads something that is to be kept: in it, every answer has to come twice.
+    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.station.thorough, true);
+        let result = work(self);
+        self.station.thorough = before;
+        result
+    }
+
     /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
     ///
     /// # Errors
@@ -136,7 +147,7 @@ impl<'a> Master<'a> {
     pub fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
-            if self.station.damaged == 0 {
+            if !self.station.reads_twice() {
                 return Ok(reply);
             }
             let again = self.ask(request)?;
@@ -410,7 +421,7 @@ impl<'a> Master<'a> {
         let answer =
             request.parse_reply(self.station.address, &heard.reply).map_err(|e| Trouble::Damage(Damage::Reply(e)))?;
         if let Answer::Rejected { codes, .. } = &answer
-            && let Some(code) = codes.iter().find(|code| matches!(**code, StatusCode::PARITY | StatusCode::CHECKSUM))
+            && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
             // The request was right when it left: the line damaged it.
             return Err(Trouble::Damage(Damage::AtEncoder(*code)));
