@@ -369,7 +369,7 @@ impl<'a> Master<'a> {
             }
         }
         let trailing = self.hear_the_dead_time(&mut line)?;
-        Ok(self.take_apart(&line, frame, first_at, trailing))
+        Ok(self.take_apart(&line, request, frame, first_at, trailing))
     }
 
     /// The dead time, listening. True when something came that belongs to no reply.
@@ -399,15 +399,25 @@ impl<'a> Master<'a> {
         }
     }
 
-    fn take_apart(&self, line: &[u8], frame: &SecretFrame, first_at: Moment, trailing: bool) -> Heard {
+    fn take_apart(
+        &self,
+        line: &[u8],
+        request: &Request,
+        frame: &SecretFrame,
+        first_at: Moment,
+        trailing: bool,
+    ) -> Heard {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
         let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
-        let damage = if self.station.echo == Echo::On && !echo_heard && !line.is_empty() {
-            Some(Damage::Echo)
-        } else {
-            trailing.then_some(Damage::Trailing)
+        let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
+        let wrong_echo = match self.station.echo {
+            Echo::On => !echo_heard && !line.is_empty(),
+            // An echo and a reply have a right checksum together as well: to 50h that is a reply with four codes.
+            Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
+            Echo::Unknown => false,
         };
+        let damage = if wrong_echo { Some(Damage::Echo) } else { trailing.then_some(Damage::Trailing) };
         Heard { reply, first_at, echo_heard, damage }
     }
 
