@@ -12,3 +12,4 @@ mod plan_rules;
 mod position;
 mod settings;
 mod support;
+mod threads;
