@@ -62,18 +62,15 @@ fn the_way_back_is_kept() {
 /// A shaft at rest dithers by a step. At zero that is the whole range.
 #[test]
 fn zero_may_dither() {
-    for thousandths in 1..=30 {
+    for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();
         let now = desk.clock.now();
-        // 4096 steps a turn: at 0.015/min a step takes a second; three readings see one step at most.
-        desk.bus().encoder_mut(0).unwrap().set_rpm(now, -f64::from(thousandths) / 1000.0);
+        // 4096 steps a turn: at 0.04/min a step takes 370 ms, about as long as from the plan to the read-back.
+        desk.bus().encoder_mut(0).unwrap().set_rpm(now, -f64::from(tenths) / 10_000.0);
         let done = desk.commit(&prepared);
         let moved = matches!(done, Err(JobError::Device(Error::Moving { .. })));
-        assert!(done.is_ok() || moved, "{thousandths}: {done:?}");
-        if thousandths < 10 {
-            assert!(done.is_ok(), "{thousandths}: {done:?}");
-        }
+        assert!(done.is_ok() || moved && tenths > 300, "{tenths}: {done:?}");
     }
 }
 
