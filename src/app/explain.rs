@@ -72,6 +72,9 @@ pub fn encoder(error: &Error) -> Text {
             Text::new("encoder.moving").with("readings", words.join(", "))
         }
         Error::NotAKit { encoder } => Text::new("encoder.not_a_kit").with("encoder", encoder),
+        Error::AddressTaken { address } => {
+            Text::new("encoder.address_taken").with("address", format!("{address:02X}h"))
+        }
         Error::PositionRange { wanted, last } => {
             Text::new("encoder.position_range").with("wanted", wanted).with("last", last)
         }

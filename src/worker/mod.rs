@@ -174,7 +174,12 @@ impl Outbox {
     fn send(&mut self, event: Event) {
         match event {
             Event::Progress(..) => self.progress = Some(event),
-            other => self.waiting.push(other),
+            other => {
+                // It makes the progress before it old: that goes first or not at all.
+                self.flush();
+                self.progress = None;
+                self.waiting.push(other);
+            }
         }
         self.flush();
         (self.wake)();
@@ -189,7 +194,6 @@ impl Outbox {
         if self.sender.len() < Worker::CAPACITY / 2
             && let Some(progress) = self.progress.take()
         {
-            // An event that comes after it makes it old: it goes first or not at all.
             let _ = self.sender.try_send(progress);
         }
         let mut waiting = std::mem::take(&mut self.waiting).into_iter();

@@ -65,6 +65,12 @@ pub enum Error {
         /// Its name.
         encoder: String,
     },
+    /// Somebody answers at the address that an encoder is to get.
+    #[error("address {address:02X}h belongs to another encoder")]
+    AddressTaken {
+        /// The address.
+        address: u8,
+    },
     /// The position asked for is beyond the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange {

@@ -54,7 +54,8 @@ pub fn read_all_fields(
 /// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.
 ///
 /// A transfer that fails is halved for the next try; after five failures in a row without a success in between the
-/// reading fails. On a line that has damaged something before, each transfer has to give the same bytes twice.
+/// reading fails. On a line that has damaged something before, each transfer has to give the same bytes twice: an XOR
+/// lets some pairs of flipped bits through.
 ///
 /// # Errors
 /// The line, or a refusal.
@@ -66,13 +67,24 @@ pub fn read_range(
     code: AccessCode,
 ) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::with_capacity(count);
+    // What came once and has to come again.
+    let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;
     while bytes.len() < count {
-        let chunk = master.station().chunk.min(count - bytes.len());
+        let chunk = first.as_ref().map_or(master.station().chunk.min(count - bytes.len()), Vec::len);
         let request = transfer(field, address + bytes.len(), chunk, code)?;
-        match read_twice_if_needed(master, &request)? {
-            Ok(more) => {
+        let trouble = match (read_once(master, &request)?, first.take()) {
+            (Ok(again), Some(before)) if again != before => {
+                first = Some(again);
+                Trouble::Damage(Damage::Inconsistent)
+            }
+            (Ok(once), None) if master.station().reads_twice() => {
+                first = Some(once);
+                failures = 0;
+                continue;
+            }
+            (Ok(more), _) => {
                 bytes.extend(more);
                 failures = 0;
                 in_a_row += 1;
@@ -81,14 +93,20 @@ pub fn read_range(
                     station.chunk *= 2;
                     in_a_row = 0;
                 }
+                continue;
             }
-            Err(trouble) => {
-                failures += 1;
-                in_a_row = 0;
-                master.may_try_again(&request, failures, trouble)?;
-                let station = master.station();
-                station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
+            (Err(trouble), before) => {
+                first = before;
+                trouble
             }
+        };
+        failures += 1;
+        in_a_row = 0;
+        master.may_try_again(&request, failures, trouble)?;
+        let station = master.station();
+        station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
+        if let Some(first) = &mut first {
+            first.truncate(station.chunk);
         }
     }
     Ok(bytes)
@@ -99,22 +117,6 @@ fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result
         (Ok(address), Ok(count)) => Ok(Request::ReadData { field, address, count, code }),
         _ => Err(Error::OutOfField { field, address, count, size: MAX_TRANSFER }),
     }
-}
-
-/// An XOR over many bytes lets some pairs of flipped bits through: where the line is known to be bad, once is not enough.
-fn read_twice_if_needed(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {
-    let first = match read_once(master, request)? {
-        Ok(bytes) => bytes,
-        Err(trouble) => return Ok(Err(trouble)),
-    };
-    if master.station().damaged == 0 {
-        return Ok(Ok(first));
-    }
-    Ok(match read_once(master, request)? {
-        Ok(second) if second == first => Ok(first),
-        Ok(_) => Err(Trouble::Damage(Damage::Inconsistent)),
-        Err(trouble) => Err(trouble),
-    })
 }
 
 fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {

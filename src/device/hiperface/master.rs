@@ -20,6 +20,9 @@ const PATIENCE: Duration = Duration::from_secs(8);
 /// Most codes an encoder queues is four; the fifth reading finds the queue empty.
 const MOST_CODES: u32 = 5;
 
+/// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
+const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
+
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
     ctx: Ctx<'a>,
@@ -57,8 +60,9 @@ pub(super) struct Timed {
 }
 
 impl<'a> Master<'a> {
-    /// A master on this line.
+    /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.troubled_since = None;
         Master { ctx, station, shielded: false }
     }
 
@@ -128,6 +132,14 @@ impl<'a> Master<'a> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
+    /// Does what reads something that is to be kept: in it, every answer has to come twice.
+    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.station.thorough, true);
+        let result = work(self);
+        self.station.thorough = before;
+        result
+    }
+
     /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
     ///
     /// # Errors
@@ -135,7 +147,7 @@ impl<'a> Master<'a> {
     pub fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
-            if self.station.damaged == 0 {
+            if !self.station.reads_twice() {
                 return Ok(reply);
             }
             let again = self.ask(request)?;
@@ -172,7 +184,7 @@ impl<'a> Master<'a> {
         loop {
             tries += 1;
             let trouble = match self.attempt(request)? {
-                Ok(answer) => return self.settle(request, answer).map(|_| tries),
+                Ok(answer) => return self.acknowledge(request, answer).map(|()| tries),
                 Err(trouble) => trouble,
             };
             let failure = self.may_try_again(request, tries, trouble);
@@ -253,6 +265,17 @@ impl<'a> Master<'a> {
             Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at, sender: answered.sender }),
             Answer::Rejected { codes, .. } => Err(Error::Rejected { command: request.command(), codes }),
         }
+    }
+
+    /// As [`settle`](Self::settle), for what changes the encoder. Codes that a reply announces are left to the next
+    /// exchange, which announces them again: no wish to end comes between a change and its being counted, and after 55h
+    /// and 67h the encoder is no longer to be found where it was asked.
+    pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
+        if matches!(answered.answer, Answer::Reply { .. }) {
+            self.station.troubled_since = None;
+            return Ok(());
+        }
+        self.shielded(|master| master.settle(request, answered)).map(drop)
     }
 
     /// Reads the whole queue into the station: 50h until the error bit is gone.
@@ -355,7 +378,7 @@ impl<'a> Master<'a> {
             }
         }
         let trailing = self.hear_the_dead_time(&mut line)?;
-        Ok(self.take_apart(&line, frame, first_at, trailing))
+        Ok(self.take_apart(&line, request, frame, first_at, trailing))
     }
 
     /// The dead time, listening. True when something came that belongs to no reply.
@@ -385,15 +408,25 @@ impl<'a> Master<'a> {
         }
     }
 
-    fn take_apart(&self, line: &[u8], frame: &SecretFrame, first_at: Moment, trailing: bool) -> Heard {
+    fn take_apart(
+        &self,
+        line: &[u8],
+        request: &Request,
+        frame: &SecretFrame,
+        first_at: Moment,
+        trailing: bool,
+    ) -> Heard {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
         let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
-        let damage = if self.station.echo == Echo::On && !echo_heard && !line.is_empty() {
-            Some(Damage::Echo)
-        } else {
-            trailing.then_some(Damage::Trailing)
+        let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
+        let wrong_echo = match self.station.echo {
+            Echo::On => !echo_heard && !line.is_empty(),
+            // An echo and a reply have a right checksum together as well: to 50h that is a reply with four codes.
+            Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
+            Echo::Unknown => false,
         };
+        let damage = if wrong_echo { Some(Damage::Echo) } else { trailing.then_some(Damage::Trailing) };
         Heard { reply, first_at, echo_heard, damage }
     }
 
@@ -407,7 +440,7 @@ impl<'a> Master<'a> {
         let answer =
             request.parse_reply(self.station.address, &heard.reply).map_err(|e| Trouble::Damage(Damage::Reply(e)))?;
         if let Answer::Rejected { codes, .. } = &answer
-            && let Some(code) = codes.iter().find(|code| matches!(**code, StatusCode::PARITY | StatusCode::CHECKSUM))
+            && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
             // The request was right when it left: the line damaged it.
             return Err(Trouble::Damage(Damage::AtEncoder(*code)));

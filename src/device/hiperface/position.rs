@@ -73,7 +73,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
         }
         readings.push(read_position(master, geometry)?.raw);
     }
-    let range = geometry.and_then(Geometry::range).unwrap_or(1 << 32);
+    let range = range_of(geometry);
     let (Some(first), Some(last)) = (readings.first().copied(), readings.last().copied()) else {
         return Err(Error::Unexpected("no position".to_owned()));
     };
@@ -84,8 +84,13 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Steps between two positions, the short way round.
-fn distance(a: u32, b: u32, range: u64) -> u64 {
+/// Number of different positions; those of the whole word where nobody knows.
+pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
+    geometry.and_then(Geometry::range).unwrap_or(1 << 32)
+}
+
+/// Steps between two positions, the short way round: a shaft at rest may dither across zero.
+pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))
 }

@@ -44,7 +44,7 @@ pub fn change_line_for_now(master: &mut Master<'_>, settings: LineSettings) -> R
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);
     let request = Request::ConfigureLineTemporarily { settings };
     let outcome = match master.attempt(&request)? {
-        Ok(answered) => master.settle(&request, answered).map(drop),
+        Ok(answered) => master.acknowledge(&request, answered),
         // The reply was lost: whether the encoder changed is found out by talking to it.
         Err(_) => Ok(()),
     };

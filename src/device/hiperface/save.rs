@@ -12,11 +12,20 @@ pub struct SaveOptions {
     pub complete: bool,
 }
 
-/// Reads the whole encoder.
+/// Reads the whole encoder, everything but the position twice: what is kept for years is not to hang on one XOR.
 ///
 /// # Errors
 /// The line; with [`complete`](SaveOptions::complete) also a field that cannot be read.
 pub fn save(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    options: SaveOptions,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<HiperfaceProfile, Error> {
+    master.thoroughly(|master| save_once(master, types, options, progress))
+}
+
+fn save_once(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     options: SaveOptions,

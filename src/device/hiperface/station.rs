@@ -68,6 +68,8 @@ pub struct Station {
     pub codes_met: Vec<StatusCode>,
     /// Exchanges that failed and had to be repeated or given up, since the session began.
     pub damaged: u64,
+    /// What is read is to be kept: it has to come twice, on a line that seems good as well.
+    pub(super) thorough: bool,
     /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
     pub(super) chunk: usize,
     /// No request before this moment: the dead time of the protocol.
@@ -89,6 +91,7 @@ impl Station {
             geometry: None,
             codes_met: Vec::new(),
             damaged: 0,
+            thorough: false,
             chunk: MAX_TRANSFER,
             quiet_until: Moment::START,
             troubled_since: None,
@@ -129,6 +132,11 @@ impl Station {
     /// The times of the line as it is set.
     pub fn timing(&self) -> Timing {
         Timing::new(self.format, self.long_timeout)
+    }
+
+    /// Once is not enough: an XOR lets some pairs of flipped bits through.
+    pub(super) fn reads_twice(&self) -> bool {
+        self.thorough || self.damaged > 0
     }
 
     /// Takes the status codes met since the last time.

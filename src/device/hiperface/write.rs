@@ -8,6 +8,8 @@ use super::{
 };
 use crate::bits::hex_compact;
 use crate::device::hiperface::identify::read_type_label;
+use crate::device::hiperface::master::Trouble;
+use crate::device::hiperface::position::{distance, range_of};
 use crate::profile::Consent;
 use crate::profile::hiperface::{Base, FieldImage, HiperfacePlan, Item, Op, Scalar};
 use crate::protocol::hiperface::{
@@ -17,6 +19,8 @@ use crate::protocol::hiperface::{
 /// A plan that a person consented to and whose base still holds.
 pub struct Confirmed<'p> {
     plan: &'p HiperfacePlan,
+    /// Number of different positions.
+    range: u64,
 }
 
 /// What was written.
@@ -68,14 +72,14 @@ pub fn confirm<'p>(
     for scalar in &plan.base.scalars {
         confirm_scalar(master, *scalar, geometry)?;
     }
-    Ok(Confirmed { plan })
+    Ok(Confirmed { plan, range: range_of(geometry) })
 }
 
 fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geometry>) -> Result<(), Error> {
     let (same, item) = match scalar {
         Scalar::Position(then) => {
             let now = ensure_standstill(master, geometry)?;
-            if now.abs_diff(then) > 1 {
+            if distance(now, then, range_of(geometry)) > 1 {
                 return Err(Error::Moving { readings: vec![then, now] });
             }
             (true, "position".to_owned())
@@ -101,28 +105,35 @@ pub fn carry_out(
     let mut done = Written::default();
     for (at, op) in plan.ops.iter().enumerate() {
         progress(at, op);
-        match perform(master, op, &plan.base) {
+        match perform(master, op, confirmed) {
             Ok(sent) => {
                 done.ops += 1;
                 done.written += op.weight();
                 done.write_cycles += u64::from(sent);
             }
-            Err(cause) => return Err(Box::new(interrupt(master, plan, at, done, cause))),
+            Err(cause) => return Err(Box::new(interrupt(master, confirmed, at, done, cause))),
         }
     }
-    match master.shielded(|master| verify(master, plan)) {
+    match master.shielded(|master| verify(master, confirmed)) {
         Ok(verified) => Ok(Written { verified, ..done }),
         Err(cause) => Err(Box::new(Interrupted { done, cause, left_unlocked: Vec::new() })),
     }
 }
 
 /// Locks again what was unlocked on the way, as far as the encoder can be reached.
-fn interrupt(master: &mut Master<'_>, plan: &HiperfacePlan, at: usize, mut done: Written, cause: Error) -> Interrupted {
+fn interrupt(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    at: usize,
+    mut done: Written,
+    cause: Error,
+) -> Interrupted {
     if !matches!(cause, Error::Cancelled | Error::Rejected { .. }) {
         // The operation that failed may have been carried out.
         done.write_cycles += 1;
     }
-    let (before, after) = plan.ops.split_at(at.min(plan.ops.len()));
+    let ops = &confirmed.plan.ops;
+    let (before, after) = ops.split_at(at.min(ops.len()));
     // The unlocking itself may be what failed half-way.
     let begun = before.iter().chain(after.first());
     let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
@@ -130,7 +141,7 @@ fn interrupt(master: &mut Master<'_>, plan: &HiperfacePlan, at: usize, mut done:
     for field in unlocked {
         let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
         let locked =
-            !cause.is_lost() && master.shielded(|master| lock_again(master, lock, &plan.base, &mut done)).is_ok();
+            !cause.is_lost() && master.shielded(|master| lock_again(master, lock, confirmed, &mut done)).is_ok();
         if !locked {
             left_unlocked.push(field);
         }
@@ -138,7 +149,7 @@ fn interrupt(master: &mut Master<'_>, plan: &HiperfacePlan, at: usize, mut done:
     Interrupted { done, cause, left_unlocked }
 }
 
-fn lock_again(master: &mut Master<'_>, lock: &Op, base: &Base, done: &mut Written) -> Result<(), Error> {
+fn lock_again(master: &mut Master<'_>, lock: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
     let Op::Define { field, to, .. } = lock else { return Ok(()) };
     let now = read_field_status(master, *field)?;
     if !now.is_writable() {
@@ -146,13 +157,13 @@ fn lock_again(master: &mut Master<'_>, lock: &Op, base: &Base, done: &mut Writte
     }
     // Whatever else the plan would have changed stays as it is: only the protection comes back.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
-    let sent = perform(master, &lock, base)?;
+    let sent = perform(master, &lock, confirmed)?;
     done.write_cycles += u64::from(sent);
     Ok(())
 }
 
 /// One operation. Gives how often it was sent.
-fn perform(master: &mut Master<'_>, op: &Op, base: &Base) -> Result<u32, Error> {
+fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {
         Op::Define { field, from, to } => {
@@ -169,17 +180,23 @@ fn perform(master: &mut Master<'_>, op: &Op, base: &Base) -> Result<u32, Error> 
         }
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
-            let sent = master.tell(&request, |master| opens(master, base, *number, *new))?;
+            let sent = master.tell(&request, |master| opens(master, &confirmed.plan.base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
-        Op::SetPosition { to, synchronise, .. } => {
+        Op::SetPosition { from, to, synchronise } => {
             let request = if *synchronise {
                 Request::Synchronise { position: *to, code0 }
             } else {
                 Request::SetPosition { position: *to, code0 }
             };
-            master.tell(&request, |master| Ok(super::read_position(master, None)?.raw.abs_diff(*to) <= 1))
+            let telling = distance(*from, *to, confirmed.range) > 1;
+            master.tell(&request, |master| {
+                if !telling {
+                    return Err(Error::Unexpected("the position was there before: it does not tell".to_owned()));
+                }
+                Ok(distance(super::read_position(master, None)?.raw, *to, confirmed.range) <= 1)
+            })
         }
         Op::SetAddress { to, .. } => set_address(master, *to),
         Op::Configure { to, .. } => {
@@ -240,7 +257,8 @@ fn opens(
 }
 
 /// Reads back what the plan has changed: the last word on every field and every byte.
-fn verify(master: &mut Master<'_>, plan: &HiperfacePlan) -> Result<u64, Error> {
+fn verify(master: &mut Master<'_>, confirmed: &Confirmed<'_>) -> Result<u64, Error> {
+    let plan = confirmed.plan;
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
         let later = plan.ops.get(at + 1..).unwrap_or_default();
@@ -266,7 +284,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan) -> Result<u64, Error> {
             }
             Op::SetPosition { to, .. } => {
                 let raw = super::read_position(master, None)?.raw;
-                if raw.abs_diff(*to) > 1 {
+                if distance(raw, *to, confirmed.range) > 1 {
                     return Err(mismatch(op, to.to_string(), raw.to_string()));
                 }
                 verified += 1;
@@ -302,6 +320,20 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan) -> Result<u64, Error> {
 
 fn mismatch(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.item(), expected, got }
+}
+
+/// Checks that nobody answers at an address: two encoders at one address can never be told apart again.
+///
+/// # Errors
+/// [`Error::AddressTaken`], where anything comes back; the wire, or the user's wish.
+pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
+    let before = std::mem::replace(&mut master.station().address, address.byte());
+    let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
+    master.station().address = before;
+    match answers?.iter().all(|answer| matches!(answer, Err(Trouble::Silence { .. }))) {
+        true => Ok(()),
+        false => Err(Error::AddressTaken { address: address.byte() }),
+    }
 }
 
 /// Free memory and number of fields.

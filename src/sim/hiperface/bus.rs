@@ -102,6 +102,14 @@ impl Bus {
         self.encoders.get_mut(index)
     }
 
+    /// Other faults from now on: a cable that was mended, or one that breaks only now.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.faults = faults.clone();
+        for encoder in &mut self.encoders {
+            encoder.set_faults(faults.clone());
+        }
+    }
+
     /// Power of all encoders goes and comes back at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);

@@ -219,6 +219,12 @@ impl Encoder {
         }
     }
 
+    /// Other faults from now on; frames and stores are counted on.
+    pub(super) fn set_faults(&mut self, faults: Faults) {
+        self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
+        self.faults = faults;
+    }
+
     /// Power goes and comes back at `now`.
     pub(super) fn power_cycle(&mut self, now: Moment) {
         self.power_off();

@@ -1,7 +1,7 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
 use super::{Change, JobError, Prepared};
-use crate::device::hiperface::write::{read_guarded_fields, read_memory};
+use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
     Error, Identity, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
@@ -9,7 +9,7 @@ use crate::profile::hiperface::{
     Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar, plan_create,
     plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
-use crate::protocol::hiperface::{CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
+use crate::protocol::hiperface::{BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
 use crate::store::Logbook;
 use crate::worker::{Progress, Session};
 
@@ -137,6 +137,10 @@ fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobE
         Change::ChangeCode { number, new } => change_code(master, number, new)?,
         Change::SetAddress(to) => {
             let from = master.station().address;
+            // Broadcast: one encoder is connected, which may be there itself.
+            if from != to.byte() && from != BROADCAST {
+                ensure_free(master, to)?;
+            }
             let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
             plan_scalar(memory.fields, Scalar::Address(from), op)
         }

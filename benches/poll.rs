@@ -1,0 +1,86 @@
+//! How fast the position is polled, against the least time that the protocol allows, and beside two naive ways: waiting
+//! for the longest time that the manual gives, and a fixed 250 ms after each request.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::hiperface::Station;
+use encoder_studio::link::{ByteLink, Clock, RealClock, SimLink, VirtualClock};
+use encoder_studio::protocol::hiperface::{EncoderTypes, LineSettings};
+use encoder_studio::sim::hiperface::{Bus, Config};
+use encoder_studio::store::Store;
+use encoder_studio::worker::{HiperfaceJob, Session};
+
+/// The virtual encoder's time for 42h.
+const PROCESSING: f64 = 3.7;
+/// Longest time for 42h in the manual's table.
+const LONGEST: f64 = 10.0;
+/// Settings bytes to poll with: 9600 and 38400, even, 44 bits.
+const SETTINGS: [u8; 2] = [0xE4, 0xE6];
+
+/// 42h: three characters there, silence, processing, seven characters back, silence; a character has 11 bits.
+fn least_ms(baud: f64) -> f64 {
+    (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
+}
+
+fn bus(settings: u8) -> Arc<Mutex<Bus>> {
+    Arc::new(Mutex::new(Config::from_pairs(&[("settings".to_owned(), settings.to_string())]).unwrap().bus()))
+}
+
+fn median(mut cycles: Vec<f64>) -> f64 {
+    cycles.sort_by(f64::total_cmp);
+    cycles[cycles.len() / 2]
+}
+
+/// Median time from one position to the next, in milliseconds, as the program polls.
+fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    let mut station = Station::new(Duration::from_millis(20));
+    station.format = LineSettings::from_byte(settings).format().unwrap();
+    let mut link = SimLink::connect(bus(settings), clock.clone());
+    link.set_format(station.format).unwrap();
+    let types = EncoderTypes::built_in();
+    let mut session = Session::new(Box::new(link), clock.clone(), station, Store::at(folder.path()), types, true);
+    session.run_inline(HiperfaceJob::Position(None)).unwrap();
+    let cycle = |_| {
+        let before = clock.now();
+        session.run_inline(HiperfaceJob::Position(None)).unwrap();
+        clock.now().since(before).as_secs_f64() * 1e3
+    };
+    median((0..count).map(cycle).collect())
+}
+
+/// The same, sending, waiting for a fixed time, and reading what has come.
+fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, count: usize) -> f64 {
+    let mut link = SimLink::connect(bus(settings), owned);
+    link.set_format(LineSettings::from_byte(settings).format().unwrap()).unwrap();
+    let cycle = |_| {
+        let before = clock.now();
+        link.send(&[0x40, 0x42, 0x02]).unwrap();
+        clock.sleep_until(before + Duration::from_secs_f64(wait_ms / 1e3));
+        let mut reply = Vec::new();
+        link.receive(clock.now(), &mut reply).unwrap();
+        assert_eq!(reply.len(), 7);
+        clock.now().since(before).as_secs_f64() * 1e3
+    };
+    median((0..count).map(cycle).collect())
+}
+
+fn main() {
+    println!("polling 42h, median cycle in ms and share of it that the protocol needs (goal: 95 % or more)");
+    println!("{:<10} {:<8} {:>9} {:>9} {:>8}", "way", "time", "baud", "cycle", "share");
+    for settings in SETTINGS {
+        let baud = LineSettings::from_byte(settings).baud().unwrap().bits_per_second();
+        let least = least_ms(f64::from(baud));
+        let row = |way: &str, time: &str, cycle: f64| {
+            println!("{way:<10} {time:<8} {baud:>9} {cycle:>9.3} {:>6.1} %", least / cycle * 100.0);
+        };
+        row("least", "-", least);
+        row("studio", "virtual", studio(settings, Arc::new(VirtualClock::default()), 2000));
+        row("studio", "real", studio(settings, Arc::new(RealClock::start()), 200));
+        let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+        row("longest", "real", naive(settings, &*clock, clock.clone(), least - PROCESSING + LONGEST, 100));
+        row("250 ms", "real", naive(settings, &*clock, clock.clone(), 250.0, 8));
+    }
+}

@@ -1,0 +1,84 @@
+//! Converters that give our own bytes back: learned where it can be learned, and never a value by mistake.
+
+use encoder_studio::device::hiperface::{Echo, Station};
+use encoder_studio::profile::hiperface::{FieldRange, Item};
+use encoder_studio::protocol::hiperface::{Command, LineSettings};
+use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput, Value};
+
+use crate::support::{Desk, MARGIN};
+
+fn desk(echoes: bool, setting: Echo, more: &str) -> Desk {
+    let mut station = Station::new(MARGIN);
+    station.echo = setting;
+    Desk::with_station(&format!("echo={}{more}", if echoes { "on" } else { "off" }), station)
+}
+
+#[test]
+fn echo_is_learned_and_stripped() {
+    for echoes in [true, false] {
+        let told = if echoes { Echo::On } else { Echo::Off };
+        for setting in [Echo::Unknown, told] {
+            let mut desk = desk(echoes, setting, "");
+            let truth = desk.memory();
+            let profile = desk.save().unwrap();
+            assert_eq!(profile.fields[0].bytes.as_ref(), Some(&truth[0].1));
+            assert_eq!(profile.recorded.position, Some(0x000E_0531));
+            assert_eq!(desk.session.station().echo, told);
+            desk.change(Change::IncrementCounter).unwrap();
+            assert_eq!(desk.bus().encoders()[0].counter(), 1);
+            assert_eq!(desk.session.station().damaged, 0);
+        }
+    }
+}
+
+/// Told wrongly, every answer is refused; no byte of it is shown as a value.
+#[test]
+fn a_wrong_setting_gives_errors_and_no_values() {
+    for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
+        let mut desk = desk(echoes, setting, "");
+        let (memory, worn) = (desk.memory(), desk.wear());
+        let range = FieldRange::new(0, 0, 4);
+        for job in [
+            HiperfaceJob::Identify,
+            HiperfaceJob::Position(None),
+            HiperfaceJob::Status,
+            HiperfaceJob::Read(Item::Counter),
+            HiperfaceJob::Read(Item::Field(range)),
+            HiperfaceJob::Save(Default::default()),
+            HiperfaceJob::Prepare(Change::IncrementCounter),
+            HiperfaceJob::ConfigureForNow(LineSettings::FACTORY),
+        ] {
+            let words = format!("echoes: {echoes}, {setting:?}: {job:?}");
+            assert!(desk.run(job).is_err(), "{words}");
+        }
+        assert_eq!((desk.memory(), desk.wear()), (memory, worn));
+    }
+}
+
+/// The replies to 47h and 67h are the requests once more: from them nobody can learn.
+#[test]
+fn nothing_is_learned_from_a_reply_that_is_its_request() {
+    for echoes in [true, false] {
+        let mut desk = desk(echoes, Echo::Unknown, "");
+        desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap();
+        assert_eq!(desk.tap().sent[0][1], Command::ReadTypeLabel.byte(), "learned with a reading command first");
+        assert_eq!(desk.session.station().echo, if echoes { Echo::On } else { Echo::Off });
+    }
+    // With nobody at the other end, an echo alone is no reply to either.
+    let mut desk = desk(true, Echo::Unknown, "&fault=silent-after:0");
+    desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap_err();
+    assert_eq!(desk.session.station().echo, Echo::Unknown);
+    assert_eq!(desk.tap().count(Command::ConfigureLineTemporarily), 0);
+}
+
+/// A byte with the value of the access code makes a reply that equals its request.
+#[test]
+fn a_byte_that_has_the_value_of_its_code_is_read() {
+    for echoes in [true, false] {
+        let mut desk = desk(echoes, Echo::Unknown, "");
+        desk.change(Change::Store { range: FieldRange::new(0, 7, 1), bytes: vec![0x55] }).unwrap();
+        let item = Item::Field(FieldRange::new(0, 7, 1));
+        let HiperfaceOutput::Value(value) = desk.run(HiperfaceJob::Read(item)).unwrap() else { panic!() };
+        assert_eq!(value, Value::Bytes(vec![0x55]));
+    }
+}

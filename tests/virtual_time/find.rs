@@ -1,0 +1,105 @@
+//! Finding encoders whose settings nobody remembers: all of them, with 52h alone, and not a byte on a line that is in use.
+
+use std::time::Duration;
+
+use encoder_studio::device::hiperface::find::{FindOptions, Findings, Found};
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::hiperface::LineSettings;
+use encoder_studio::worker::{HiperfaceJob, HiperfaceOutput};
+
+use crate::support::Desk;
+
+fn find(desk: &mut Desk, options: FindOptions) -> Findings {
+    let findings = match desk.run(HiperfaceJob::Find(options)).unwrap() {
+        HiperfaceOutput::Found(findings) => findings,
+        other => panic!("{other:?}"),
+    };
+    assert!(desk.tap().sent.iter().all(|frame| frame[1] == 0x52), "nothing but 52h");
+    findings
+}
+
+fn searched(desk: &mut Desk, options: FindOptions) -> Vec<Found> {
+    match find(desk, options) {
+        Findings::Searched(found) => found,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn one_encoder_at_odd_settings() {
+    // 600 to 38400 baud, each parity, both time-outs, standard and bus
+    for (byte, address) in
+        [(0xE0, 0x5F), (0xC1, 0x41), (0xF2, 0x50), (0x63, 0x40), (0x84, 0x4A), (0xB5, 0x5E), (0xA6, 0x40)]
+    {
+        let settings = LineSettings::from_byte(byte);
+        let mut desk = Desk::new(&format!("settings={byte}&address={address}"));
+        let found = searched(&mut desk, FindOptions::default());
+        assert_eq!(found.len(), 1, "{settings}");
+        assert_eq!((found[0].address, Some(found[0].format)), (address, settings.format()));
+        assert_eq!(found[0].label.settings, settings);
+        assert!(desk.tap().sent.iter().all(|frame| frame[0] != 0xFF), "no broadcast without consent");
+        assert_eq!(desk.session.station().address, 0x40, "our side is as before");
+    }
+}
+
+#[test]
+fn eight_encoders_on_a_bus() {
+    for settings in [0x64, 0x65] {
+        let mut desk = Desk::new(&format!("encoders=8&address=0x52&settings={settings}"));
+        let found = searched(&mut desk, FindOptions::default());
+        let addresses: Vec<u8> = found.iter().map(|found| found.address).collect();
+        assert_eq!(addresses, (0x52..0x5A).collect::<Vec<u8>>());
+    }
+}
+
+#[test]
+fn on_a_line_in_use_nothing_is_sent() {
+    for traffic in [vec![0x40], vec![0x40, 0x42, 0x02, 0x00, 0xFF]] {
+        let mut desk = Desk::new("");
+        desk.tap().foreign = traffic.clone().into();
+        let options = FindOptions { one_encoder: true, power_cycle: Some(Duration::from_secs(3)) };
+        let Findings::ForeignTraffic { bytes } = find(&mut desk, options) else { panic!() };
+        assert_eq!(bytes, traffic.len());
+        assert_eq!(desk.tap().sent.len(), 0);
+    }
+}
+
+#[test]
+fn broadcast_is_the_last_resort_and_needs_consent() {
+    let mut desk = Desk::new("address=0x47");
+    let found = searched(&mut desk, FindOptions { one_encoder: true, power_cycle: None });
+    assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), [0x47]);
+    let first_broadcast = desk.tap().sent.iter().position(|frame| frame[0] == 0xFF).unwrap();
+    assert!(first_broadcast > 32, "the formats at which nobody answered, after all their addresses");
+}
+
+#[test]
+fn nobody_is_found_on_an_empty_line() {
+    let mut desk = Desk::new("fault=silent-after:0");
+    assert_eq!(searched(&mut desk, FindOptions::default()), []);
+    assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
+}
+
+/// Whoever comes on while the search waits is caught in the window in which it listens at factory settings.
+#[test]
+fn a_power_cycle_opens_the_default_window() {
+    for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
+        let mut desk = Desk::new(&format!("settings={settings}&fault=silent-after:0"));
+        let bus = desk.bus.clone();
+        let clock = desk.clock.clone();
+        let mut questions = 0;
+        desk.session.watch(move |_| {
+            questions += 1;
+            if questions == 20 {
+                let mut bus = bus.lock().unwrap();
+                bus.set_faults(&Default::default());
+                bus.power_cycle(clock.now());
+            }
+        });
+        let options = FindOptions { one_encoder, power_cycle: Some(Duration::from_secs(30)) };
+        let found = searched(&mut desk, options);
+        assert_eq!(found[0].address, 0x40);
+        assert_eq!(found[0].format, encoder_studio::units::CharacterFormat::FACTORY);
+        assert_eq!(found[0].label.settings.byte(), settings, "what it has stored is told");
+    }
+}

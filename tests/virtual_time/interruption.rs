@@ -1,0 +1,315 @@
+//! A restore that is cancelled, or cut off, or robbed of its power at every single transaction: what the encoder then
+//! holds is described, nothing else has changed, and a second run completes it.
+
+use encoder_studio::device::hiperface::Error;
+use encoder_studio::device::hiperface::write::Interrupted;
+use encoder_studio::link::Cancel;
+use encoder_studio::profile::hiperface::{FieldImage, FieldRange, HiperfaceProfile, Op};
+use encoder_studio::protocol::hiperface::{DataFieldStatus, StatusCode};
+use encoder_studio::worker::{Change, Committed, JobError, Prepared};
+
+use crate::support::{Desk, Fields, backup, bytes, restore_of};
+
+/// An encoder with a write-protected field guarded by a code of its own, and the profile it is to become: several runs
+/// in field 0, the protected field, a plain one, and a new one that is to be protected.
+fn scene() -> (Desk, HiperfaceProfile) {
+    let mut desk = Desk::new("codes=2:66");
+    desk.know_code(2, 0x66);
+    let status = DataFieldStatus::from_byte;
+    for (number, byte, count) in [(1, 0xE8, 16), (2, 0xC9, 32), (3, 0xC8, 16)] {
+        desk.change(Change::CreateField { number, status: status(byte) }).unwrap();
+        let bytes = bytes(number, count);
+        desk.change(Change::Store { range: FieldRange::new(number, 0, count), bytes }).unwrap();
+    }
+    desk.change(Change::LockField { number: 1, lock: true }).unwrap();
+    let mut wanted = desk.save().unwrap();
+    for (field, places) in [(0, vec![2, 3, 9, 30]), (1, vec![0, 7, 15]), (2, vec![5])] {
+        for place in places {
+            wanted.fields[field].bytes.as_mut().unwrap()[place] ^= 0x3C;
+        }
+    }
+    wanted.fields.push(FieldImage { number: 4, status: status(0xA8), bytes: Some(bytes(9, 16)) });
+    (desk, wanted)
+}
+
+/// What the first operations of the plan make of a memory.
+fn applied(before: &Fields, ops: &[Op]) -> Fields {
+    let mut fields = before.clone();
+    for op in ops {
+        match op {
+            Op::Define { field, to, .. } => match fields.get_mut(usize::from(*field)) {
+                Some(entry) => entry.0 = to.byte(),
+                // The encoder has never written there.
+                None => fields.push((to.byte(), vec![0xFF; to.size().bytes()])),
+            },
+            Op::Store { field, address, new, .. } => {
+                let start = usize::from(*address);
+                fields[usize::from(*field)].1[start..start + new.len()].copy_from_slice(new);
+            }
+            other => panic!("{other:?} in a restore"),
+        }
+    }
+    fields
+}
+
+fn locked_again(mut fields: Fields) -> Fields {
+    fields[1].0 = 0xA8;
+    fields
+}
+
+fn fields_of(profile: &HiperfaceProfile) -> Fields {
+    profile.fields.iter().map(|field| (field.status.byte(), field.bytes.clone().unwrap())).collect()
+}
+
+#[test]
+fn the_plan_is_the_shortest_there_is() {
+    let (mut desk, wanted) = scene();
+    let prepared = desk.prepare(restore_of(&wanted)).unwrap();
+    let items: Vec<String> = prepared.plan.ops.iter().map(Op::item).collect();
+    let expected = [
+        "field:0@2+2",
+        "field:0@9+1",
+        "field:0@30+1", // three runs
+        "status:1",
+        "field:1@0+1",
+        "field:1@7+1",
+        "field:1@15+1",
+        "status:1", // unlock, write, lock
+        "field:2@5+1",
+        "status:4",
+        "field:4@0+16",
+        "status:4", // create, write, lock
+    ];
+    assert_eq!(items, expected);
+    assert_eq!(prepared.plan.write_cycles(), 12);
+}
+
+/// How a commit ended, with the memory before and after it.
+struct Ending<'a> {
+    desk: &'a Desk,
+    prepared: &'a Prepared,
+    before: &'a Fields,
+    worn_before: u64,
+    context: String,
+}
+
+impl Ending<'_> {
+    /// After a wish to end: exactly the operations that are counted were carried out, and what was locked is locked.
+    fn assert_cancelled_cleanly(&self, interrupted: &Interrupted) {
+        let Ending { context, .. } = self;
+        assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
+        assert_eq!(interrupted.left_unlocked, Vec::<u8>::new(), "{context}");
+        let done = applied(self.before, &self.prepared.plan.ops[..interrupted.done.ops]);
+        assert_eq!(self.desk.memory(), locked_again(done), "{context}");
+        assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
+    }
+
+    /// After a cut: the operations that are counted were carried out, the one in flight was or was not, and a field
+    /// that is left unlocked is named.
+    fn assert_cut_off_and_told(&self, interrupted: &Interrupted) {
+        let Ending { context, .. } = self;
+        let ops = &self.prepared.plan.ops;
+        let count = interrupted.done.ops;
+        let in_flight = ops.get(count);
+        let memory = self.desk.memory();
+        let without = applied(self.before, &ops[..count]);
+        let with = applied(self.before, &ops[..ops.len().min(count + 1)]);
+        assert!(memory == without || memory == with, "{context}: {interrupted:?}\n{memory:02X?}\n{without:02X?}");
+        assert!(interrupted.cause.is_lost(), "{context}: {interrupted:?}");
+        let open = memory[1].0 & 0x40 != 0;
+        let told = interrupted.left_unlocked.contains(&1);
+        let unclear = in_flight.is_some_and(|op| op.unlocks() || op.locks(1));
+        assert!(open == told || told && unclear, "{context}: open {open}, told {told}");
+        assert!(interrupted.left_unlocked.iter().all(|field| *field == 1), "{context}: {interrupted:?}");
+        let spent = self.desk.wear() - self.worn_before;
+        let reported = interrupted.done.write_cycles;
+        assert!(reported == spent || reported == spent + 1, "{context}: {reported} told, {spent} spent");
+    }
+}
+
+/// From wherever it stands, the profile can be restored; and the backup gives back what was there.
+fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
+    let mut forwards = desk.copied();
+    forwards.know_code(2, 0x66);
+    forwards.restore(wanted).unwrap();
+    assert_eq!(forwards.memory(), fields_of(wanted));
+    assert_eq!(forwards.prepare(restore_of(wanted)).unwrap().plan.ops, [], "a third run has nothing to do");
+    let Some(kept) = kept else { return };
+    let mut backwards = desk.copied();
+    backwards.know_code(2, 0x66);
+    backwards.restore(kept).unwrap();
+    // A field that was created stays; restoring never deletes.
+    assert_eq!(backwards.memory()[..before.len()], before[..]);
+}
+
+/// Carries the restore out on a fresh copy of the scene; `disturb` is called when the plan stands.
+fn disturbed(
+    scene: &(Desk, HiperfaceProfile),
+    context: String,
+    disturb: impl FnOnce(&mut Desk),
+    judge: impl FnOnce(&Ending<'_>, &Interrupted),
+) -> bool {
+    let (original, wanted) = scene;
+    let mut desk = original.copied();
+    desk.know_code(2, 0x66);
+    let (before, worn_before) = (desk.memory(), desk.wear());
+    let prepared = desk.prepare(restore_of(wanted)).unwrap();
+    disturb(&mut desk);
+    let result = desk.commit(&prepared);
+    // Whatever went wrong is over.
+    desk.bus().set_faults(&Default::default());
+    let reconnected = desk.reconnected();
+    match result {
+        Ok(Committed { written, .. }) => {
+            assert_eq!(desk.memory(), fields_of(wanted), "{context}");
+            assert_eq!((written.ops, written.write_cycles), (12, 12), "{context}");
+            assert_eq!(desk.wear() - worn_before, 12, "{context}");
+            return true;
+        }
+        Err(JobError::Interrupted { interrupted, backup: path, planned: 12 }) => {
+            judge(&Ending { desk: &desk, prepared: &prepared, before: &before, worn_before, context }, &interrupted);
+            let kept = backup(&path);
+            assert_can_be_completed(&reconnected, wanted, &before, Some(&kept));
+        }
+        Err(JobError::Device(error)) => {
+            assert!(error == Error::Cancelled || error.is_lost(), "{context}: {error}");
+            assert_eq!(desk.memory(), before, "{context}");
+            assert_eq!(desk.wear(), worn_before, "{context}");
+            assert_can_be_completed(&reconnected, wanted, &before, None);
+        }
+        Err(error) => panic!("{context}: {error:?}"),
+    }
+    false
+}
+
+#[test]
+fn cancelled_at_every_transaction() {
+    let scene = scene();
+    let mut steps = 0;
+    while !disturbed(
+        &scene,
+        format!("cancelled after {steps}"),
+        |desk| desk.session.set_cancel(Cancel::after(steps)),
+        |ending, told| ending.assert_cancelled_cleanly(told),
+    ) {
+        steps += 1;
+    }
+    assert!(steps > 12, "each operation is a transaction at least: {steps}");
+}
+
+/// With a code waiting in the encoder's queue, the reply to a write announces it. The write is done all the same.
+#[test]
+fn cancelled_at_every_transaction_of_an_encoder_that_warns() {
+    let scene = scene();
+    for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
+        for steps in 0.. {
+            let warn = |desk: &mut Desk| {
+                desk.session.set_cancel(Cancel::after(steps));
+                for _ in 0..4 {
+                    desk.bus().encoder_mut(0).unwrap().report(code);
+                }
+            };
+            let context = format!("warning, cancelled after {steps}");
+            if disturbed(&scene, context, warn, |ending, told| ending.assert_cancelled_cleanly(told)) {
+                break;
+            }
+        }
+    }
+}
+
+/// The warning comes up in the middle: announced by the reply to a write, with the wish to end right behind it.
+#[test]
+fn a_warning_in_the_middle_hides_no_write() {
+    let (original, wanted) = scene();
+    for store in 1..=7 {
+        for steps in 0..40 {
+            let mut desk = original.copied();
+            desk.know_code(2, 0x66);
+            let (before, worn_before) = (desk.memory(), desk.wear());
+            let prepared = desk.prepare(restore_of(&wanted)).unwrap();
+            desk.session.set_cancel(Cancel::after(steps));
+            let (bus, mut stores) = (desk.bus.clone(), 0);
+            let mut raised = false;
+            // The trace is told of a request before it is on the line.
+            desk.session.watch(move |entry| {
+                stores += usize::from(entry.bytes.to_string().starts_with("40 4B"));
+                if stores == store && !raised {
+                    raised = true;
+                    bus.lock().unwrap().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+                }
+            });
+            if let Err(JobError::Interrupted { interrupted, .. }) = desk.commit(&prepared) {
+                let context = format!("store {store}, cancelled after {steps}");
+                let ending = Ending { desk: &desk, prepared: &prepared, before: &before, worn_before, context };
+                ending.assert_cancelled_cleanly(&interrupted);
+            }
+        }
+    }
+}
+
+#[test]
+fn cut_off_at_every_transaction() {
+    let scene = scene();
+    type Cut = fn(&mut Desk, usize);
+    let cuts: [(&str, Cut); 4] = [
+        ("lost", |desk, at| desk.tap().lost_from = Some(at)),
+        ("deaf", |desk, at| desk.tap().deaf_from = Some(at)),
+        ("mute", |desk, at| desk.tap().mute_from = Some(at)),
+        ("silent", |desk, at| {
+            // The setting-up has used frames of its own; the fault counts them all.
+            let already = frames_so_far(&desk.bus().clone());
+            desk.bus().set_faults(&format!("silent-after:{}", already + at).parse().unwrap());
+        }),
+    ];
+    for (name, cut) in cuts {
+        for at in 0.. {
+            let disturb = |desk: &mut Desk| {
+                let sent = desk.tap().sent.len();
+                cut(desk, if name == "silent" { at } else { sent + at });
+            };
+            if disturbed(&scene, format!("{name} after {at}"), disturb, |ending, told| {
+                ending.assert_cut_off_and_told(told)
+            }) {
+                assert!(at > 20, "{name}: the read-back counts as well: {at}");
+                break;
+            }
+        }
+    }
+}
+
+/// Frames an encoder has taken: the least number after which the fault "silent" has come already.
+fn frames_so_far(bus: &encoder_studio::sim::hiperface::Bus) -> usize {
+    let is_silent = |frames: usize| {
+        let mut probe = bus.clone();
+        probe.set_faults(&format!("silent-after:{frames}").parse().unwrap());
+        probe.encoders()[0].settings_at(encoder_studio::units::Moment::START).is_none()
+    };
+    (0..).take_while(|frames| is_silent(*frames)).count().saturating_sub(1)
+}
+
+#[test]
+fn power_lost_in_the_middle_of_every_store() {
+    let (original, wanted) = scene();
+    // field 0: 3, field 1: 3, field 2: 1, field 4: 1
+    for store in 1..=8 {
+        let mut desk = original.copied();
+        desk.know_code(2, 0x66);
+        let before = desk.memory();
+        let prepared = desk.prepare(restore_of(&wanted)).unwrap();
+        let stores = desk.bus().encoders()[0].wear().writes(encoder_studio::protocol::hiperface::Command::StoreData);
+        desk.bus().set_faults(&format!("die-in-store:{}", stores + store).parse().unwrap());
+        let error = desk.commit(&prepared).unwrap_err();
+        let JobError::Interrupted { interrupted, backup: path, planned: 12 } = error else { panic!("{error:?}") };
+        assert!(interrupted.cause.is_lost(), "store {store}: {interrupted:?}");
+        // Three stores into field 1, between unlocking and locking.
+        let expected = if (4..=6).contains(&store) { vec![1] } else { vec![] };
+        assert_eq!(interrupted.left_unlocked, expected, "store {store}");
+        let reconnected = desk.reconnected();
+        assert_can_be_completed(&reconnected, &wanted, &before, Some(&backup(&path)));
+    }
+    let mut desk = original.copied();
+    desk.know_code(2, 0x66);
+    let stores = desk.bus().encoders()[0].wear().writes(encoder_studio::protocol::hiperface::Command::StoreData);
+    desk.bus().set_faults(&format!("die-in-store:{}", stores + 9).parse().unwrap());
+    desk.restore(&wanted).unwrap();
+}

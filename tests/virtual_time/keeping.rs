@@ -1,0 +1,95 @@
+//! What a write leaves on disk, and what happens where the disk says no.
+
+use std::fs;
+
+use encoder_studio::profile::hiperface::FieldRange;
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber};
+use encoder_studio::store::Store;
+use encoder_studio::worker::{Change, JobError};
+
+use crate::support::{Desk, backup};
+
+fn store_byte(value: u8) -> Change {
+    Change::Store { range: FieldRange::new(0, 3, 1), bytes: vec![value] }
+}
+
+#[test]
+fn without_a_before_image_nothing_is_written() {
+    for in_the_way in ["data", "data/backups", "data/backups/hiperface", "data/backups/hiperface/GB0450179"] {
+        let mut desk = Desk::new("");
+        let path = desk.folder.path().join(in_the_way);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, "a file").unwrap();
+        let memory = desk.memory();
+        let error = desk.change(store_byte(0xEE)).unwrap_err();
+        assert!(matches!(error, JobError::NotKept(_)), "{in_the_way}: {error:?}");
+        assert_eq!((desk.memory(), desk.wear()), (memory, 0), "{in_the_way}");
+    }
+}
+
+#[test]
+fn a_broken_logbook_stops_no_write_and_is_told() {
+    for garbage in [true, false] {
+        let mut desk = Desk::new("");
+        let path = Store::at(desk.folder.path()).logbook_path();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        if garbage {
+            fs::write(&path, "this is no database, and longer than the hundred bytes of the header that SQLite looks for in a file: it is text").unwrap();
+        } else {
+            fs::create_dir(&path).unwrap();
+        }
+        let done = desk.change(store_byte(0xEE)).unwrap();
+        assert!(done.logbook_warning.is_some());
+        assert_eq!(desk.memory()[0].1[3], 0xEE);
+        assert_eq!(done.written.verified, 1);
+        if garbage {
+            assert!(fs::read_to_string(&path).unwrap().starts_with("this is no database"), "left where it is");
+        }
+    }
+}
+
+#[test]
+fn a_backup_is_a_profile_of_what_was_there() {
+    let mut desk = Desk::new("");
+    let before = desk.memory();
+    let done = desk.change(store_byte(0xEE)).unwrap();
+    let kept = backup(&done.backup.unwrap());
+    assert_eq!(kept.identity.serial_number, "GB0450179");
+    assert_eq!(kept.fields[0].bytes.as_ref(), Some(&before[0].1));
+    desk.restore(&kept).unwrap();
+    assert_eq!(desk.memory(), before);
+}
+
+/// Nothing that is kept holds an access code: the codes used here stand nowhere, in no form.
+#[test]
+fn no_access_code_is_kept() {
+    let mut desk = Desk::new("codes=0:9D,2:66");
+    desk.know_code(0, 0x9D);
+    desk.know_code(2, 0x66);
+    desk.change(store_byte(0xEE)).unwrap();
+    let number = CodeNumber::new(2).unwrap();
+    desk.change(Change::ChangeCode { number, new: AccessCode::new(0xC3) }).unwrap();
+    desk.change(Change::ChangeCode { number: CodeNumber::ZERO, new: AccessCode::new(0xC3) }).unwrap();
+    let sent = desk.tap().sent.len();
+    desk.tap().deaf_from = Some(sent + 12);
+    let _ = desk.change(store_byte(0x11));
+    let mut folders = vec![desk.folder.path().to_owned()];
+    let mut files = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            files += 1;
+            let content = fs::read(&path).unwrap();
+            let text = String::from_utf8_lossy(&content);
+            for word in ["9D", "0x66", "66h", "C3"] {
+                // The name plate has bytes of its own; none of them is one of these.
+                assert!(!text.split(|c: char| !c.is_ascii_alphanumeric()).any(|w| w == word), "{word} in {path:?}");
+            }
+        }
+    }
+    assert!(files >= 4);
+}

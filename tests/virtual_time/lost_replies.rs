@@ -1,0 +1,148 @@
+//! Requests and replies that get lost, one after the other: what is asked is asked again, what changes the encoder is
+//! never carried out twice.
+
+use std::time::Duration;
+
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DeviceAddress};
+use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput};
+
+use crate::support::Desk;
+
+/// Carries a change out with every single frame's request, then reply, swallowed.
+fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl Fn(&mut Desk, &str)) {
+    let mut frames = 0;
+    for at in 0.. {
+        for request in [true, false] {
+            let mut desk = Desk::new(query);
+            setup(&mut desk);
+            let prepared = desk.prepare(change.clone()).unwrap();
+            let already = desk.tap().sent.len();
+            let worn = desk.wear();
+            match request {
+                true => desk.tap().swallow_request = Some(already + at),
+                false => desk.tap().swallow_reply = Some(already + at),
+            }
+            let context = format!("{} {at} of {change:?}", if request { "request" } else { "reply" });
+            let done = desk.commit(&prepared).unwrap_or_else(|error| panic!("{context}: {error:?}"));
+            assert_eq!(done.written.ops, 1, "{context}");
+            assert_eq!(desk.wear() - worn, 1, "{context}: written once");
+            let told = done.written.write_cycles;
+            assert!(told == 1 || request && told == 2, "{context}: {told} told");
+            frames = desk.tap().sent.len() - already;
+            *desk.tap() = Default::default();
+            judge(&mut desk, &context);
+        }
+        if at >= frames {
+            return;
+        }
+    }
+}
+
+#[test]
+fn the_counter_goes_up_by_exactly_one() {
+    for from in [0, 41, 0x00FF_FFFE] {
+        let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(from);
+        robbed("", &Change::IncrementCounter, setup, |desk, context| {
+            assert_eq!(desk.bus().encoders()[0].counter(), from + 1, "{context}");
+        });
+    }
+}
+
+#[test]
+fn the_counter_is_cleared() {
+    let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(77);
+    robbed("", &Change::ClearCounter, setup, |desk, context| {
+        assert_eq!(desk.bus().encoders()[0].counter(), 0, "{context}");
+    });
+}
+
+#[test]
+fn an_access_code_is_changed_and_known() {
+    let zero = CodeNumber::ZERO;
+    let change = Change::ChangeCode { number: zero, new: AccessCode::new(0xC3) };
+    robbed(
+        "codes=0:9D",
+        &change,
+        |desk| desk.know_code(0, 0x9D),
+        |desk, context| {
+            assert_eq!(desk.bus().encoders()[0].memory().code(zero).byte(), 0xC3, "{context}");
+            // The session knows it as well: field 0 is guarded by it.
+            assert!(desk.save().unwrap().fields[0].bytes.is_some(), "{context}");
+        },
+    );
+}
+
+#[test]
+fn the_address_is_changed_and_followed() {
+    let change = Change::SetAddress(DeviceAddress::new(0x4B).unwrap());
+    robbed(
+        "",
+        &change,
+        |_| {},
+        |desk, context| {
+            assert_eq!(desk.bus().encoders()[0].address().byte(), 0x4B, "{context}");
+            assert_eq!(desk.session.station().address, 0x4B, "{context}");
+            desk.run(HiperfaceJob::Identify).unwrap();
+        },
+    );
+}
+
+#[test]
+fn the_position_is_set() {
+    let change = Change::SetPosition { wanted: 4096, exact: true, synchronise: false, kit: false };
+    robbed(
+        "",
+        &change,
+        |_| {},
+        |desk, context| {
+            assert_eq!(desk.bus().encoders()[0].position(desk.clock.now()), 4096, "{context}");
+        },
+    );
+}
+
+/// A position that was there before does not tell whether the tracks were aligned: nobody may say that they were.
+#[test]
+fn synchronising_in_place_is_not_taken_for_done() {
+    let mut desk = Desk::new("model=sel37");
+    let wanted = desk.bus().encoders()[0].position(desk.clock.now());
+    let prepared = desk.prepare(Change::SetPosition { wanted, exact: true, synchronise: true, kit: true }).unwrap();
+    for at in 0..30 {
+        let mut desk = desk.copied();
+        desk.tap().swallow_request = Some(at);
+        let done = desk.commit(&prepared);
+        let carried_out = desk.bus().encoders()[0].wear().writes(Command::Synchronise);
+        assert!(carried_out <= 1);
+        assert!(done.is_err() || carried_out == 1, "frame {at} lost: {done:?}");
+    }
+}
+
+/// A failed job leaves the next one its five tries.
+#[test]
+fn patience_begins_anew_with_each_job() {
+    let mut desk = Desk::new("");
+    desk.tap().deaf_from = Some(0);
+    desk.run(HiperfaceJob::Identify).unwrap_err();
+    desk.clock.sleep_until(desk.clock.now() + Duration::from_secs(60));
+    let sent = desk.tap().sent.len();
+    desk.tap().deaf_from = None;
+    desk.tap().swallow_reply = Some(sent);
+    let identity = desk.run(HiperfaceJob::Identify).unwrap();
+    assert!(matches!(identity, HiperfaceOutput::Identity(identity) if identity.serial.serial_number == "GB0450179"));
+}
+
+#[test]
+fn a_silent_encoder_is_given_up_within_ten_seconds() {
+    for settings in ["E4", "E0", "E6"] {
+        let format =
+            encoder_studio::protocol::hiperface::LineSettings::from_byte(u8::from_str_radix(settings, 16).unwrap());
+        let mut station = encoder_studio::device::hiperface::Station::new(crate::support::MARGIN);
+        station.format = format.format().unwrap();
+        for job in [HiperfaceJob::Position(None), HiperfaceJob::Status, HiperfaceJob::Save(Default::default())] {
+            let mut desk = Desk::with_station(&format!("settings=0x{settings}&fault=silent-after:0"), station.clone());
+            desk.run(job).unwrap_err();
+            assert!(desk.clock.now().since_start() < Duration::from_secs(10), "{settings}: {:?}", desk.clock.now());
+            assert!(desk.tap().sent.len() <= 5);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! What the worker, the procedures and the virtual encoder do together, in virtual time: the same code as at a desk, with
+//! every moment of the line in the test's hands. One module a behaviour.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+mod echo;
+mod find;
+mod interruption;
+mod keeping;
+mod lost_replies;
+mod noise;
+mod plan_rules;
+mod position;
+mod settings;
+mod support;
+mod threads;

@@ -1,0 +1,156 @@
+//! The one way to write: nothing but what was planned, nothing that did not differ, nothing on another base.
+
+use encoder_studio::device::hiperface::Error;
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::hiperface::{FieldRange, Op, PlanError};
+use encoder_studio::protocol::hiperface::{Command, DataFieldStatus, DeviceAddress, LineSettings};
+use encoder_studio::worker::{Change, Commit, HiperfaceJob, JobError};
+
+use crate::support::{Desk, bytes, restore_of};
+
+fn store(field: u8, start: usize, bytes: Vec<u8>) -> Change {
+    Change::Store { range: FieldRange::new(field, start, bytes.len()), bytes }
+}
+
+#[test]
+fn a_base_that_changed_is_not_written_over() {
+    let create = Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) };
+    let set = Change::SetPosition { wanted: 0, exact: true, synchronise: false, kit: false };
+    let cases: [(Change, Change, &str); 7] = [
+        (store(0, 0, vec![1, 2]), store(0, 20, vec![9]), "field:0"),
+        (store(0, 0, vec![1, 2]), Change::LockField { number: 0, lock: true }, "field:0"),
+        (store(0, 0, vec![1, 2]), create.clone(), "number of data fields"),
+        (create.clone(), create, "number of data fields"),
+        (Change::IncrementCounter, Change::IncrementCounter, "counter"),
+        (
+            Change::Configure(LineSettings::from_byte(0xE5)),
+            Change::Configure(LineSettings::from_byte(0xE6)),
+            "settings",
+        ),
+        (set, Change::SetPosition { wanted: 500, exact: true, synchronise: false, kit: false }, ""),
+    ];
+    for (wanted, meanwhile, item) in cases {
+        let mut desk = Desk::new("");
+        let prepared = desk.prepare(wanted).unwrap();
+        desk.change(meanwhile).unwrap();
+        let (memory, worn) = (desk.memory(), desk.wear());
+        match desk.commit(&prepared) {
+            Err(JobError::Device(Error::Changed { item: named })) => assert_eq!(named, item),
+            Err(JobError::Device(Error::Moving { .. })) => assert_eq!(item, ""),
+            other => panic!("{item}: {other:?}"),
+        }
+        assert_eq!((desk.memory(), desk.wear()), (memory, worn), "{item}");
+    }
+}
+
+#[test]
+fn a_consent_to_another_plan_writes_nothing() {
+    let mut desk = Desk::new("");
+    let shown = desk.prepare(store(0, 0, vec![1])).unwrap();
+    let other = desk.prepare(store(0, 0, vec![2])).unwrap();
+    let sent = desk.tap().sent.len();
+    let commit = Commit { prepared: other, consent: Consent::to(shown.plan.id()), force_wear: false };
+    desk.run(HiperfaceJob::Commit(Box::new(commit))).unwrap_err();
+    assert_eq!(desk.tap().sent.len(), sent, "not even asked");
+    assert_eq!(desk.wear(), 0);
+}
+
+#[test]
+fn an_empty_plan_sends_nothing() {
+    let mut desk = Desk::new("");
+    let profile = desk.save().unwrap();
+    let name_plate = desk.memory()[0].1.clone();
+    let nothing = [
+        restore_of(&profile),
+        store(0, 4, name_plate[4..9].to_vec()),
+        Change::LockField { number: 0, lock: false },
+        Change::SetAddress(DeviceAddress::FACTORY),
+        Change::Configure(LineSettings::FACTORY),
+        Change::ClearCounter,
+    ];
+    for change in nothing {
+        let prepared = desk.prepare(change).unwrap();
+        assert!(prepared.plan.is_empty());
+        let sent = desk.tap().sent.len();
+        let done = desk.commit(&prepared).unwrap();
+        assert_eq!((done.written.ops, done.backup), (0, None));
+        assert_eq!(desk.tap().sent.len(), sent);
+    }
+    assert_eq!(desk.wear(), 0);
+    assert_eq!(std::fs::read_dir(desk.folder.path()).unwrap().count(), 0, "nothing on disk");
+}
+
+/// Every byte of every 4Bh differs from what stood there, and nothing but the plan's places is written.
+#[test]
+fn only_what_differs_is_written_and_every_write_is_counted() {
+    for seed in 0..20_u8 {
+        let mut desk = Desk::new("");
+        desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xCF) }).unwrap();
+        desk.change(store(1, 0, bytes(seed, 128))).unwrap();
+        let mut wanted = desk.save().unwrap();
+        for field in &mut wanted.fields {
+            for (at, byte) in field.bytes.as_mut().unwrap().iter_mut().enumerate() {
+                if (at * usize::from(seed + 1)) % 7 < 2 {
+                    *byte = byte.wrapping_add(seed + 1);
+                }
+            }
+        }
+        let (before, worn) = (desk.memory(), desk.wear());
+        let prepared = desk.prepare(restore_of(&wanted)).unwrap();
+        desk.tap().sent.clear();
+        let done = desk.commit(&prepared).unwrap();
+        assert_eq!(done.written.write_cycles, prepared.plan.write_cycles());
+        assert_eq!(desk.wear() - worn, done.written.write_cycles);
+        let mut differing = 0;
+        let tap = desk.tap();
+        for frame in tap.sent.iter().filter(|frame| frame[1] == 0x4B) {
+            let (field, start, count) = (usize::from(frame[2]), usize::from(frame[3]), usize::from(frame[4]));
+            let stored = &frame[6..6 + count];
+            for (at, byte) in stored.iter().enumerate() {
+                assert_ne!(*byte, before[field].1[start + at], "seed {seed}, field {field}, byte {}", start + at);
+                differing += 1;
+            }
+        }
+        assert_eq!(tap.count(Command::StoreData) as u64, done.written.write_cycles);
+        assert_eq!(done.written.written, differing);
+        drop(tap);
+        for (field, (_, bytes)) in wanted.fields.iter().zip(desk.memory()) {
+            assert_eq!(field.bytes.as_ref(), Some(&bytes));
+        }
+    }
+}
+
+#[test]
+fn another_encoders_profile_is_refused_before_its_fields_are_read() {
+    let mut other = Desk::new("serial=ZZ1");
+    let profile = other.save().unwrap();
+    let mut desk = Desk::new("");
+    let error = desk.prepare(restore_of(&profile)).unwrap_err();
+    assert!(matches!(error, JobError::Plan(PlanError::OtherDevice { .. })), "{error:?}");
+    assert_eq!(desk.tap().count(Command::ReadData), 0);
+}
+
+#[test]
+fn protected_fields_and_other_limits_are_refused_without_a_write() {
+    let mut desk = Desk::new("");
+    desk.change(Change::LockField { number: 0, lock: true }).unwrap();
+    let size = encoder_studio::protocol::hiperface::FieldSize::from_bytes(16).unwrap();
+    let refused = [
+        store(0, 0, vec![0]),
+        store(0, 31, vec![0, 0]),
+        store(1, 0, vec![0]),
+        Change::CreateField { number: 2, status: DataFieldStatus::from_byte(0xC8) },
+        Change::DeleteField { number: 1 },
+        Change::ResizeField { number: 1, size },
+        Change::SetPosition { wanted: 1 << 24, exact: true, synchronise: false, kit: false },
+        Change::SetPosition { wanted: 0, exact: true, synchronise: true, kit: false },
+    ];
+    let worn = desk.wear();
+    for change in refused {
+        let words = format!("{change:?}");
+        assert!(desk.prepare(change).is_err(), "{words}");
+    }
+    assert_eq!(desk.wear(), worn);
+    let ops = desk.prepare(Change::DeleteField { number: 0 }).unwrap().plan.ops;
+    assert!(matches!(ops[..], [Op::Define { field: 0, to, .. }] if !to.exists()));
+}

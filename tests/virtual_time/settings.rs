@@ -1,0 +1,135 @@
+//! Restarts, interface settings for now and for good, and addresses.
+
+use encoder_studio::device::hiperface::Station;
+use encoder_studio::protocol::hiperface::{Command, DeviceAddress, LineSettings, StatusCode};
+use encoder_studio::units::CharacterFormat;
+use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput};
+
+use crate::support::{Desk, MARGIN};
+
+fn reset(desk: &mut Desk) -> Vec<StatusCode> {
+    match desk.run(HiperfaceJob::Reset).unwrap() {
+        HiperfaceOutput::Reset(codes) => codes,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn position(desk: &mut Desk) {
+    desk.run(HiperfaceJob::Position(None)).unwrap();
+}
+
+fn station_for(settings: LineSettings) -> Station {
+    let mut station = Station::new(MARGIN);
+    station.format = settings.format().unwrap();
+    station.long_timeout = settings.long_timeout();
+    station
+}
+
+#[test]
+fn a_restart_with_any_stored_settings_is_followed() {
+    for byte in [0xE4, 0xE0, 0xE6, 0xC4, 0xF5, 0xA4, 0x85, 0x64] {
+        let settings = LineSettings::from_byte(byte);
+        let mut desk = Desk::with_station(&format!("settings={byte}"), station_for(settings));
+        assert_eq!(reset(&mut desk), []);
+        assert_eq!(desk.session.station().format, settings.format().unwrap(), "{settings}");
+        position(&mut desk);
+        // No request kept the encoder at factory settings.
+        let now = encoder_studio::link::Clock::now(&*desk.clock);
+        let in_force = desk.bus().encoders()[0].settings_at(now).unwrap();
+        assert_eq!(in_force.format(), settings.format(), "{settings}");
+        assert_eq!(in_force.long_timeout(), settings.long_timeout(), "{settings}");
+        assert_eq!(desk.tap().count(Command::Reset), 1);
+    }
+}
+
+#[test]
+fn stored_settings_are_in_force_after_the_restart_and_not_before() {
+    for byte in [0xE5, 0xC6, 0xB2] {
+        let settings = LineSettings::from_byte(byte);
+        let mut desk = Desk::new("");
+        desk.change(Change::Configure(settings)).unwrap();
+        position(&mut desk);
+        assert_eq!(desk.session.station().format, CharacterFormat::FACTORY);
+        reset(&mut desk);
+        assert_eq!(desk.session.station().format, settings.format().unwrap());
+        position(&mut desk);
+        assert_eq!(desk.wear(), 1);
+    }
+}
+
+#[test]
+fn settings_for_now_are_in_force_at_once_and_lost_with_the_restart() {
+    for byte in [0xE6, 0xC0, 0xF5, 0xA6] {
+        let settings = LineSettings::from_byte(byte);
+        let mut desk = Desk::new("");
+        desk.run(HiperfaceJob::ConfigureForNow(settings)).unwrap();
+        assert_eq!(desk.session.station().format, settings.format().unwrap());
+        position(&mut desk);
+        reset(&mut desk);
+        assert_eq!(desk.session.station().format, CharacterFormat::FACTORY);
+        position(&mut desk);
+        assert_eq!(desk.wear(), 0, "nothing was stored");
+    }
+}
+
+/// With a code waiting, the replies to 55h and 67h announce it, and the encoder is already elsewhere.
+#[test]
+fn an_encoder_that_warns_while_it_moves_is_followed() {
+    let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+    for at in 0..12 {
+        let mut desk = Desk::new("");
+        let prepared = desk.prepare(Change::SetAddress(DeviceAddress::new(0x45).unwrap())).unwrap();
+        warn_at(&mut desk, at);
+        desk.commit(&prepared).unwrap();
+        assert_eq!(desk.session.station().address, 0x45, "warning at frame {at}");
+        position(&mut desk);
+
+        let mut desk = Desk::new("");
+        warn_at(&mut desk, at);
+        desk.run(HiperfaceJob::ConfigureForNow(LineSettings::from_byte(0xE6))).unwrap();
+        position(&mut desk);
+        assert_eq!(desk.session.station().format.baud.bits_per_second(), 38_400, "warning at frame {at}");
+    }
+    let mut desk = Desk::new("");
+    warn(&mut desk);
+    desk.change(Change::SetAddress(DeviceAddress::new(0x45).unwrap())).unwrap();
+    assert_eq!(desk.session.station().codes_met, [StatusCode::TEMPERATURE], "and the code is kept");
+}
+
+fn warn_at(desk: &mut Desk, frame: usize) {
+    let (bus, mut frames) = (desk.bus.clone(), 0);
+    desk.session.watch(move |entry| {
+        if entry.direction == encoder_studio::link::Direction::Sent {
+            if frames == frame {
+                bus.lock().unwrap().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
+            }
+            frames += 1;
+        }
+    });
+}
+
+#[test]
+fn codes_of_the_start_are_all_read() {
+    let mut desk = Desk::new("temperature=130");
+    // Once from before the restart, once from the start itself: none is lost.
+    assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
+    for code in [0x01, 0x1C, 0x1D, 0x20] {
+        desk.bus().encoder_mut(0).unwrap().report(StatusCode::new(code));
+    }
+    let HiperfaceOutput::Status(codes) = desk.run(HiperfaceJob::Status).unwrap() else { panic!() };
+    assert_eq!(codes, [0x01, 0x1C, 0x1D, 0x20].map(StatusCode::new));
+    let HiperfaceOutput::Status(codes) = desk.run(HiperfaceJob::Status).unwrap() else { panic!() };
+    assert_eq!(codes, []);
+}
+
+/// Two encoders at one address can never be told apart again.
+#[test]
+fn an_address_that_somebody_has_is_refused() {
+    let mut desk = Desk::new("encoders=3");
+    let refused = desk.prepare(Change::SetAddress(DeviceAddress::new(0x42).unwrap()));
+    assert!(refused.is_err(), "{refused:?}");
+    assert_eq!(desk.session.station().address, 0x40);
+    desk.change(Change::SetAddress(DeviceAddress::new(0x43).unwrap())).unwrap();
+    let addresses: Vec<u8> = desk.bus().encoders().iter().map(|encoder| encoder.address().byte()).collect();
+    assert_eq!(addresses, [0x43, 0x41, 0x42]);
+}

@@ -1,0 +1,345 @@
+//! A desk in virtual time: a session on a virtual line, a link between them that can be told to misbehave, and all that
+//! went over it.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+use encoder_studio::device::hiperface::Station;
+use encoder_studio::link::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock};
+use encoder_studio::profile::hiperface::{HiperfaceProfile, RestoreOptions};
+use encoder_studio::profile::{Body, Consent, Document};
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
+use encoder_studio::sim::hiperface::{Bus, Config};
+use encoder_studio::store::{Store, read_text};
+use encoder_studio::units::{CharacterFormat, Moment};
+use encoder_studio::worker::{
+    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile, Session,
+};
+
+/// The margin of `sim:` links.
+pub(crate) const MARGIN: Duration = Duration::from_millis(20);
+
+/// What the link does besides carrying bytes, and what it has carried.
+#[derive(Default)]
+pub(crate) struct Tap {
+    /// Every frame that was handed to the link.
+    pub(crate) sent: Vec<Vec<u8>>,
+    /// From this frame on (0 is the first) the link is gone.
+    pub(crate) lost_from: Option<usize>,
+    /// From this frame on nothing reaches the encoder.
+    pub(crate) deaf_from: Option<usize>,
+    /// From this frame on nothing comes back.
+    pub(crate) mute_from: Option<usize>,
+    /// This frame does not reach the encoder.
+    pub(crate) swallow_request: Option<usize>,
+    /// The reply to this frame does not come back.
+    pub(crate) swallow_reply: Option<usize>,
+    /// Bytes that somebody else sends.
+    pub(crate) foreign: VecDeque<u8>,
+    /// The link says that it is gone when it is asked.
+    pub(crate) unplugged: bool,
+}
+
+impl Tap {
+    fn is_lost(&self) -> bool {
+        self.unplugged || self.lost_from.is_some_and(|from| self.sent.len() > from)
+    }
+
+    fn hears_nothing(&self) -> bool {
+        let Some(last) = self.sent.len().checked_sub(1) else { return false };
+        self.mute_from.is_some_and(|from| last >= from) || self.swallow_reply == Some(last)
+    }
+
+    /// How often a command was sent.
+    pub(crate) fn count(&self, command: Command) -> usize {
+        self.sent.iter().filter(|frame| frame[1] == command.byte()).count()
+    }
+}
+
+/// The link between a session and the virtual line.
+pub(crate) struct TestLink {
+    line: SimLink,
+    clock: Arc<dyn Clock>,
+    tap: Arc<Mutex<Tap>>,
+}
+
+impl TestLink {
+    pub(crate) fn new(bus: &Arc<Mutex<Bus>>, clock: Arc<dyn Clock>, tap: Arc<Mutex<Tap>>) -> Self {
+        TestLink { line: SimLink::connect(bus.clone(), clock.clone()), clock, tap }
+    }
+
+    fn check_plug(&self) -> Result<(), LinkError> {
+        match self.tap.lock().unwrap().is_lost() {
+            true => Err(LinkError::new("test", LinkErrorKind::Lost)),
+            false => Ok(()),
+        }
+    }
+}
+
+impl ByteLink for TestLink {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let arrives = {
+            let mut tap = self.tap.lock().unwrap();
+            let number = tap.sent.len();
+            tap.sent.push(bytes.to_vec());
+            tap.deaf_from.is_none_or(|from| number < from) && tap.swallow_request != Some(number)
+        };
+        self.check_plug()?;
+        if arrives { self.line.send(bytes) } else { Ok(()) }
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        loop {
+            self.check_plug()?;
+            if let Some(byte) = self.tap.lock().unwrap().foreign.pop_front() {
+                into.push(byte);
+                return Ok(());
+            }
+            let mut heard = Vec::new();
+            self.line.receive(until, &mut heard)?;
+            if heard.is_empty() || !self.tap.lock().unwrap().hears_nothing() {
+                into.append(&mut heard);
+                return Ok(());
+            }
+            if self.clock.now() >= until {
+                return Ok(());
+            }
+        }
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        self.line.set_format(format)
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.check_plug()
+    }
+}
+
+/// A virtual line with a session on it.
+pub(crate) struct Desk {
+    pub(crate) bus: Arc<Mutex<Bus>>,
+    pub(crate) clock: Arc<VirtualClock>,
+    pub(crate) tap: Arc<Mutex<Tap>>,
+    pub(crate) trace: Arc<Mutex<Vec<TraceEntry>>>,
+    pub(crate) folder: Arc<tempfile::TempDir>,
+    pub(crate) session: Session,
+}
+
+/// A virtual line as `sim:?…` describes it.
+pub(crate) fn bus(query: &str) -> Bus {
+    let pairs = query.split('&').filter_map(|item| item.split_once('='));
+    let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+    Config::from_pairs(&pairs).unwrap().bus()
+}
+
+impl Desk {
+    pub(crate) fn new(query: &str) -> Self {
+        Self::at(bus(query), &VirtualClock::default(), Station::new(MARGIN))
+    }
+
+    pub(crate) fn with_station(query: &str, station: Station) -> Self {
+        Self::at(bus(query), &VirtualClock::default(), station)
+    }
+
+    /// A desk with this line, not before the time of `clock`.
+    pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
+        let own = Arc::new(VirtualClock::default());
+        own.sleep_until(clock.now());
+        let folder = Arc::new(tempfile::tempdir().unwrap());
+        Self::plugged(Arc::new(Mutex::new(bus)), own, folder, station)
+    }
+
+    fn plugged(
+        bus: Arc<Mutex<Bus>>,
+        clock: Arc<VirtualClock>,
+        folder: Arc<tempfile::TempDir>,
+        station: Station,
+    ) -> Self {
+        let tap = Arc::<Mutex<Tap>>::default();
+        let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
+        let mut link = TestLink::new(&bus, clock.clone(), tap.clone());
+        link.set_format(station.format).unwrap();
+        let (store, types) = (Store::at(folder.path()), EncoderTypes::built_in());
+        let mut session = Session::new(Box::new(link), clock.clone(), station, store, types, true);
+        let (entries, raw) = (trace.clone(), tap.clone());
+        session.watch(move |entry| {
+            check_secrets(entry, raw.lock().unwrap().sent.last());
+            entries.lock().unwrap().push(entry.clone());
+        });
+        Desk { bus, clock, tap, trace, folder, session }
+    }
+
+    /// The same line at the same time in a new session: a cable that was plugged in again.
+    pub(crate) fn reconnected(&self) -> Desk {
+        let mut desk =
+            Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
+        *desk.session.codes_mut() = self.session.station().codes;
+        desk
+    }
+
+    /// A copy of all this, line and time included, with nothing kept on disk.
+    pub(crate) fn copied(&self) -> Desk {
+        let bus = self.bus.lock().unwrap().clone();
+        Self::at(bus, &self.clock, self.session.station().clone())
+    }
+
+    pub(crate) fn bus(&self) -> MutexGuard<'_, Bus> {
+        self.bus.lock().unwrap()
+    }
+
+    pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {
+        self.tap.lock().unwrap()
+    }
+
+    pub(crate) fn know_code(&mut self, number: u8, code: u8) {
+        self.session.codes_mut().set(CodeNumber::new(number).unwrap(), AccessCode::new(code));
+    }
+
+    pub(crate) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput, JobError> {
+        self.session.run_inline(job).inspect_err(|error| check_words(&error.to_string()))
+    }
+
+    pub(crate) fn prepare(&mut self, change: Change) -> Result<Prepared, JobError> {
+        match self.run(HiperfaceJob::Prepare(change))? {
+            HiperfaceOutput::Prepared(prepared) => Ok(*prepared),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn commit(&mut self, prepared: &Prepared) -> Result<Committed, JobError> {
+        let consent = Consent::to(prepared.plan.id());
+        match self.run(HiperfaceJob::Commit(Box::new(Commit {
+            prepared: prepared.clone(),
+            consent,
+            force_wear: false,
+        })))? {
+            HiperfaceOutput::Committed(committed) => Ok(committed),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
+        let prepared = self.prepare(change)?;
+        self.commit(&prepared)
+    }
+
+    pub(crate) fn restore(&mut self, profile: &HiperfaceProfile) -> Result<Committed, JobError> {
+        self.change(restore_of(profile))
+    }
+
+    pub(crate) fn save(&mut self) -> Result<HiperfaceProfile, JobError> {
+        match self.run(HiperfaceJob::Save(Default::default()))? {
+            HiperfaceOutput::Saved(saved) => {
+                let SavedProfile { profile, .. } = *saved;
+                Ok(profile)
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Status byte and content of every data field, looked at in the encoder.
+    pub(crate) fn memory(&self) -> Fields {
+        let bus = self.bus();
+        let memory = bus.encoders()[0].memory();
+        let field = |number| (memory.status(number).unwrap().byte(), memory.field_bytes(number).unwrap().to_vec());
+        (0..memory.free().fields).map(field).collect()
+    }
+
+    /// How often the encoder's EEPROM was written.
+    pub(crate) fn wear(&self) -> u64 {
+        self.bus().encoders()[0].wear().total().into()
+    }
+}
+
+/// Status byte and content of every data field.
+pub(crate) type Fields = Vec<(u8, Vec<u8>)>;
+
+pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
+    Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
+}
+
+/// The profile in a backup file.
+pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
+    let Body::Hiperface(profile) = Document::parse(&read_text(path).unwrap()).unwrap().body;
+    profile
+}
+
+/// Bytes that repeat themselves late and differ for different seeds.
+pub(crate) fn bytes(seed: u8, count: usize) -> Vec<u8> {
+    assert!(count <= MAX_TRANSFER);
+    (0..count).map(|at| (at as u8).wrapping_mul(37).wrapping_add(seed.wrapping_mul(101)) ^ (at >> 3) as u8).collect()
+}
+
+pub(crate) fn xor(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum, byte| sum ^ byte)
+}
+
+/// Where access codes stand in a request, by the reference: after the two head bytes.
+fn places_of_codes(command: u8) -> &'static [usize] {
+    match command {
+        0x43 | 0x63 => &[6],
+        0x49 => &[2],
+        0x4A | 0x4B => &[5],
+        0x4D => &[4],
+        0x4F => &[3, 4],
+        0x55 | 0x57 => &[3],
+        _ => &[],
+    }
+}
+
+/// A request with a code shows neither it nor the checksum, and everything else; an answer to it that is shown is not
+/// the request itself.
+fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
+    let shown = entry.bytes.to_string();
+    let words: Vec<&str> = shown.split(' ').collect();
+    match entry.direction {
+        Direction::Sent => {
+            let command = u8::from_str_radix(words[1], 16).unwrap();
+            let mut secret = places_of_codes(command).to_vec();
+            if !secret.is_empty() {
+                secret.push(words.len() - 1);
+            }
+            for (at, word) in words.iter().enumerate() {
+                assert_eq!(*word == "**", secret.contains(&at), "{shown}");
+            }
+        }
+        Direction::Received => {
+            // One byte that was read may have the value of the code: that is no secret.
+            let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
+            let Some(sent) = sent.filter(can_leak) else { return };
+            let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();
+            assert!(!shown.contains(&hex.join(" ")), "{shown}");
+        }
+    }
+}
+
+/// What people read names none of the codes used in these tests.
+pub(crate) fn check_words(text: &str) {
+    // A damaged reply may have any checksum.
+    if text.contains("checksum") {
+        return;
+    }
+    let upper = text.to_uppercase();
+    for code in ["66", "C3", "9D"] {
+        let alone = |word: &str| word == code || word == format!("{code}H") || word == format!("0X{code}");
+        assert!(!upper.split(|c: char| !c.is_ascii_alphanumeric()).any(alone), "{text}");
+    }
+}
+
+/// The requests that are in a trace, with the replies that were shown after them.
+pub(crate) fn exchanges(trace: &[TraceEntry]) -> Vec<(String, Vec<Vec<u8>>)> {
+    let mut exchanges: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
+    for entry in trace {
+        match entry.direction {
+            Direction::Sent => exchanges.push((entry.bytes.to_string(), Vec::new())),
+            Direction::Received => {
+                if let (Some(bytes), Some(last)) = (entry.bytes.to_bytes(), exchanges.last_mut()) {
+                    last.1.push(bytes);
+                }
+            }
+        }
+    }
+    exchanges
+}

@@ -1,0 +1,170 @@
+//! The worker on its thread, on a virtual encoder in real time.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use encoder_studio::device::hiperface::Station;
+use encoder_studio::device::hiperface::find::FindOptions;
+use encoder_studio::link::{Clock, RealClock, VirtualClock};
+use encoder_studio::protocol::hiperface::EncoderTypes;
+use encoder_studio::store::Store;
+use encoder_studio::worker::{Busy, Event, HiperfaceJob, Job, JobId, Session, Worker};
+
+use crate::support::{MARGIN, Tap, TestLink, bus};
+
+/// More than any of these takes; a hanging thread is what it is for.
+const LONG: Duration = Duration::from_secs(20);
+
+struct Bench {
+    worker: Worker,
+    tap: Arc<Mutex<Tap>>,
+    clock: Arc<dyn Clock>,
+    wakes: Arc<AtomicUsize>,
+    _folder: tempfile::TempDir,
+}
+
+fn bench(query: &str, clock: Arc<dyn Clock>) -> Bench {
+    let folder = tempfile::tempdir().unwrap();
+    let tap = Arc::<Mutex<Tap>>::default();
+    let link = TestLink::new(&Arc::new(Mutex::new(bus(query))), clock.clone(), tap.clone());
+    let store = Store::at(folder.path());
+    let session =
+        Session::new(Box::new(link), clock.clone(), Station::new(MARGIN), store, EncoderTypes::built_in(), true);
+    let wakes = Arc::new(AtomicUsize::new(0));
+    let counter = wakes.clone();
+    let wake = Arc::new(move || {
+        counter.fetch_add(1, Ordering::SeqCst);
+    });
+    Bench { worker: Worker::spawn(session, wake).unwrap(), tap, clock, wakes, _folder: folder }
+}
+
+fn in_real_time(query: &str) -> Bench {
+    bench(query, Arc::new(RealClock::start()))
+}
+
+fn in_virtual_time(query: &str) -> Bench {
+    bench(query, Arc::new(VirtualClock::default()))
+}
+
+fn is_end(event: &Event) -> Option<JobId> {
+    match event {
+        Event::Finished(id, _) | Event::Failed(id, _) | Event::Cancelled(id, _) => Some(*id),
+        _ => None,
+    }
+}
+
+/// All events up to the end of a job.
+fn until_end(worker: &Worker) -> Vec<Event> {
+    let mut events = Vec::new();
+    loop {
+        let event = worker.events().recv_timeout(LONG).expect("an end");
+        let ended = is_end(&event).is_some();
+        events.push(event);
+        if ended {
+            return events;
+        }
+    }
+}
+
+fn search() -> Job {
+    Job::Hiperface(HiperfaceJob::Find(FindOptions::default()))
+}
+
+fn identify() -> Job {
+    Job::Hiperface(HiperfaceJob::Identify)
+}
+
+#[test]
+fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
+    let mut bench = in_real_time("settings=0xE0&address=0x5F");
+    let id = bench.worker.submit(search()).unwrap();
+    assert!(bench.worker.is_busy());
+    assert_eq!(bench.worker.submit(identify()), Err(Busy));
+    std::thread::sleep(Duration::from_millis(1300));
+    assert_eq!(bench.worker.submit(identify()), Err(Busy));
+    let stopped = Instant::now();
+    bench.worker.stop();
+    let events = until_end(&bench.worker);
+    assert!(stopped.elapsed() < Duration::from_secs(1), "{:?}", stopped.elapsed());
+    assert!(matches!(events.first(), Some(Event::Started(started)) if *started == id));
+    assert!(matches!(events.last(), Some(Event::Cancelled(ended, _)) if *ended == id), "{events:?}");
+    // The next job is not stopped by the old wish.
+    *bench.tap.lock().unwrap() = Tap::default();
+    bench.worker.submit(Job::Hiperface(HiperfaceJob::Status)).unwrap();
+    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "nobody is at 40h at 9600");
+}
+
+#[test]
+fn each_job_starts_once_and_ends_once() {
+    let mut bench = in_virtual_time("");
+    for round in 0..50 {
+        let id = bench.worker.submit(if round % 5 == 4 { search() } else { identify() }).unwrap();
+        let events = until_end(&bench.worker);
+        let starts = events.iter().filter(|event| matches!(event, Event::Started(_))).count();
+        assert_eq!(starts, 1, "{events:?}");
+        assert_eq!(events.iter().filter_map(is_end).collect::<Vec<_>>(), [id]);
+    }
+    assert!(bench.wakes.load(Ordering::SeqCst) >= 100);
+    assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "and nothing comes after the end");
+}
+
+/// 672 steps of progress, and nobody reads: the job ends all the same, and its end is there when somebody comes.
+#[test]
+fn nobody_reading_stops_nothing() {
+    let mut bench = in_virtual_time("settings=0xE0");
+    let id = bench.worker.submit(search()).unwrap();
+    let started = Instant::now();
+    while bench.worker.is_busy() {
+        assert!(started.elapsed() < LONG);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    assert!(bench.worker.events().len() <= 64, "the channel is bounded");
+    let events = until_end(&bench.worker);
+    assert!(matches!(events.first(), Some(Event::Started(_))));
+    assert_eq!(events.last().and_then(is_end), Some(id));
+    let mut done = None;
+    for event in &events {
+        if let Event::Progress(_, progress) = event {
+            assert!(done < Some(progress.done), "{done:?}, then {progress:?}");
+            done = Some(progress.done);
+        }
+    }
+    // What is old by now does not come after the end.
+    let late = bench.worker.events().recv_timeout(Duration::from_millis(100));
+    assert!(late.is_err(), "{late:?}");
+}
+
+#[test]
+fn a_dropped_worker_ends_its_thread_with_a_job_or_without() {
+    for busy in [true, false] {
+        let mut bench = in_real_time("settings=0xE0");
+        if busy {
+            bench.worker.submit(search()).unwrap();
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        let (clock, events) = (Arc::downgrade(&bench.clock), bench.worker.events().clone());
+        drop(bench);
+        let dropped = Instant::now();
+        // The session, and with it the thread's last hold on the clock, is gone.
+        while clock.upgrade().is_some() {
+            assert!(dropped.elapsed() < Duration::from_secs(2), "the thread goes on");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        while events.recv_timeout(LONG).is_ok() {}
+    }
+}
+
+#[test]
+fn a_link_that_dies_while_idle_is_told_once() {
+    let mut bench = in_virtual_time("");
+    bench.worker.submit(identify()).unwrap();
+    until_end(&bench.worker);
+    bench.tap.lock().unwrap().unplugged = true;
+    let told = bench.worker.events().recv_timeout(Duration::from_secs(1)).expect("within a second");
+    assert!(matches!(&told, Event::Lost(error) if error.is_lost()), "{told:?}");
+    assert!(bench.worker.events().recv_timeout(Duration::from_millis(1200)).is_err(), "once");
+    bench.worker.submit(identify()).unwrap();
+    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))));
+}
