@@ -25,7 +25,7 @@ fn least_ms(baud: f64) -> f64 {
 }
 
 fn bus(settings: u8) -> Arc<Mutex<Bus>> {
-    Arc::new(Mutex::new(Config::from_pairs(&[("settings".to_owned(), settings.to_string())]).unwrap().bus()))
+    Arc::new(Mutex::new(Bus::new(&Config::from_pairs(&[("settings".to_owned(), settings.to_string())]).unwrap())))
 }
 
 fn median(mut cycles: Vec<f64>) -> f64 {

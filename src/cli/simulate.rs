@@ -23,7 +23,7 @@ pub(super) fn simulate(arguments: &Simulate) -> Result {
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
-    let mut device = Device { bus: config.bus(), clock: RealClock::start() };
+    let mut device = Device { bus: Bus::new(&config), clock: RealClock::start() };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
         (None, Some(address)) => listen(address, &mut device, &ended)?,

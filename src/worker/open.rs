@@ -10,7 +10,7 @@ use crate::link::{
     ByteLink, Clock, LinkError, LinkUrl, Query, RealClock, ReplayLink, Scheme, SerialLink, SimLink, TcpLink,
     TraceFileError, UrlError, read_trace,
 };
-use crate::sim::hiperface::{Config, ConfigError};
+use crate::sim::hiperface::{Bus, Config, ConfigError};
 use crate::store::{FileError, Store, StoreError, read_text};
 
 /// Why a link cannot be opened.
@@ -65,7 +65,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session, OpenError> {
             station.echo = crate::device::hiperface::Echo::Unknown;
             let line_only = ["baud", "parity", "timeout", "margin", "periods", "turns"];
             let config = Config::from_pairs(&url.query.without(&line_only))?;
-            let mut link = SimLink::connect(Arc::new(Mutex::new(config.bus())), clock.clone());
+            let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
             link.set_format(station.format)?;
             Box::new(link)
         }

@@ -131,7 +131,7 @@ pub(crate) struct Desk {
 pub(crate) fn bus(query: &str) -> Bus {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
-    Config::from_pairs(&pairs).unwrap().bus()
+    Bus::new(&Config::from_pairs(&pairs).unwrap())
 }
 
 impl Desk {

@@ -126,6 +126,9 @@ pub enum Damage {
     /// The reply itself.
     #[error(transparent)]
     Reply(#[from] ReplyError),
+    /// The reply to a request with an access code; which bytes it has is not told, they may be our own.
+    #[error("a broken frame")]
+    Unreadable,
     /// More bytes than a reply has.
     #[error("more bytes than the reply has")]
     Trailing,

@@ -66,12 +66,19 @@ pub fn read_range(
     count: usize,
     code: AccessCode,
 ) -> Result<Vec<u8>, Error> {
+    if count == 1 {
+        return read_byte(master, field, address, code);
+    }
     let mut bytes = Vec::with_capacity(count);
     // What came once and has to come again.
     let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;
     while bytes.len() < count {
+        if bytes.len() + 1 == count {
+            bytes.extend(read_byte(master, field, address + bytes.len(), code)?);
+            break;
+        }
         let chunk = first.as_ref().map_or(master.station().chunk.min(count - bytes.len()), Vec::len);
         let request = transfer(field, address + bytes.len(), chunk, code)?;
         let trouble = match (read_once(master, &request)?, first.take()) {
@@ -110,6 +117,14 @@ pub fn read_range(
         }
     }
     Ok(bytes)
+}
+
+/// One byte, with a neighbour: the reply to a transfer of one byte can equal its request, access code and all, so that an
+/// adapter's echo would pass for it. A field has sixteen bytes at least.
+fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
+    let start = address.saturating_sub(1);
+    let pair = read_range(master, field, start, 2, code)?;
+    Ok(pair.into_iter().skip(address - start).take(1).collect())
 }
 
 fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result<Request, Error> {

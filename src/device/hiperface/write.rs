@@ -134,8 +134,9 @@ fn interrupt(
     }
     let ops = &confirmed.plan.ops;
     let (before, after) = ops.split_at(at.min(ops.len()));
-    // The unlocking itself may be what failed half-way.
-    let begun = before.iter().chain(after.first());
+    // What was not sent, or refused, was not carried out; anything else may have been.
+    let in_flight = after.first().filter(|_| !matches!(cause, Error::Cancelled | Error::Rejected { .. }));
+    let begun = before.iter().chain(in_flight);
     let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
     let mut left_unlocked = Vec::new();
     for field in unlocked {
@@ -151,10 +152,13 @@ fn interrupt(
 
 fn lock_again(master: &mut Master<'_>, lock: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
     let Op::Define { field, to, .. } = lock else { return Ok(()) };
-    let now = read_field_status(master, *field)?;
-    if !now.is_writable() {
-        return Ok(());
-    }
+    let now = match read_field_status(master, *field) {
+        Ok(now) if now.is_writable() => now,
+        Ok(_) => return Ok(()),
+        // It was yet to be created.
+        Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
+        Err(error) => return Err(error),
+    };
     // Whatever else the plan would have changed stays as it is: only the protection comes back.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
     let sent = perform(master, &lock, confirmed)?;
@@ -207,10 +211,22 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Resul
             master.tell(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
         }
         Op::IncrementCounter { from } => {
-            let next = (from + 1) & 0x00FF_FFFF;
-            master.tell(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next))
+            let next = next_count(*from);
+            match master.tell(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
+                // Some types tell the overflow in this way (manual, "Zähler erhöhen"): it was carried out.
+                Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
+                    master.station().codes_met.extend(codes);
+                    Ok(1)
+                }
+                result => result,
+            }
         }
     }
+}
+
+/// The counter has 24 bits.
+fn next_count(counter: u32) -> u32 {
+    counter.wrapping_add(1) & 0x00FF_FFFF
 }
 
 fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error> {
@@ -302,7 +318,7 @@ fn verify(master: &mut Master<'_>, confirmed: &Confirmed<'_>) -> Result<u64, Err
             }
             Op::ClearCounter { .. } | Op::IncrementCounter { .. } => {
                 let expected = match op {
-                    Op::IncrementCounter { from } => (from + 1) & 0x00FF_FFFF,
+                    Op::IncrementCounter { from } => next_count(*from),
                     _ => 0,
                 };
                 let counter = read_counter(master)?;

@@ -124,10 +124,11 @@ impl Op {
         }
     }
 
-    /// It makes a protected field writable: what protects it again has to follow, whatever happens in between.
+    /// It leaves a field writable that was not: where another operation protects it again, that has to follow, whatever
+    /// happens in between.
     pub fn unlocks(&self) -> bool {
-        matches!(self, Op::Define { from: Some(from), to, .. }
-            if to.exists() && to.is_writable() && !from.is_writable())
+        matches!(self, Op::Define { from, to, .. }
+            if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }
 
     /// It protects this field.

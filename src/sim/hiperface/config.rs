@@ -1,7 +1,6 @@
 //! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&encoders=2`. It
-//! opens nothing; [`Config::bus`] makes the virtual line.
+//! opens nothing; [`Bus::new`](super::Bus::new) makes the virtual line.
 
-use super::bus::Bus;
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::protocol::hiperface::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
@@ -106,11 +105,6 @@ impl Config {
         }
         config.check_together()?;
         Ok(config)
-    }
-
-    /// The virtual line. Its encoders got their power long ago.
-    pub fn bus(&self) -> Bus {
-        Bus::new(self)
     }
 
     pub(super) fn address_of(&self, index: u8) -> DeviceAddress {
@@ -336,7 +330,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*") {
-            let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| config.bus());
+            let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| super::super::Bus::new(&config));
         }
     }
 }

@@ -48,6 +48,9 @@ pub(super) fn commit(
                 cause => Outcome::Failed(cause.to_string()),
             };
             note.conclude(outcome, &interrupted.done);
+            if let Some(why) = note.warning() {
+                tracing::warn!("logbook: {why}");
+            }
             Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len() })
         }
     }

@@ -30,7 +30,7 @@ fn ms(milliseconds: f64) -> Duration {
 
 impl Host {
     fn new(config: &Config) -> Self {
-        Host { bus: config.bus(), now: Moment::START }
+        Host { bus: Bus::new(config), now: Moment::START }
     }
 
     /// With the query of a `sim:` link.
