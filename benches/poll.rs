@@ -10,7 +10,8 @@ use encoder_studio::link::{ByteLink, Clock, RealClock, SimLink, VirtualClock};
 use encoder_studio::protocol::hiperface::{EncoderTypes, LineSettings};
 use encoder_studio::sim::hiperface::{Bus, Config};
 use encoder_studio::store::Store;
-use encoder_studio::worker::{HiperfaceJob, Session};
+use encoder_studio::worker::Session;
+use encoder_studio::worker::hiperface::HiperfaceJob;
 
 /// The virtual encoder's time for 42h.
 const PROCESSING: f64 = 3.7;

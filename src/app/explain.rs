@@ -10,7 +10,8 @@ use crate::profile::ProfileError;
 use crate::profile::hiperface::PlanError;
 use crate::protocol::hiperface::StatusCode;
 use crate::store::{FileError, FileProblem, StoreError};
-use crate::worker::{JobError, OpenError};
+use crate::worker::OpenError;
+use crate::worker::hiperface::JobError;
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {

@@ -10,7 +10,7 @@ use super::write::{change_and_show, out_of_range, parse_number, settings};
 use super::{Done, Failure, Result};
 use crate::device::hiperface::check::{Line, Step, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
-use crate::worker::{Change, HiperfaceJob, HiperfaceOutput};
+use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();

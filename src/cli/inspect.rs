@@ -15,7 +15,7 @@ use crate::device::hiperface::{Error, Identity, PositionReading};
 use crate::link;
 use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::{EncoderTypes, LineSettings, StatusCode};
-use crate::worker::{HiperfaceJob, HiperfaceOutput, JobError, Value};
+use crate::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 pub(super) fn ports(output: &Output) -> Result {
     let ports = link::ports().map_err(|error| failed(&explain::link(&error)))?;

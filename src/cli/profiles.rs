@@ -15,7 +15,7 @@ use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{HiperfaceProfile, RestoreOptions, compare};
 use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
-use crate::worker::{Change, HiperfaceJob, HiperfaceOutput, SavedProfile};
+use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, SavedProfile};
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;

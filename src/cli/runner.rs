@@ -20,11 +20,12 @@ use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::{Event, HiperfaceJob, HiperfaceOutput, Job, JobError, JobOutput, Progress, Session, Worker, open};
+use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, open};
+use crate::worker::{Event, OpenError, Progress, Session, Worker};
 
 /// A session on its thread.
 pub(super) struct Runner {
-    worker: Worker,
+    worker: Worker<Hiperface>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which ends with each job.
     interrupted: Arc<AtomicBool>,
     /// Codes that the encoder announced on the way of the last job.
@@ -54,9 +55,7 @@ impl Runner {
         let codes = codes(common)?;
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = open(url, store).map_err(|error| match error {
-            crate::worker::OpenError::Url(_) | crate::worker::OpenError::Sim(_) => {
-                Failure::Usage(explain::open(&error).words(Language::English))
-            }
+            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).words(Language::English)),
             error => failed(&explain::open(&error)),
         })?;
         for Code { number, code } in codes {
@@ -90,7 +89,7 @@ impl Runner {
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
         self.codes_met.clear();
         self.check_interrupt()?;
-        let id = self.worker.submit(Job::Hiperface(job)).map_err(|_| Ended::Worker)?;
+        let id = self.worker.submit(job).map_err(|_| Ended::Worker)?;
         if self.interrupted.load(Ordering::SeqCst) {
             // It came while the job was handed over, which takes back an earlier wish.
             self.worker.stop();
@@ -99,14 +98,11 @@ impl Runner {
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
                 Event::Progress(of, progress) if of == id => bar.show(&progress),
-                Event::Codes(codes) => {
+                Event::Remark(codes) => {
                     name_codes(&codes);
                     self.codes_met.extend(codes);
                 }
-                Event::Finished(of, output) if of == id => {
-                    let JobOutput::Hiperface(output) = *output;
-                    return Ok(output);
-                }
+                Event::Finished(of, output) if of == id => return Ok(*output),
                 Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => return Err(Ended::Job(error)),
                 _ => {}
             }
@@ -180,7 +176,7 @@ fn codes(common: &Common) -> Result<Vec<Code>> {
     Ok(codes)
 }
 
-fn record(session: &mut Session, path: &Path) -> Result<()> {
+fn record(session: &mut Session<Hiperface>, path: &Path) -> Result<()> {
     let cannot = |error: std::io::Error| {
         Failure::Failed(vec![format!("{}: the trace cannot be recorded: {error}.", path.display())])
     };

@@ -13,7 +13,7 @@ use crate::bits::{hex, hex_compact, parse_hex};
 use crate::profile::Consent;
 use crate::profile::hiperface::{HiperfacePlan, Item, Op};
 use crate::protocol::hiperface::{DataFieldStatus, DeviceAddress, LineSettings};
-use crate::worker::{Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, Prepared};
+use crate::worker::hiperface::{Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, Prepared};
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let change = change_of(write.item, &write.value)?;

@@ -1,5 +1,8 @@
 //! The background I/O worker: one thread a session, one job at a time, and a stop that overtakes everything.
 //!
+//! Nothing here knows a protocol: a [`Device`] brings its jobs, its results and its errors as types of its own, so that a
+//! session with one kind of device cannot be asked for another's.
+//!
 //! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
@@ -7,6 +10,7 @@ pub mod hiperface;
 mod open;
 mod session;
 
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -14,21 +18,44 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 
-pub use hiperface::{
-    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, JobOutput, Prepared, SavedProfile, Value,
-    WEAR_LIMIT,
-};
-pub use open::{OpenError, open};
-pub use session::Session;
+pub use open::OpenError;
+pub use session::{Desk, Session};
 
 use crate::link::{Cancel, LinkError};
-use crate::protocol::hiperface::StatusCode;
 
-/// What a session is asked to do.
-#[derive(Debug)]
-pub enum Job {
-    /// Something with a HIPERFACE encoder.
-    Hiperface(HiperfaceJob),
+/// A kind of device at the end of a session: its wire, what is known about it, and what can be done with it.
+pub trait Device: Send + 'static {
+    /// What it is asked to do.
+    type Job: Send + fmt::Debug;
+    /// What a job gives.
+    type Output: Send + fmt::Debug;
+    /// Why a job ends early.
+    type Error: Send + fmt::Debug;
+    /// What the device says on the way, whatever it is asked.
+    type Remark: Send + fmt::Debug;
+
+    /// Carries out a job.
+    ///
+    /// # Errors
+    /// When it ended early.
+    fn run(
+        &mut self,
+        desk: &mut Desk,
+        job: Self::Job,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Self::Output, Self::Error>;
+
+    /// The error is the user's wish.
+    fn is_cancelled(error: &Self::Error) -> bool;
+
+    /// Takes what the device said since the last time.
+    fn take_remark(&mut self) -> Option<Self::Remark>;
+
+    /// Looks whether the wire is still there.
+    ///
+    /// # Errors
+    /// When it is not.
+    fn check(&mut self) -> Result<(), LinkError>;
 }
 
 /// The number of a job within its session.
@@ -48,19 +75,19 @@ pub struct Progress {
 
 /// What a worker tells.
 #[derive(Debug)]
-pub enum Event {
+pub enum Event<D: Device> {
     /// A job has begun.
     Started(JobId),
     /// How far it is.
     Progress(JobId, Progress),
-    /// Status codes that the encoder announced on the way.
-    Codes(Vec<StatusCode>),
+    /// What the device said on the way.
+    Remark(D::Remark),
     /// It is done.
-    Finished(JobId, Box<JobOutput>),
+    Finished(JobId, Box<D::Output>),
     /// It failed.
-    Failed(JobId, Box<JobError>),
+    Failed(JobId, Box<D::Error>),
     /// It ended because the user wished it; with what was written until then, where it writes.
-    Cancelled(JobId, Box<JobError>),
+    Cancelled(JobId, Box<D::Error>),
     /// The wire is gone, found while nothing was to do.
     Lost(LinkError),
 }
@@ -71,27 +98,27 @@ pub enum Event {
 pub struct Busy;
 
 /// A session's thread, seen from outside. Dropping it stops what runs and ends the thread.
-pub struct Worker {
-    jobs: Sender<(JobId, Job)>,
-    events: Receiver<Event>,
+pub struct Worker<D: Device> {
+    jobs: Sender<(JobId, D::Job)>,
+    events: Receiver<Event<D>>,
     cancel: Cancel,
     busy: Arc<AtomicBool>,
     next: u64,
 }
 
-impl Worker {
-    /// Events that wait to be read, at most; progress counts once.
-    const CAPACITY: usize = 64;
-    /// How often an idle worker looks whether its wire is still there.
-    const CHECK: Duration = Duration::from_millis(500);
+/// Events that wait to be read, at most; progress counts once.
+const CAPACITY: usize = 64;
+/// How often an idle worker looks whether its wire is still there.
+const CHECK: Duration = Duration::from_millis(500);
 
+impl<D: Device> Worker<D> {
     /// Starts a thread for a session. `wake` is called after each event.
     ///
     /// # Errors
     /// When the system has no thread left.
-    pub fn spawn(session: Session, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
+    pub fn spawn(session: Session<D>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
         let (jobs, incoming) = bounded(1);
-        let (outgoing, events) = bounded(Self::CAPACITY);
+        let (outgoing, events) = bounded(CAPACITY);
         let cancel = session.cancel();
         let busy = Arc::new(AtomicBool::new(false));
         let outbox = Outbox { sender: outgoing, wake, waiting: Vec::new(), progress: None };
@@ -104,7 +131,7 @@ impl Worker {
     ///
     /// # Errors
     /// [`Busy`]: jobs do not queue.
-    pub fn submit(&mut self, job: Job) -> Result<JobId, Busy> {
+    pub fn submit(&mut self, job: D::Job) -> Result<JobId, Busy> {
         if self.busy.swap(true, Ordering::SeqCst) {
             return Err(Busy);
         }
@@ -126,21 +153,26 @@ impl Worker {
     }
 
     /// What the worker tells. The channel ends with the worker.
-    pub fn events(&self) -> &Receiver<Event> {
+    pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }
 }
 
-impl Drop for Worker {
+impl<D: Device> Drop for Worker<D> {
     fn drop(&mut self) {
         self.cancel.request();
     }
 }
 
-fn work(mut session: Session, jobs: &Receiver<(JobId, Job)>, mut outbox: Outbox, busy: &AtomicBool) {
+fn work<D: Device>(
+    mut session: Session<D>,
+    jobs: &Receiver<(JobId, D::Job)>,
+    mut outbox: Outbox<D>,
+    busy: &AtomicBool,
+) {
     let mut lost = false;
     loop {
-        let patience = if outbox.is_empty() { Worker::CHECK } else { Duration::from_millis(5) };
+        let patience = if outbox.is_empty() { CHECK } else { Duration::from_millis(5) };
         match jobs.recv_timeout(patience) {
             Ok((id, job)) => {
                 lost = false;
@@ -163,15 +195,15 @@ fn work(mut session: Session, jobs: &Receiver<(JobId, Job)>, mut outbox: Outbox,
 
 /// Events on their way out. What does not fit into the channel waits here; the number of those is bounded, because a job
 /// has a handful and the next one comes from whoever reads them.
-struct Outbox {
-    sender: Sender<Event>,
+struct Outbox<D: Device> {
+    sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,
-    waiting: Vec<Event>,
-    progress: Option<Event>,
+    waiting: Vec<Event<D>>,
+    progress: Option<Event<D>>,
 }
 
-impl Outbox {
-    fn send(&mut self, event: Event) {
+impl<D: Device> Outbox<D> {
+    fn send(&mut self, event: Event<D>) {
         match event {
             Event::Progress(..) => self.progress = Some(event),
             other => {
@@ -191,7 +223,7 @@ impl Outbox {
 
     fn flush(&mut self) {
         // Half of the channel is for progress, so that it never stands in the way of an end.
-        if self.sender.len() < Worker::CAPACITY / 2
+        if self.sender.len() < CAPACITY / 2
             && let Some(progress) = self.progress.take()
         {
             let _ = self.sender.try_send(progress);

@@ -1,17 +1,15 @@
-//! From a link URL to a session.
+//! From a link URL to a wire: what all devices on a stream of bytes share.
 
 use std::path::Path;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
-use super::Session;
-use crate::device::hiperface::{PARAMETERS, Station};
 use crate::link::{
-    ByteLink, Clock, LinkError, LinkUrl, Query, RealClock, ReplayLink, Scheme, SerialLink, SimLink, TcpLink,
-    TraceFileError, UrlError, read_trace,
+    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceFileError, UrlError,
+    read_trace,
 };
-use crate::sim::hiperface::{Bus, Config, ConfigError};
-use crate::store::{FileError, Store, StoreError, read_text};
+use crate::store::{FileError, StoreError, read_text};
+use crate::units::CharacterFormat;
 
 /// Why a link cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -19,9 +17,9 @@ pub enum OpenError {
     /// A parameter.
     #[error(transparent)]
     Url(#[from] UrlError),
-    /// A parameter of the virtual encoder.
-    #[error(transparent)]
-    Sim(#[from] ConfigError),
+    /// A parameter of the virtual device, in words.
+    #[error("{0}")]
+    Sim(String),
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
@@ -43,7 +41,7 @@ pub enum OpenError {
 
 /// How much later than the protocol's worst case a reply may come, by kind of wire: USB adapters deliver in packets,
 /// device servers over a network, and even a thread has to be woken up.
-const fn margin(scheme: Scheme) -> Duration {
+pub(super) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
         Scheme::Tcp => Duration::from_millis(100),
@@ -51,46 +49,36 @@ const fn margin(scheme: Scheme) -> Duration {
     }
 }
 
-/// Opens a link to a HIPERFACE encoder.
+/// Opens the wire of a byte stream; `simulated` makes the virtual one.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
-pub fn open(url: &LinkUrl, store: Store) -> Result<Session, OpenError> {
-    let types = store.encoder_types()?;
-    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
-    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let wire: Box<dyn ByteLink> = match url.scheme {
-        Scheme::Sim => {
-            // The virtual encoder's converter may echo; whether it does is learned as with a real one.
-            station.echo = crate::device::hiperface::Echo::Unknown;
-            let line_only = ["baud", "parity", "timeout", "margin", "periods", "turns"];
-            let config = Config::from_pairs(&url.query.without(&line_only))?;
-            let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
-            link.set_format(station.format)?;
-            Box::new(link)
-        }
-        Scheme::Serial => {
-            check_parameters(&url.query, url.scheme)?;
-            Box::new(SerialLink::open(&url.target, station.format, clock.clone())?)
-        }
-        Scheme::Tcp => {
-            check_parameters(&url.query, url.scheme)?;
-            Box::new(TcpLink::connect(&url.target, clock.clone())?)
-        }
+pub(super) fn open_bytes(
+    url: &LinkUrl,
+    format: CharacterFormat,
+    clock: &Arc<dyn Clock>,
+    simulated: impl FnOnce() -> Result<Box<dyn ByteLink>, OpenError>,
+) -> Result<Box<dyn ByteLink>, OpenError> {
+    Ok(match url.scheme {
+        Scheme::Sim => simulated()?,
+        Scheme::Serial => Box::new(SerialLink::open(&url.target, format, clock.clone())?),
+        Scheme::Tcp => Box::new(TcpLink::connect(&url.target, clock.clone())?),
         Scheme::Replay => {
-            check_parameters(&url.query, url.scheme)?;
             let text = read_text(Path::new(&url.target))?;
             let entries =
                 read_trace(&text).map_err(|cause| OpenError::Recording { path: url.target.clone(), cause })?;
             Box::new(ReplayLink::new(&url.target, entries, clock.clone()))
         }
-    };
-    Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
+    })
 }
 
-fn check_parameters(query: &Query, scheme: Scheme) -> Result<(), UrlError> {
-    match query.without(&PARAMETERS).into_iter().next() {
+/// Refuses a parameter that is not among `known`.
+///
+/// # Errors
+/// [`UrlError::Unknown`].
+pub(super) fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
+    match query.without(known).into_iter().next() {
         None => Ok(()),
-        Some((name, _)) => Err(UrlError::Unknown { name, scheme: scheme.word(), known: PARAMETERS.join(", ") }),
+        Some((name, _)) => Err(UrlError::Unknown { name, scheme: scheme.word(), known: known.join(", ") }),
     }
 }

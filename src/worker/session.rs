@@ -1,67 +1,59 @@
-//! A session: one wire and what is known about the device at its end.
+//! A session: one wire, what is known about the device at its end, and what every job needs beside them.
 
 use std::sync::Arc;
 
-use super::{Event, Job, JobError, JobId, Progress, hiperface};
-use crate::device::hiperface::{Codes, Master, Station};
-use crate::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
-use crate::protocol::hiperface::EncoderTypes;
+use super::{Device, Event, JobId, Progress};
+use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
-/// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
-pub struct Session {
-    wire: Box<dyn ByteLink>,
-    clock: Arc<dyn Clock>,
-    cancel: Cancel,
-    trace: Trace,
-    station: Station,
+/// What a job finds on its desk, whatever the device: time, the user's wish to end, who watches, and the folders.
+pub struct Desk {
+    pub(super) clock: Arc<dyn Clock>,
+    pub(super) cancel: Cancel,
+    pub(super) trace: Trace,
     pub(super) store: Store,
-    pub(super) types: EncoderTypes,
+    /// The device lives in this process: its wear counts apart.
     pub(super) is_virtual: bool,
 }
 
-impl Session {
-    /// A session on an open wire. `is_virtual`: the device lives in this process, and its wear counts apart.
-    pub fn new(
-        wire: Box<dyn ByteLink>,
-        clock: Arc<dyn Clock>,
-        station: Station,
-        store: Store,
-        types: EncoderTypes,
-        is_virtual: bool,
-    ) -> Self {
+impl Desk {
+    /// The context of a procedure on `wire`.
+    pub(super) fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
+        Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
+    }
+}
+
+/// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
+pub struct Session<D> {
+    desk: Desk,
+    pub(super) device: D,
+}
+
+impl<D: Device> Session<D> {
+    /// A session with a device.
+    pub(super) fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
-        Session { wire, clock, cancel, trace, station, store, types, is_virtual }
+        Session { desk: Desk { clock, cancel, trace, store, is_virtual }, device }
     }
 
     /// The wish to end what runs.
     pub fn cancel(&self) -> Cancel {
-        self.cancel.clone()
+        self.desk.cancel.clone()
     }
 
     /// Listens to another wish from now on: a test's, that comes by itself.
     pub fn set_cancel(&mut self, cancel: Cancel) {
-        self.cancel = cancel;
+        self.desk.cancel = cancel;
     }
 
     /// Shows every frame from now on to `watcher`.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
-        self.trace.watch(watcher);
+        self.desk.trace.watch(watcher);
     }
 
-    /// The access codes that the user knows.
-    pub fn codes_mut(&mut self) -> &mut Codes {
-        &mut self.station.codes
-    }
-
-    /// What is known about the line.
-    pub fn station(&self) -> &Station {
-        &self.station
-    }
-
-    /// The time of the session.
-    pub fn clock(&self) -> &Arc<dyn Clock> {
-        &self.clock
+    /// The device lives in this process.
+    pub fn is_virtual(&self) -> bool {
+        self.desk.is_virtual
     }
 
     /// Looks whether the wire is still there.
@@ -69,22 +61,19 @@ impl Session {
     /// # Errors
     /// When it is not.
     pub fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+        self.device.check()
     }
 
     /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
-    pub fn run(&mut self, id: JobId, job: Job, tell: &mut dyn FnMut(Event)) -> Event {
+    pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
-        let result = match job {
-            Job::Hiperface(job) => hiperface::run(self, job, &mut |progress| tell(Event::Progress(id, progress))),
-        };
-        let codes = self.station.take_codes();
-        if !codes.is_empty() {
-            tell(Event::Codes(codes));
+        let result = self.device.run(&mut self.desk, job, &mut |progress| tell(Event::Progress(id, progress)));
+        if let Some(remark) = self.device.take_remark() {
+            tell(Event::Remark(remark));
         }
         match result {
             Ok(output) => Event::Finished(id, Box::new(output)),
-            Err(error) if error.is_cancelled() => Event::Cancelled(id, Box::new(error)),
+            Err(error) if D::is_cancelled(&error) => Event::Cancelled(id, Box::new(error)),
             Err(error) => Event::Failed(id, Box::new(error)),
         }
     }
@@ -93,13 +82,7 @@ impl Session {
     ///
     /// # Errors
     /// Those of the job.
-    pub fn run_inline(&mut self, job: super::HiperfaceJob) -> Result<super::HiperfaceOutput, JobError> {
-        hiperface::run(self, job, &mut |_: Progress| {}).map(|super::JobOutput::Hiperface(output)| output)
-    }
-
-    /// The host's side of the line.
-    pub(super) fn master(&mut self) -> Master<'_> {
-        let ctx = Ctx { wire: &mut *self.wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace };
-        Master::new(ctx, &mut self.station)
+    pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
+        self.device.run(&mut self.desk, job, &mut |_: Progress| {})
     }
 }

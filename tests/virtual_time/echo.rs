@@ -3,7 +3,7 @@
 use encoder_studio::device::hiperface::{Echo, Station};
 use encoder_studio::profile::hiperface::{FieldRange, Item};
 use encoder_studio::protocol::hiperface::{Command, LineSettings};
-use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput, Value};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Value};
 
 use crate::support::{Desk, MARGIN};
 

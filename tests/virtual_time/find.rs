@@ -5,7 +5,7 @@ use std::time::Duration;
 use encoder_studio::device::hiperface::find::{FindOptions, Findings, Found};
 use encoder_studio::link::Clock;
 use encoder_studio::protocol::hiperface::LineSettings;
-use encoder_studio::worker::{HiperfaceJob, HiperfaceOutput};
+use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput};
 
 use crate::support::Desk;
 

@@ -6,7 +6,7 @@ use encoder_studio::device::hiperface::write::Interrupted;
 use encoder_studio::link::Cancel;
 use encoder_studio::profile::hiperface::{FieldImage, FieldRange, HiperfaceProfile, Op};
 use encoder_studio::protocol::hiperface::{DataFieldStatus, StatusCode};
-use encoder_studio::worker::{Change, Committed, JobError, Prepared};
+use encoder_studio::worker::hiperface::{Change, Committed, JobError, Prepared};
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 

@@ -5,7 +5,7 @@ use std::fs;
 use encoder_studio::profile::hiperface::FieldRange;
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber};
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Change, JobError};
+use encoder_studio::worker::hiperface::{Change, JobError};
 
 use crate::support::{Desk, backup};
 

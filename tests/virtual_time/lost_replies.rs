@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use encoder_studio::link::Clock;
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DeviceAddress};
-use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 use crate::support::Desk;
 

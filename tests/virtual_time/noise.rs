@@ -3,7 +3,7 @@
 
 use encoder_studio::profile::hiperface::{FieldRange, HiperfaceProfile, Item};
 use encoder_studio::sim::Faults;
-use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 use crate::support::{Desk, backup, bytes, exchanges, xor};
 

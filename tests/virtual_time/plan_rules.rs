@@ -4,7 +4,7 @@ use encoder_studio::device::hiperface::Error;
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::hiperface::{FieldRange, Op, PlanError};
 use encoder_studio::protocol::hiperface::{Command, DataFieldStatus, DeviceAddress, LineSettings};
-use encoder_studio::worker::{Change, Commit, HiperfaceJob, JobError};
+use encoder_studio::worker::hiperface::{Change, Commit, HiperfaceJob, JobError};
 
 use crate::support::{Desk, bytes, restore_of};
 

@@ -4,7 +4,7 @@ use encoder_studio::device::hiperface::Error;
 use encoder_studio::link::Clock;
 use encoder_studio::protocol::hiperface::Command;
 use encoder_studio::store::Logbook;
-use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput, JobError};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 
 use crate::support::{Desk, backup};
 

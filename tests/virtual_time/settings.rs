@@ -3,7 +3,7 @@
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::protocol::hiperface::{Command, DeviceAddress, LineSettings, StatusCode};
 use encoder_studio::units::CharacterFormat;
-use encoder_studio::worker::{Change, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 use crate::support::{Desk, MARGIN};
 

@@ -13,8 +13,9 @@ use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, Encod
 use encoder_studio::sim::hiperface::{Bus, Config};
 use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
-use encoder_studio::worker::{
-    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile, Session,
+use encoder_studio::worker::Session;
+use encoder_studio::worker::hiperface::{
+    Change, Commit, Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile,
 };
 
 /// The margin of `sim:` links.
@@ -124,7 +125,7 @@ pub(crate) struct Desk {
     pub(crate) tap: Arc<Mutex<Tap>>,
     pub(crate) trace: Arc<Mutex<Vec<TraceEntry>>>,
     pub(crate) folder: Arc<tempfile::TempDir>,
-    pub(crate) session: Session,
+    pub(crate) session: Session<Hiperface>,
 }
 
 /// A virtual line as `sim:?…` describes it.

@@ -9,7 +9,8 @@ use encoder_studio::device::hiperface::find::FindOptions;
 use encoder_studio::link::{Clock, RealClock, VirtualClock};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Busy, Event, HiperfaceJob, Job, JobId, Session, Worker};
+use encoder_studio::worker::hiperface::{Hiperface, HiperfaceJob};
+use encoder_studio::worker::{Busy, Event, JobId, Session, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
@@ -17,7 +18,7 @@ use crate::support::{MARGIN, Tap, TestLink, bus};
 const LONG: Duration = Duration::from_secs(20);
 
 struct Bench {
-    worker: Worker,
+    worker: Worker<Hiperface>,
     tap: Arc<Mutex<Tap>>,
     clock: Arc<dyn Clock>,
     wakes: Arc<AtomicUsize>,
@@ -47,7 +48,7 @@ fn in_virtual_time(query: &str) -> Bench {
     bench(query, Arc::new(VirtualClock::default()))
 }
 
-fn is_end(event: &Event) -> Option<JobId> {
+fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
     match event {
         Event::Finished(id, _) | Event::Failed(id, _) | Event::Cancelled(id, _) => Some(*id),
         _ => None,
@@ -55,7 +56,7 @@ fn is_end(event: &Event) -> Option<JobId> {
 }
 
 /// All events up to the end of a job.
-fn until_end(worker: &Worker) -> Vec<Event> {
+fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
         let event = worker.events().recv_timeout(LONG).expect("an end");
@@ -67,12 +68,12 @@ fn until_end(worker: &Worker) -> Vec<Event> {
     }
 }
 
-fn search() -> Job {
-    Job::Hiperface(HiperfaceJob::Find(FindOptions::default()))
+fn search() -> HiperfaceJob {
+    HiperfaceJob::Find(FindOptions::default())
 }
 
-fn identify() -> Job {
-    Job::Hiperface(HiperfaceJob::Identify)
+fn identify() -> HiperfaceJob {
+    HiperfaceJob::Identify
 }
 
 #[test]
@@ -91,7 +92,7 @@ fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
     assert!(matches!(events.last(), Some(Event::Cancelled(ended, _)) if *ended == id), "{events:?}");
     // The next job is not stopped by the old wish.
     *bench.tap.lock().unwrap() = Tap::default();
-    bench.worker.submit(Job::Hiperface(HiperfaceJob::Status)).unwrap();
+    bench.worker.submit(HiperfaceJob::Status).unwrap();
     assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "nobody is at 40h at 9600");
 }
 

@@ -5,16 +5,17 @@ use std::path::Path;
 
 use jiff::Timestamp;
 
-use super::{Commit, Committed, JobError, Prepared, WEAR_LIMIT};
+use super::{Commit, Committed, Hiperface, JobError, Prepared, WEAR_LIMIT};
 use crate::device::hiperface::write::{Written, carry_out, confirm};
 use crate::device::hiperface::{Error, Identity, profile_of};
 use crate::profile::hiperface::{Recorded, Scalar};
 use crate::profile::{Body, Document};
 use crate::store::{DeviceKey, EntryId, Logbook, LogbookError, Outcome};
-use crate::worker::{Progress, Session};
+use crate::worker::{Desk, Progress};
 
 pub(super) fn commit(
-    session: &mut Session,
+    encoder: &mut Hiperface,
+    desk: &mut Desk,
     commit: &Commit,
     tell: &mut dyn FnMut(Progress),
 ) -> Result<Committed, JobError> {
@@ -24,9 +25,9 @@ pub(super) fn commit(
         return Ok(Committed::default());
     }
     check_wear(prepared, commit.force_wear)?;
-    let store = session.store.clone();
-    let is_virtual = session.is_virtual;
-    let mut master = session.master();
+    let store = desk.store.clone();
+    let is_virtual = desk.is_virtual;
+    let mut master = encoder.master(desk);
     let confirmed = confirm(&mut master, plan, commit.consent, prepared.identity.geometry)?;
     let backup = store
         .backups()

@@ -1,6 +1,6 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
-use super::{Change, JobError, Prepared};
+use super::{Change, Hiperface, JobError, Prepared};
 use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
     Error, Identity, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
@@ -11,15 +11,16 @@ use crate::profile::hiperface::{
 };
 use crate::protocol::hiperface::{BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
 use crate::store::Logbook;
-use crate::worker::{Progress, Session};
+use crate::worker::{Desk, Progress};
 
 pub(super) fn prepare(
-    session: &mut Session,
+    encoder: &mut Hiperface,
+    desk: &mut Desk,
     change: Change,
     tell: &mut dyn FnMut(Progress),
 ) -> Result<Prepared, JobError> {
-    let types = session.types.clone();
-    let mut master = session.master();
+    let types = encoder.types.clone();
+    let mut master = encoder.master(desk);
     let identity = identify(&mut master, &types)?;
     let mut prepared = Prepared {
         plan: HiperfacePlan { base: Base::default(), ops: Vec::new() },
@@ -37,16 +38,16 @@ pub(super) fn prepare(
         }
         other => prepared.plan = single(&mut master, other)?,
     }
-    prepared.cycles_seen = cycles_seen(session, &prepared.identity);
+    prepared.cycles_seen = cycles_seen(desk, &prepared.identity);
     Ok(prepared)
 }
 
-fn cycles_seen(session: &Session, identity: &Identity) -> Option<u64> {
-    let path = session.store.logbook_path();
+fn cycles_seen(desk: &Desk, identity: &Identity) -> Option<u64> {
+    let path = desk.store.logbook_path();
     if !path.exists() {
         return Some(0);
     }
-    let key = super::commit::device_key(identity, session.is_virtual);
+    let key = super::commit::device_key(identity, desk.is_virtual);
     match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(&key)) {
         Ok(cycles) => Some(cycles),
         Err(error) => {

@@ -1,0 +1,236 @@
+//! What can be asked of a HIPERFACE encoder, and what comes of it.
+
+use std::path::PathBuf;
+
+use crate::device::hiperface::check::Line;
+use crate::device::hiperface::find::{FindOptions, Findings};
+use crate::device::hiperface::write::{Interrupted, Written};
+use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions};
+use crate::profile::Consent;
+use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, PlanError, RestoreOptions};
+use crate::protocol::hiperface::{
+    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
+};
+use crate::store::FileError;
+
+/// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
+/// EEPROM, that it can be incremented about a million times.
+pub const WEAR_LIMIT: u64 = 1_000_000;
+
+/// What a session with a HIPERFACE encoder does.
+#[derive(Debug)]
+pub enum HiperfaceJob {
+    /// Who is there.
+    Identify,
+    /// The whole error queue.
+    Status,
+    /// The position, once. With the geometry, where it is known already.
+    Position(Option<Geometry>),
+    /// One value.
+    Read(Item),
+    /// Everything that can be restored.
+    Save(SaveOptions),
+    /// The start-up sequence with a verdict a line; with a restart first.
+    Check {
+        /// Send 53h first.
+        restart: bool,
+    },
+    /// 53h and its waits.
+    Reset,
+    /// All speeds, parities and addresses.
+    Find(FindOptions),
+    /// 67h, and our side after it.
+    ConfigureForNow(LineSettings),
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the encoder as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<HiperfaceProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Write bytes of a data field.
+    Store {
+        /// Which field, from where; a count has to be that of the bytes.
+        range: FieldRange,
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// Create a data field.
+    CreateField {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// Give a field another status: protection, access code, or, for the last, size.
+    Redefine {
+        /// Its number.
+        number: u8,
+        /// Its status from then on; it exists.
+        status: DataFieldStatus,
+    },
+    /// Write-protect a field, or make it writable.
+    LockField {
+        /// Its number.
+        number: u8,
+        /// Protect it.
+        lock: bool,
+    },
+    /// Give the last field another size.
+    ResizeField {
+        /// Its number.
+        number: u8,
+        /// Its size.
+        size: FieldSize,
+    },
+    /// Delete the last field.
+    DeleteField {
+        /// Its number.
+        number: u8,
+    },
+    /// Change an access code; its present value is the session's.
+    ChangeCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its new value.
+        new: AccessCode,
+    },
+    /// Set the position; at standstill.
+    SetPosition {
+        /// The position wanted.
+        wanted: u32,
+        /// Exactly that, also when it breaks the phase to the sine; else the nearest that keeps it.
+        exact: bool,
+        /// 63h: align the code tracks as well.
+        synchronise: bool,
+        /// The user says that the encoder is a kit, where the type does not tell.
+        kit: bool,
+    },
+    /// Give the encoder another address.
+    SetAddress(DeviceAddress),
+    /// Store other interface settings.
+    Configure(LineSettings),
+    /// Counter to 0.
+    ClearCounter,
+    /// Counter + 1.
+    IncrementCounter,
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// What would be written.
+    pub plan: HiperfacePlan,
+    /// The encoder it is for.
+    pub identity: Identity,
+    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Things that are as they should be already.
+    pub unchanged: u64,
+    /// Items that are left alone because one side does not have them or cannot read them.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<FieldRange>,
+    /// The position asked for, where the plan sets another one that keeps the phase.
+    pub wanted_position: Option<u32>,
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the encoder counts as worn.
+    pub force_wear: bool,
+}
+
+/// What a commit did.
+#[derive(Clone, Debug, Default)]
+pub struct Committed {
+    /// Counts.
+    pub written: Written,
+    /// The before-image; `None` when there was nothing to write.
+    pub backup: Option<PathBuf>,
+    /// What the logbook could not take: the write itself is done.
+    pub logbook_warning: Option<String>,
+}
+
+/// A value that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number, with its unit where it has one.
+    Number(i64),
+    /// Bytes.
+    Bytes(Vec<u8>),
+}
+
+/// A profile as it was read.
+#[derive(Clone, Debug)]
+pub struct SavedProfile {
+    /// What was read.
+    pub profile: HiperfaceProfile,
+    /// Fields that could not be read, with the number of the code that guards them.
+    pub locked: Vec<(u8, CodeNumber)>,
+}
+
+/// What a HIPERFACE job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum HiperfaceOutput {
+    Identity(Identity),
+    Status(Vec<StatusCode>),
+    Position(PositionReading),
+    Value(Value),
+    Saved(Box<SavedProfile>),
+    Check(Vec<Line>),
+    Reset(Vec<StatusCode>),
+    Found(Findings),
+    Configured,
+    Prepared(Box<Prepared>),
+    Committed(Committed),
+}
+
+/// Why a job ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The device.
+    #[error(transparent)]
+    Device(#[from] Error),
+    /// It cannot be planned; nothing was written.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The before-image cannot be kept; nothing was written.
+    #[error(transparent)]
+    NotKept(FileError),
+    /// The encoder counts as worn; nothing was written.
+    #[error("{used} write cycles seen, {cost} more would exceed {limit}")]
+    Worn {
+        /// Seen so far.
+        used: u64,
+        /// What the plan costs.
+        cost: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// It was begun and not finished.
+    #[error("{interrupted}; before-image: {}", backup.display())]
+    Interrupted {
+        /// What was written, and why it ended.
+        interrupted: Box<Interrupted>,
+        /// The before-image.
+        backup: PathBuf,
+        /// Operations of the plan.
+        planned: usize,
+    },
+}

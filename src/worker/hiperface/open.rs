@@ -1,0 +1,39 @@
+//! From a link URL to a session with a HIPERFACE encoder.
+
+use std::sync::{Arc, Mutex};
+
+use super::Hiperface;
+use crate::device::hiperface::{Echo, PARAMETERS, Station};
+use crate::link::{ByteLink, Clock, LinkUrl, RealClock, Scheme, SimLink};
+use crate::sim::hiperface::{Bus, Config};
+use crate::store::Store;
+use crate::worker::open::{check_parameters, margin, open_bytes};
+use crate::worker::{OpenError, Session};
+
+/// Link parameters that describe the line and nothing of the virtual encoder.
+const LINE_ONLY: [&str; 6] = ["baud", "parity", "timeout", "margin", "periods", "turns"];
+
+/// Opens a link to a HIPERFACE encoder.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
+    let types = store.encoder_types()?;
+    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
+    let is_virtual = url.scheme == Scheme::Sim;
+    if is_virtual {
+        // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+        station.echo = Echo::Unknown;
+    } else {
+        check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+    }
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let wire = open_bytes(url, station.format, &clock, || {
+        let config =
+            Config::from_pairs(&url.query.without(&LINE_ONLY)).map_err(|error| OpenError::Sim(error.to_string()))?;
+        let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
+        link.set_format(station.format)?;
+        Ok(Box::new(link))
+    })?;
+    Ok(Session::new(wire, clock, station, store, types, is_virtual))
+}
