@@ -1,6 +1,10 @@
-//! What the program knows and can do, without drawing: so far the words for a person.
+//! What the program knows and can do, without drawing: the words for a person, the user's edits beside an encoder's
+//! memory, what is remembered.
 
 pub mod explain;
+pub mod hiperface;
+mod settings;
 mod texts;
 
+pub use settings::{Settings, Theme};
 pub use texts::{Language, Text, Texts};

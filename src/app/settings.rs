@@ -1,0 +1,90 @@
+//! What the studio remembers from one start to the next: looks, language, links, the arrangement of its panels. A file
+//! that cannot be read costs the memory of a few clicks: it is set aside by the next save, and the defaults hold.
+
+use serde::{Deserialize, Serialize};
+
+use super::Language;
+
+/// Dark or light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Theme {
+    /// Light text on dark surfaces.
+    #[default]
+    Dark,
+    /// Dark text on light surfaces.
+    Light,
+}
+
+/// Everything that is remembered.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Dark or light.
+    pub theme: Theme,
+    /// Language of the window.
+    pub language: Language,
+    /// Links used, the latest first; never with access codes, which are no part of a link.
+    links: Vec<String>,
+    /// Arrangement of the panels, which only the window reads.
+    pub layout: Option<String>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { theme: Theme::Dark, language: Language::English, links: Vec::new(), layout: None }
+    }
+}
+
+impl Settings {
+    /// Links that are remembered.
+    const LINKS: usize = 12;
+
+    /// Reads settings; `None` when the text is not what [`emit`](Self::emit) writes.
+    pub fn parse(text: &str) -> Option<Self> {
+        ron::from_str(text).ok()
+    }
+
+    /// The settings as text.
+    pub fn emit(&self) -> String {
+        ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
+    }
+
+    /// Links used, the latest first.
+    pub fn links(&self) -> &[String] {
+        &self.links
+    }
+
+    /// Notes that a link was used.
+    pub fn use_link(&mut self, link: &str) {
+        self.links.retain(|known| known != link);
+        self.links.insert(0, link.to_owned());
+        self.links.truncate(Self::LINKS);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_come_back_and_unknown_ones_do_not_hurt() {
+        let mut settings = Settings { theme: Theme::Light, language: Language::German, ..Settings::default() };
+        settings.use_link("serial:/dev/ttyUSB0");
+        settings.layout = Some("(tiles: {})".to_owned());
+        assert_eq!(Settings::parse(&settings.emit()), Some(settings));
+        assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(Theme::Light));
+        assert_eq!(Settings::parse("(theme: Mauve)"), None);
+        assert_eq!(Settings::parse(""), None);
+    }
+
+    #[test]
+    fn the_latest_link_comes_first_and_stands_once() {
+        let mut settings = Settings::default();
+        for at in 0..20 {
+            settings.use_link(&format!("tcp:host:{at}"));
+        }
+        settings.use_link("tcp:host:15");
+        assert_eq!(settings.links().len(), 12);
+        assert_eq!(settings.links()[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
+    }
+}
