@@ -95,10 +95,10 @@ pub(super) struct Find {
 pub(super) struct Position {
     pub(super) device: DeviceKind,
     /// Number of lines.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(super) count: u64,
     /// Time between two readings in milliseconds; 0: as fast as the line allows.
-    #[arg(long, default_value_t = 100, value_name = "MS")]
+    #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
 }
 

@@ -34,7 +34,7 @@ impl Output {
 
     /// Prints a result in the form that was asked for.
     pub(super) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
-        let printed = if self.json { format!("{json}\n") } else { text.to_owned() };
+        let printed = if self.json { format!("{json}\n") } else { visible(text) };
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
@@ -52,7 +52,16 @@ impl Output {
 /// Writes to stderr. When nobody reads that either, there is nobody to tell.
 pub(super) fn say(text: &str) {
     let mut err = io::stderr().lock();
-    let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
+    let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());
+}
+
+/// Text from a file, a device or an argument must not steer the terminal: control characters are shown, not sent.
+fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() && c != '\n' { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    shown
 }
 
 /// Warnings of the program itself; details with RUST_LOG-like verbosity are for the log file of the window.
@@ -67,4 +76,14 @@ pub(super) fn log_to_stderr() {
         .finish();
     // A second subscriber cannot be set; the first one serves.
     let _ = tracing::subscriber::set_global_default(subscriber);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_shown() {
+        assert_eq!(visible("GB\u{1b}[31m\tÄ µ\r\u{9b}x\n"), "GB\\u{1b}[31m\\tÄ µ\\r\\u{9b}x\n");
+    }
 }

@@ -126,7 +126,16 @@ impl Client for TcpStream {
 }
 
 fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> {
-    let cannot = |error: std::io::Error| Failure::Failed(vec![format!("{address}: cannot listen there: {error}.")]);
+    let cannot = |error: std::io::Error| match error.kind() {
+        ErrorKind::InvalidInput => Failure::Usage(format!("{address}: not HOST:PORT, as in 127.0.0.1:4001")),
+        ErrorKind::AddrInUse => {
+            let what = "another program listens there; end it, or choose another port";
+            Failure::Failed(vec![format!("{address}: {what}.")])
+        }
+        _ => Failure::Failed(vec![format!(
+            "{address}: cannot listen there: {error}. Give an address of this machine, as 127.0.0.1:4001."
+        )]),
+    };
     let listener = TcpListener::bind(address).map_err(cannot)?;
     listener.set_nonblocking(true).map_err(cannot)?;
     ready(&listener.local_addr().map_err(cannot)?.to_string())?;
@@ -176,7 +185,11 @@ mod terminal {
         // Until a client sets another speed, the terminal has that of the encoder.
         let _ = slave.set_baud_rate(9600);
         drop(slave);
-        let _link = Link::make(path, Path::new(&name)).map_err(|error| cannot(error.to_string()))?;
+        let _link = Link::make(path, Path::new(&name)).map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => cannot("there is something already; remove it, or choose another path".into()),
+            ErrorKind::NotFound => cannot("its folder does not exist; create it, or choose another path".into()),
+            _ => cannot(error.to_string()),
+        })?;
         ready(&path.display().to_string())?;
         while !ended.load(Ordering::SeqCst) {
             device.serve(&mut master, ended).map_err(|error| cannot(error.to_string()))?;

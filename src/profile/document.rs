@@ -1,9 +1,11 @@
 //! A profile document: schema version, kind of device, and what is saved of it.
 
 use ron::Value;
+use ron::error::SpannedError;
 
 use super::hiperface::HiperfaceProfile;
 use super::ron_text::{Entries, Unknown, Writer};
+use super::unique_names::UniqueNames;
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -87,11 +89,17 @@ impl Document {
     /// # Errors
     /// With line and column where the text is not RON, else with the entry that is wrong.
     pub fn parse(text: &str) -> Result<Self, ProfileError> {
-        let value: Value = ron::from_str(text).map_err(|error| ProfileError::Syntax {
+        let syntax = |error: SpannedError| ProfileError::Syntax {
             line: error.span.start.line,
             column: error.span.start.col,
-            what: error.code.to_string(),
-        })?;
+            what: match error.code {
+                // The crate's own words are for programmers.
+                ron::Error::ExceededRecursionLimit => "nested too deeply".to_owned(),
+                code => code.to_string(),
+            },
+        };
+        let value: Value = ron::from_str(text).map_err(syntax)?;
+        ron::from_str::<UniqueNames>(text).map_err(syntax)?;
         let mut entries = Entries::open("", value)?;
         let schema: u32 = entries.required("schema", "a whole number")?;
         if schema == 0 || schema > SCHEMA {
@@ -161,6 +169,19 @@ mod tests {
         let status = DataFieldStatus::from_byte(0xC8);
         assert_eq!(profile.fields, [FieldImage { number: 0, status, bytes }]);
         assert_eq!(profile.recorded.position, None);
+    }
+
+    #[test]
+    fn a_slip_of_the_hand_is_no_profile() {
+        let cases = [
+            ("fields: [(", "fields: [], fields: [(", "fields stands twice"),
+            ("status: 0xC8", "status: 0xC9, status: 0xC8", "status stands twice"),
+            ("fields:", "feilds:", "fields is missing"),
+        ];
+        for (from, to, why) in cases {
+            let error = Document::parse(&SHORT.replace(from, to)).unwrap_err().to_string();
+            assert!(error.ends_with(why), "{to}: {error}");
+        }
     }
 
     #[test]

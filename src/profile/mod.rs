@@ -6,6 +6,7 @@ mod document;
 pub mod hiperface;
 mod plan;
 mod ron_text;
+mod unique_names;
 
 pub use difference::{Comparison, Difference};
 pub use document::{Body, Document, ProfileError, SCHEMA};

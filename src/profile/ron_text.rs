@@ -74,6 +74,14 @@ impl Entries {
         Entries::open(&path, value)
     }
 
+    /// Takes a list of structures that has to be there.
+    pub(super) fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
+        if !self.entries.contains_key(name) {
+            return Err(ProfileError::Missing { path: self.path_of(name) });
+        }
+        self.structures(name)
+    }
+
     /// Takes a list of structures; empty when it is not there.
     pub(super) fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);

@@ -125,7 +125,7 @@ impl HiperfaceProfile {
         let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
-        for entries in entries.structures("fields")? {
+        for entries in entries.required_structures("fields")? {
             let path = entries.path_of("number");
             let (field, unknown) = read_field(entries)?;
             if fields.iter().any(|other| other.number == field.number) {
