@@ -168,10 +168,12 @@ mod tests {
         let text = SHORT
             .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
             .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
+            .replace("fields: [", "mounting: [(item: \"field:0@0+4\", by: \"CK\")], fields: [")
             .replace("number: 0,", "number: 0, label: \"motor\",");
         let document = Document::parse(&text).unwrap();
         let written = document.emit();
-        for kept in ["owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""] {
+        for kept in ["by: \"CK\"", "owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""]
+        {
             assert!(written.contains(kept), "{kept} is not in\n{written}");
         }
         assert_eq!(Document::parse(&written), Ok(document));

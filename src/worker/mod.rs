@@ -150,7 +150,7 @@ fn work(mut session: Session, jobs: &Receiver<(JobId, Job)>, mut outbox: Outbox,
                 outbox.send(end);
             }
             Err(RecvTimeoutError::Timeout) => {
-                outbox.flush();
+                outbox.flush_late();
                 if !lost && let Err(error) = session.check() {
                     lost = true;
                     outbox.send(Event::Lost(error));
@@ -190,12 +190,6 @@ impl Outbox {
     }
 
     fn flush(&mut self) {
-        // Half of the channel is for progress, so that it never stands in the way of an end.
-        if self.sender.len() < Worker::CAPACITY / 2
-            && let Some(progress) = self.progress.take()
-        {
-            let _ = self.sender.try_send(progress);
-        }
         let mut waiting = std::mem::take(&mut self.waiting).into_iter();
         while let Some(event) = waiting.next() {
             match self.sender.try_send(event) {
@@ -208,5 +202,53 @@ impl Outbox {
                 Err(TrySendError::Disconnected(_)) => return,
             }
         }
+        // Behind the start of its job, never before it. Half of the channel is for progress, so that it never stands in
+        // the way of an end.
+        if self.sender.len() < Worker::CAPACITY / 2
+            && let Some(progress) = self.progress.take()
+        {
+            let _ = self.sender.try_send(progress);
+        }
+    }
+
+    /// Sends what had to wait, and wakes whoever reads.
+    fn flush_late(&mut self) {
+        if !self.is_empty() {
+            self.flush();
+            (self.wake)();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicUsize;
+
+    use super::*;
+
+    fn progress(job: u64) -> Event {
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: String::new() })
+    }
+
+    #[test]
+    fn progress_never_overtakes_the_start_of_its_job_and_late_events_wake() {
+        let (sender, events) = bounded(Worker::CAPACITY);
+        let wakes = Arc::new(AtomicUsize::new(0));
+        let counter = wakes.clone();
+        let wake = Arc::new(move || {
+            counter.fetch_add(1, Ordering::SeqCst);
+        });
+        let mut outbox = Outbox { sender, wake, waiting: Vec::new(), progress: None };
+        for job in 0..Worker::CAPACITY as u64 {
+            outbox.send(Event::Started(JobId(job)));
+        }
+        outbox.send(Event::Started(JobId(1000)));
+        outbox.send(progress(1000));
+        assert_eq!(events.try_iter().count(), Worker::CAPACITY, "the channel was full");
+        let before = wakes.load(Ordering::SeqCst);
+        outbox.flush_late();
+        assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
+        let late: Vec<Event> = events.try_iter().collect();
+        assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");
     }
 }

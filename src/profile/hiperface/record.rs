@@ -3,7 +3,7 @@
 use super::{FieldRange, Item};
 use crate::bits::parse_hex;
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Unknown, Writer, quoted};
+use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
@@ -75,6 +75,8 @@ pub struct MountingMark {
     pub range: FieldRange,
     /// What it is.
     pub meaning: String,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
 }
 
 /// A data field.
@@ -104,6 +106,7 @@ impl HiperfaceProfile {
                 self.mounting.push(MountingMark {
                     range: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
                     meaning: "commutation offset".to_owned(),
+                    unknown: Unknown::new(),
                 });
             }
         }
@@ -163,7 +166,8 @@ impl HiperfaceProfile {
             writer.open("mounting", '[');
             for mark in &self.mounting {
                 let (item, meaning) = (quoted(&mark.range.to_string()), quoted(&mark.meaning));
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning})"));
+                let unknown = entries_text(&mark.unknown);
+                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
             }
             writer.close(']');
         }
@@ -245,7 +249,8 @@ fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
     let Ok(Item::Field(range)) = item.parse::<Item>() else {
         return Err(ProfileError::Value { path, what: format!("{item:?} is not of the form field:N@ADDR+COUNT") });
     };
-    Ok(MountingMark { range, meaning: entries.optional("meaning", "a text")?.unwrap_or_default() })
+    let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
+    Ok(MountingMark { range, meaning, unknown: entries.rest() })
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {

@@ -35,7 +35,7 @@ pub struct Restore {
     pub plan: HiperfacePlan,
     /// Things that are already as the profile says.
     pub unchanged: u64,
-    /// Fields that only the encoder has, or that one side cannot read: left alone.
+    /// Fields that only the encoder has, or that one side cannot read: left alone, or created without content.
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
@@ -281,6 +281,10 @@ impl Planner<'_> {
     fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
+        if target.bytes.is_none() {
+            // It is created because others may follow it; what was in it nobody knows.
+            self.missing.push(FieldRange { field: target.number, start: 0, count: None }.to_string());
+        }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });
         if let Some(bytes) = &target.bytes {
             for range in self.allowed(target.number, 0..bytes.len()) {

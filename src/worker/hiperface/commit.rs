@@ -27,7 +27,7 @@ pub(super) fn commit(
     let store = session.store.clone();
     let is_virtual = session.is_virtual;
     let mut master = session.master();
-    let confirmed = confirm(&mut master, plan, commit.consent, prepared.identity.geometry)?;
+    let confirmed = confirm(&mut master, plan, commit.consent, &prepared.identity)?;
     let backup = store
         .backups()
         .keep("hiperface", &prepared.identity.serial.serial_number, Timestamp::now(), &before_image(prepared))

@@ -73,15 +73,16 @@ impl Master<'_> {
             return Err(Error::Cancelled);
         }
         let mut stray = Vec::new();
-        while self.now() < self.station.quiet_until {
-            self.ctx.wire.receive(self.station.quiet_until, &mut stray)?;
-            if !stray.is_empty() {
-                self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(stray.len()));
-                stray.clear();
-                self.wait_for_silence()?;
+        // Looks at least once: what came while nobody listened is no part of the next reply.
+        loop {
+            self.ctx.wire.receive(self.station.quiet_until.max(self.now()), &mut stray)?;
+            if stray.is_empty() {
+                return Ok(());
             }
+            self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(stray.len()));
+            stray.clear();
+            self.wait_for_silence()?;
         }
-        Ok(())
     }
 
     /// Sends a frame, and shows of it what may be shown: also where a recording does not know it.
@@ -136,8 +137,10 @@ impl Master<'_> {
             if line.len() == before {
                 break;
             }
-            if !begun && self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty()) {
-                first_at = self.now();
+            let first = self.without_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
+            if let Some(reply) = first {
+                // An adapter delivers several characters at once: the first of them was complete earlier.
+                first_at = self.now() - timing.characters(reply.len() - 1);
             }
         }
         let trailing = self.hear_the_dead_time(&mut line)?;

@@ -139,7 +139,11 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
 #[test]
 fn another_encoder_keeps_its_mounting() {
     let mut wanted = profile("B", vec![field(0, 0xC9, &[(2, 1), (3, 1), (4, 1), (20, 1)])]);
-    wanted.mounting.push(MountingMark { range: FieldRange::new(0, 3, 10), meaning: String::new() });
+    wanted.mounting.push(MountingMark {
+        range: FieldRange::new(0, 3, 10),
+        meaning: String::new(),
+        unknown: Default::default(),
+    });
     let now = device(10, vec![field(0, 0xC9, &[])]);
     assert!(matches!(ops(&wanted, &now, RestoreOptions::default()), Err(PlanError::OtherDevice { .. })));
     let other = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
