@@ -1,7 +1,7 @@
 //! What one does with a HIPERFACE encoder. Each procedure takes a [`Master`], which asks, repeats what may be repeated
 //! and keeps the protocol's times; the manual is SICK 8010701.
 //!
-//! Whatever changes an encoder's memory goes through [`write`] with a plan and a consent to it.
+//! Whatever changes an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
 
 pub mod check;
 mod error;
