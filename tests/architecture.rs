@@ -33,10 +33,13 @@ struct Source {
 impl Source {
     /// Lines of code with their numbers: no comments, no tests.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        // A test module stands at the end of its file; `#[cfg(test)] mod x;` may stand anywhere.
+        let end = self.text.find("\n#[cfg(test)]\nmod tests").unwrap_or(self.text.len());
         self.text
+            .get(..end)
+            .unwrap_or_default()
             .lines()
             .enumerate()
-            .take_while(|(_, line)| !line.starts_with("#[cfg(test)]"))
             .map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
     }
 
@@ -97,6 +100,31 @@ fn floors_point_down_only() {
             for used in rooms_used(code) {
                 assert!(floor(used) <= own, "{}:{line} reaches up to {used}", source.path);
             }
+        }
+    }
+}
+
+/// Rooms on one floor know each other only where it is said here.
+#[test]
+fn neighbours_are_known_only_where_it_is_allowed() {
+    const ALLOWED: [(&str, &str); 4] = [("profile", "protocol"), ("link", "sim"), ("worker", "device"), ("cli", "app")];
+    for source in sources().iter().filter(|source| floor(&source.room) < 6) {
+        for (line, code) in source.code() {
+            for used in rooms_used(code) {
+                let neighbour = floor(used) == floor(&source.room) && used != source.room;
+                let allowed = !neighbour || ALLOWED.contains(&(source.room.as_str(), used)) || floor(used) == 1;
+                assert!(allowed, "{}:{line} uses its neighbour {used}", source.path);
+            }
+        }
+    }
+}
+
+/// Without this, what is behind `use crate::{` on the next line would be seen by no rule.
+#[test]
+fn paths_from_the_root_stand_on_one_line() {
+    for source in sources() {
+        for (line, code) in source.code() {
+            assert!(!code.trim_end().ends_with("crate::{"), "{}:{line}: one `use` a room", source.path);
         }
     }
 }

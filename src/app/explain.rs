@@ -95,8 +95,12 @@ pub fn encoder(error: &Error) -> Text {
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
-            Text::new("plan.other_device").with("profile", profile).with("device", device)
+            let named = |number: &str| if number.is_empty() { "–".to_owned() } else { number.to_owned() };
+            Text::new("plan.other_device").with("profile", named(profile)).with("device", named(device))
         }
+        PlanError::OtherType { profile, device } => Text::new("plan.other_type")
+            .with("profile", format!("{profile:02X}h"))
+            .with("device", format!("{device:02X}h")),
         PlanError::SizeFixed { field, profile, device } => {
             Text::new("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
         }

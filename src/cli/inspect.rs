@@ -35,6 +35,7 @@ pub(super) fn ports(output: &Output) -> Result {
 pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
+    output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
         HiperfaceOutput::Found(Findings::Searched(found)) => {
@@ -256,6 +257,13 @@ pub(super) fn read(common: &Common, output: &Output, item: &Item) -> Result {
     let (json, text) = match &value {
         Value::Bytes(bytes) => {
             (json!({"item": item.to_string(), "value": hex_compact(bytes)}), format!("{}\n", hex(bytes)))
+        }
+        Value::Analogue { value, limit } => {
+            if limit.is_some_and(|limit| *value > limit) {
+                output.remark("The value exceeds the limit of the encoder's extended label.");
+            }
+            let words = limit.map(|limit| format!("  (limit {limit})")).unwrap_or_default();
+            (json!({"item": item.to_string(), "value": value, "limit": limit}), format!("{value}{words}\n"))
         }
         Value::Number(number) => (json!({"item": item.to_string(), "value": number}), number_text(item, *number)),
     };

@@ -45,10 +45,8 @@ pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            let status = u8::try_from(error.exit_code()).unwrap_or(2);
-            // When help cannot be printed there is nobody to tell.
-            let _ = error.print();
-            return ExitCode::from(status);
+            output::say_usage(&error);
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
     output::log_to_stderr();

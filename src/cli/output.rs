@@ -23,7 +23,7 @@ impl Lines {
 
     pub(super) fn text(&self) -> String {
         let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-        self.0.iter().map(|(label, value)| format!("{label:width$}  {value}\n")).collect()
+        self.0.iter().map(|(label, value)| format!("{label:width$}  {value}").trim_end().to_owned() + "\n").collect()
     }
 }
 
@@ -43,9 +43,37 @@ impl Output {
         }
     }
 
+    /// As [`show`](Self::show), after a device was written: that has to be known whatever becomes of the result.
+    pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
+        self.show(json, text).map_err(|failure| match failure {
+            Failure::Failed(lines) => {
+                let written = "The device has been written and read back.".to_owned();
+                Failure::Failed(std::iter::once(written).chain(lines).collect())
+            }
+            other => other,
+        })
+    }
+
     /// Says something that is not a result.
     pub(super) fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
+    }
+}
+
+/// Help as it is; an error in the arguments in at most four lines, the last of them the usage.
+pub(super) fn say_usage(error: &clap::Error) {
+    use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
+    if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
+        // When help cannot be printed there is nobody to tell.
+        let _ = error.print();
+        return;
+    }
+    let rendered = error.render().to_string();
+    let (words, usage) = rendered.split_once("Usage:").unwrap_or((&rendered, ""));
+    let words: Vec<&str> = words.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    say(&format!("{}\n", words.join(" ")));
+    if let Some(usage) = usage.lines().next().filter(|usage| !usage.is_empty()) {
+        say(&format!("usage:{usage}\n"));
     }
 }
 

@@ -81,10 +81,22 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(file)?;
     let device = device(common, output)?;
+    name_other_device(output, &profile, &device);
     let comparison = compare(&profile.fields, &device.fields);
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
+}
+
+/// What is compared may be of two encoders: that is allowed, and has to be known.
+fn name_other_device(output: &Output, profile: &HiperfaceProfile, device: &HiperfaceProfile) {
+    let (profile, device) = (&profile.identity, &device.identity);
+    if (&profile.serial_number, profile.encoder_type) != (&device.serial_number, device.encoder_type) {
+        output.remark(&format!(
+            "The profile is of {} (type {:02X}h), the encoder is {} (type {:02X}h).",
+            profile.serial_number, profile.encoder_type, device.serial_number, device.encoder_type
+        ));
+    }
 }
 
 fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Result {
@@ -172,8 +184,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Re
         .add("verified", written.verified)
         .add("write cycles", written.write_cycles);
     if let Some(backup) = &committed.backup {
-        lines.add("before-image", backup.display());
+        lines.add("backup", backup.display());
     }
-    output.show(&json, &lines.text())?;
+    output.show_written(&json, &lines.text())?;
     Ok(Done::Well)
 }

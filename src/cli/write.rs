@@ -50,11 +50,11 @@ pub(super) fn change_and_show(
         Some(backup) => {
             let mut lines = Lines::default();
             lines.add("written", written.written).add("verified", written.verified);
-            lines.add("write cycles", written.write_cycles).add("before-image", backup.display());
+            lines.add("write cycles", written.write_cycles).add("backup", backup.display());
             lines.text()
         }
     };
-    output.show(&json, &text)?;
+    output.show_written(&json, &text)?;
     Ok(Done::Well)
 }
 
@@ -126,9 +126,9 @@ pub(super) fn parse_number(text: &str) -> Option<i64> {
         None => (1, text),
     };
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
-        Some(hex) => i64::from_str_radix(hex, 16),
+        Some(hex) if hex.starts_with(|c: char| c.is_ascii_hexdigit()) => i64::from_str_radix(hex, 16),
         None if digits.starts_with(|c: char| c.is_ascii_digit()) => digits.parse(),
-        None => return None,
+        _ => return None,
     };
     number.ok().map(|number| sign * number)
 }

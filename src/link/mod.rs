@@ -47,6 +47,12 @@ pub trait ByteLink: Send {
     /// When the line is gone or cannot be set so.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
+    /// [`set_format`](Self::set_format) sets something. A device server has its own settings, which nobody here sees:
+    /// what answers through it says nothing about speed and parity.
+    fn sets_format(&self) -> bool {
+        true
+    }
+
     /// Looks whether the line is still there, without sending or taking anything.
     ///
     /// # Errors

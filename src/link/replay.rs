@@ -69,6 +69,10 @@ impl ByteLink for ReplayLink {
         Ok(())
     }
 
+    fn sets_format(&self) -> bool {
+        false
+    }
+
     fn check(&mut self) -> Result<(), LinkError> {
         Ok(())
     }

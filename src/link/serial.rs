@@ -223,3 +223,20 @@ mod platform {
         LinkErrorKind::Busy
     }
 }
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_way_a_port_does_not_open_has_its_own_kind() {
+        let error = |kind| serialport::Error::new(kind, "words of the system");
+        let io = |kind| error(serialport::ErrorKind::Io(kind));
+        assert_eq!(opening("/dev/nope", &io(ErrorKind::NotFound)), LinkErrorKind::NotFound);
+        assert_eq!(opening("/dev/null", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::Busy);
+        assert_eq!(opening("/dev/nope", &error(serialport::ErrorKind::NoDevice)), LinkErrorKind::NotFound);
+        let denied = opening("/dev/null", &io(ErrorKind::PermissionDenied));
+        assert!(matches!(denied, LinkErrorKind::Permission { .. }), "{denied:?}");
+        assert_eq!(opening("/", &error(serialport::ErrorKind::Unknown)), LinkErrorKind::NotAPort);
+    }
+}

@@ -77,6 +77,10 @@ impl ByteLink for TcpLink {
         Ok(())
     }
 
+    fn sets_format(&self) -> bool {
+        false
+    }
+
     fn check(&mut self) -> Result<(), LinkError> {
         let mut byte = [0];
         let peeked =

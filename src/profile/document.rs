@@ -189,10 +189,12 @@ mod tests {
         let text = SHORT
             .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
             .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
+            .replace("fields: [", "mounting: [(item: \"field:0@0+4\", by: \"CK\")], fields: [")
             .replace("number: 0,", "number: 0, label: \"motor\",");
         let document = Document::parse(&text).unwrap();
         let written = document.emit();
-        for kept in ["owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""] {
+        for kept in ["by: \"CK\"", "owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""]
+        {
             assert!(written.contains(kept), "{kept} is not in\n{written}");
         }
         assert_eq!(Document::parse(&written), Ok(document));
@@ -230,6 +232,9 @@ mod tests {
             ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
             ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
             ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
+            ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
+            ("bytes:", "byts:", "fields[0].bytes: missing; a field without them is locked: true"),
+            ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has none"),
             ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
             ("fields: [", "mounting: [(item: \"counter\")], fields: [", "mounting[0].item: \"counter\" is not"),
         ];

@@ -188,6 +188,11 @@ pub(super) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
+/// Everything unknown behind the known entries of a structure on one line: `, name: value`.
+pub(super) fn entries_text(unknown: &Unknown) -> String {
+    unknown.iter().map(|(name, value)| format!(", {name}: {}", value_text(value))).collect()
+}
+
 /// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.
 fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {

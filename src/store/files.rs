@@ -4,6 +4,9 @@
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
@@ -84,8 +87,17 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// A pipe that nobody reads would hold the program for ever: it is given up, with the thread that waits for it.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
-    OpenOptions::new().write(true).open(path)?.write_all(content)
+    const PATIENCE: Duration = Duration::from_secs(8);
+    let (sender, written) = mpsc::channel();
+    let (path, content) = (path.to_owned(), content.to_vec());
+    thread::spawn(move || {
+        let result = OpenOptions::new().write(true).open(path).and_then(|mut file| file.write_all(&content));
+        // Whoever waited may have gone.
+        let _ = sender.send(result);
+    });
+    written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
 /// The file at the end of a chain of links; it need not exist.

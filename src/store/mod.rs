@@ -49,7 +49,10 @@ impl Store {
     /// # Errors
     /// [`StoreError::NoHome`] where there are none.
     pub fn for_user() -> Result<Self, StoreError> {
-        let folders = ProjectDirs::from("", "", "encoder-studio").ok_or(StoreError::NoHome)?;
+        let folders = ProjectDirs::from("", "", "encoder-studio")
+            // A relative home would scatter backups over wherever the program is started.
+            .filter(|folders| folders.data_dir().is_absolute() && folders.config_dir().is_absolute())
+            .ok_or(StoreError::NoHome)?;
         Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
     }
 

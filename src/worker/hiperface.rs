@@ -28,7 +28,7 @@ use crate::store::Store;
 pub struct Hiperface {
     wire: Box<dyn ByteLink>,
     station: Station,
-    types: EncoderTypes,
+    types: Arc<EncoderTypes>,
 }
 
 impl fmt::Debug for Hiperface {
@@ -54,7 +54,7 @@ impl Session<Hiperface> {
         types: EncoderTypes,
         is_virtual: bool,
     ) -> Self {
-        Session::with(Hiperface { wire, station, types }, clock, store, is_virtual)
+        Session::with(Hiperface { wire, station, types: Arc::new(types) }, clock, store, is_virtual)
     }
 
     /// The access codes that the user knows.
@@ -150,7 +150,10 @@ fn read_value(master: &mut Master<'_>, item: Item) -> Result<Value, Error> {
     Ok(match item {
         Item::Field(range) => Value::Bytes(read_part(master, range)?),
         Item::Status(field) => Value::Number(read_field_status(master, field)?.byte().into()),
-        Item::Analogue(channel) => Value::Number(read_analogue(master, channel)?.into()),
+        Item::Analogue(channel) => {
+            let value = read_analogue(master, channel)?;
+            Value::Analogue { value, limit: device::read_analogue_limit(master, channel)? }
+        }
         Item::Counter => Value::Number(read_counter(master)?.into()),
         Item::Address => Value::Number(device::read_address(master)?.into()),
         Item::Settings => Value::Number(device::read_settings(master)?.byte().into()),

@@ -92,10 +92,16 @@ pub enum Event<D: Device> {
     Lost(LinkError),
 }
 
-/// The job slot is taken.
+/// Why a job cannot be taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("busy with another job")]
-pub struct Busy;
+pub enum SubmitError {
+    /// The job slot is taken; jobs do not queue.
+    #[error("busy with another job")]
+    Busy,
+    /// The worker is gone.
+    #[error("the session has ended")]
+    Ended,
+}
 
 /// A session's thread, seen from outside. Dropping it stops what runs and ends the thread.
 pub struct Worker<D: Device> {
@@ -123,22 +129,25 @@ impl<D: Device> Worker<D> {
         let busy = Arc::new(AtomicBool::new(false));
         let outbox = Outbox { sender: outgoing, wake, waiting: Vec::new(), progress: None };
         let slot = busy.clone();
-        thread::Builder::new().name("session".to_owned()).spawn(move || work(session, &incoming, outbox, &slot))?;
+        thread::Builder::new().name("session".to_owned()).spawn(move || {
+            let slot = Slot(slot);
+            work(session, &incoming, outbox, &slot.0);
+        })?;
         Ok(Worker { jobs, events, cancel, busy, next: 0 })
     }
 
     /// Gives the worker something to do.
     ///
     /// # Errors
-    /// [`Busy`]: jobs do not queue.
-    pub fn submit(&mut self, job: D::Job) -> Result<JobId, Busy> {
+    /// See [`SubmitError`].
+    pub fn submit(&mut self, job: D::Job) -> Result<JobId, SubmitError> {
         if self.busy.swap(true, Ordering::SeqCst) {
-            return Err(Busy);
+            return Err(SubmitError::Busy);
         }
         self.cancel.reset();
         let id = JobId(self.next);
         self.next += 1;
-        self.jobs.try_send((id, job)).map_err(|_| Busy)?;
+        self.jobs.try_send((id, job)).map_err(|_| SubmitError::Ended)?;
         Ok(id)
     }
 
@@ -164,6 +173,15 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
+/// The job slot of a thread: free when the thread is gone, however it ended.
+struct Slot(Arc<AtomicBool>);
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::SeqCst);
+    }
+}
+
 fn work<D: Device>(
     mut session: Session<D>,
     jobs: &Receiver<(JobId, D::Job)>,
@@ -182,7 +200,7 @@ fn work<D: Device>(
                 outbox.send(end);
             }
             Err(RecvTimeoutError::Timeout) => {
-                outbox.flush();
+                outbox.flush_late();
                 if !lost && let Err(error) = session.check() {
                     lost = true;
                     outbox.send(Event::Lost(error));
@@ -222,12 +240,6 @@ impl<D: Device> Outbox<D> {
     }
 
     fn flush(&mut self) {
-        // Half of the channel is for progress, so that it never stands in the way of an end.
-        if self.sender.len() < CAPACITY / 2
-            && let Some(progress) = self.progress.take()
-        {
-            let _ = self.sender.try_send(progress);
-        }
         let mut waiting = std::mem::take(&mut self.waiting).into_iter();
         while let Some(event) = waiting.next() {
             match self.sender.try_send(event) {
@@ -240,5 +252,54 @@ impl<D: Device> Outbox<D> {
                 Err(TrySendError::Disconnected(_)) => return,
             }
         }
+        // Behind the start of its job, never before it. Half of the channel is for progress, so that it never stands in
+        // the way of an end.
+        if self.sender.len() < CAPACITY / 2
+            && let Some(progress) = self.progress.take()
+        {
+            let _ = self.sender.try_send(progress);
+        }
+    }
+
+    /// Sends what had to wait, and wakes whoever reads.
+    fn flush_late(&mut self) {
+        if !self.is_empty() {
+            self.flush();
+            (self.wake)();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicUsize;
+
+    use super::hiperface::Hiperface;
+    use super::*;
+
+    fn progress(job: u64) -> Event<Hiperface> {
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: String::new() })
+    }
+
+    #[test]
+    fn progress_never_overtakes_the_start_of_its_job_and_late_events_wake() {
+        let (sender, events) = bounded(CAPACITY);
+        let wakes = Arc::new(AtomicUsize::new(0));
+        let counter = wakes.clone();
+        let wake = Arc::new(move || {
+            counter.fetch_add(1, Ordering::SeqCst);
+        });
+        let mut outbox = Outbox { sender, wake, waiting: Vec::new(), progress: None };
+        for job in 0..CAPACITY as u64 {
+            outbox.send(Event::Started(JobId(job)));
+        }
+        outbox.send(Event::Started(JobId(1000)));
+        outbox.send(progress(1000));
+        assert_eq!(events.try_iter().count(), CAPACITY, "the channel was full");
+        let before = wakes.load(Ordering::SeqCst);
+        outbox.flush_late();
+        assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
+        let late: Vec<Event<Hiperface>> = events.try_iter().collect();
+        assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");
     }
 }

@@ -96,7 +96,7 @@ impl Bench {
         if ready.starts_with("ready ") {
             return Some(encoder);
         }
-        println!("skipped: no pseudo-terminal can be made here");
+        skip("no pseudo-terminal can be made here");
         None
     }
 }
@@ -237,11 +237,17 @@ pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
+/// Says that a test is skipped. Where everything has to be there (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
+pub(crate) fn skip(why: &str) {
+    assert!(std::env::var_os("ENCODER_STUDIO_NO_SKIP").is_none(), "may not be skipped: {why}");
+    println!("skipped: {why}");
+}
+
 /// Python with one of the foreign programs; `None`, and a line that says so, where there is none.
 pub(crate) fn python(script: &str) -> Option<Command> {
     let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
-        println!("skipped: python3 is not installed");
+        skip("python3 is not installed");
         return None;
     }
     let mut command = Command::new("python3");

@@ -103,3 +103,13 @@ fn a_power_cycle_opens_the_default_window() {
         assert_eq!(found[0].label.settings.byte(), settings, "what it has stored is told");
     }
 }
+
+/// A device server has its own speed: nobody here changes it, so that trying others would find the same encoder 21 times.
+#[test]
+fn through_a_device_server_each_encoder_is_found_once() {
+    let mut desk = Desk::new("address=0x43&encoders=2");
+    desk.tap().formatless = true;
+    let found = searched(&mut desk, FindOptions::default());
+    assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), [0x43, 0x44]);
+    assert_eq!(desk.tap().sent.len(), 32, "each address once");
+}

@@ -43,6 +43,19 @@ fn a_base_that_changed_is_not_written_over() {
     }
 }
 
+/// Two new encoders have the same memory: what tells them apart is the serial number.
+#[test]
+fn a_plan_is_for_one_encoder() {
+    let mut desk = Desk::new("serial=A1");
+    let prepared = desk.prepare(store(0, 0, vec![1, 2])).unwrap();
+    *desk.bus() = crate::support::bus("serial=B2");
+    match desk.commit(&prepared) {
+        Err(JobError::Device(Error::Changed { item })) => assert_eq!(item, "the encoder itself"),
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(desk.wear(), 0);
+}
+
 #[test]
 fn a_consent_to_another_plan_writes_nothing() {
     let mut desk = Desk::new("");

@@ -1,12 +1,12 @@
 //! Setting the position: at rest only, in phase unless wished otherwise, and with a way back.
 
-use encoder_studio::device::hiperface::Error;
+use encoder_studio::device::hiperface::{Error, Station};
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::Command;
+use encoder_studio::protocol::hiperface::{Command, LineSettings};
 use encoder_studio::store::Logbook;
 use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 
-use crate::support::{Desk, backup};
+use crate::support::{Desk, MARGIN, backup};
 
 fn set(wanted: u32, exact: bool) -> Change {
     Change::SetPosition { wanted, exact, synchronise: false, kit: false }
@@ -105,4 +105,41 @@ fn a_position_comes_with_its_moment() {
             assert!(reading.raw.abs_diff(truth) <= 1, "{query}: {} at {:?}, not {truth}", reading.raw, reading.at);
         }
     }
+}
+
+/// Request, time-out, processing, reply and dead time are all that a cycle takes: the goal is 95 % of that rate.
+#[test]
+fn polling_is_as_fast_as_the_protocol_allows() {
+    for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
+        let settings = LineSettings::from_byte(byte);
+        let mut station = Station::new(MARGIN);
+        station.format = settings.format().unwrap();
+        station.long_timeout = settings.long_timeout();
+        let mut desk = Desk::with_station(&format!("settings={byte}&pace=worst"), station);
+        desk.run(HiperfaceJob::Position(None)).unwrap();
+        let before = desk.clock.now();
+        for _ in 0..100 {
+            desk.run(HiperfaceJob::Position(None)).unwrap();
+        }
+        let cycle = desk.clock.now().since(before).as_secs_f64() / 100.0;
+        // Three characters there, seven back, 11 bits each; silence before and after the reply; 10 ms of processing.
+        let silence = if settings.long_timeout() { 44.0 } else { 11.0 };
+        let least = (10.0 * 11.0 + 2.0 * silence) / f64::from(settings.baud().unwrap().bits_per_second()) + 0.010;
+        assert!(least >= cycle * 0.95, "{settings}: {cycle} s a cycle, {least} s needed");
+        assert!(least <= cycle * 1.0001, "{settings}: {cycle} s a cycle is faster than allowed, {least} s");
+    }
+}
+
+/// What came while nobody listened is no part of the next reply: it costs neither a try nor the line's good name.
+#[test]
+fn bytes_that_came_in_a_pause_are_not_taken_for_a_reply() {
+    let mut desk = Desk::new("");
+    desk.run(HiperfaceJob::Position(None)).unwrap();
+    let now = desk.clock.now();
+    desk.clock.sleep_until(now + std::time::Duration::from_secs(1));
+    desk.tap().foreign.extend([0x40, 0x42, 0x00]);
+    let sent = desk.tap().sent.len();
+    desk.run(HiperfaceJob::Position(None)).unwrap();
+    assert_eq!(desk.tap().sent.len(), sent + 1);
+    assert_eq!(desk.session.station().damaged, 0);
 }

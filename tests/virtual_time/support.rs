@@ -38,6 +38,8 @@ pub(crate) struct Tap {
     pub(crate) swallow_reply: Option<usize>,
     /// Bytes that somebody else sends.
     pub(crate) foreign: VecDeque<u8>,
+    /// The link has no speed of its own: a device server.
+    pub(crate) formatless: bool,
     /// The link says that it is gone when it is asked.
     pub(crate) unplugged: bool,
 }
@@ -110,7 +112,11 @@ impl ByteLink for TestLink {
     }
 
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
-        self.line.set_format(format)
+        if self.sets_format() { self.line.set_format(format) } else { Ok(()) }
+    }
+
+    fn sets_format(&self) -> bool {
+        !self.tap.lock().unwrap().formatless
     }
 
     fn check(&mut self) -> Result<(), LinkError> {

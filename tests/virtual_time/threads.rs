@@ -10,7 +10,7 @@ use encoder_studio::link::{Clock, RealClock, VirtualClock};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
 use encoder_studio::worker::hiperface::{Hiperface, HiperfaceJob};
-use encoder_studio::worker::{Busy, Event, JobId, Session, Worker};
+use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
@@ -81,9 +81,9 @@ fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
     let mut bench = in_real_time("settings=0xE0&address=0x5F");
     let id = bench.worker.submit(search()).unwrap();
     assert!(bench.worker.is_busy());
-    assert_eq!(bench.worker.submit(identify()), Err(Busy));
+    assert_eq!(bench.worker.submit(identify()), Err(SubmitError::Busy));
     std::thread::sleep(Duration::from_millis(1300));
-    assert_eq!(bench.worker.submit(identify()), Err(Busy));
+    assert_eq!(bench.worker.submit(identify()), Err(SubmitError::Busy));
     let stopped = Instant::now();
     bench.worker.stop();
     let events = until_end(&bench.worker);

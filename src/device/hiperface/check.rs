@@ -1,7 +1,7 @@
 //! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
 
 use super::{Error, Identity, Master, identify, read_analogue, read_field, read_position, read_status, reset};
-use crate::protocol::hiperface::{CodeNumber, EncoderTypes, LabelParameter, StatusCode};
+use crate::protocol::hiperface::{CodeNumber, EncoderTypes, StatusCode};
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,17 +82,14 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, 
     }
 }
 
-/// The extended label gives a quantity that 44h can read as two words: the channel, then the limit (manual, "Grenzwerte";
-/// which pairs are of this kind is in the data sheet, `U`: only a pair whose channel answers is taken for one).
+/// The limits of the extended label, as far as their channels answer.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<Line>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
     let mut worst = Verdict::Good;
-    let (pairs, _) = label.parameters.as_chunks::<2>();
-    for [LabelParameter { value: channel, .. }, LabelParameter { value: limit, .. }] in pairs {
-        let Ok(channel) = u8::try_from(*channel) else { continue };
+    for (channel, limit) in label.limits() {
         if let Ok(value) = refusal(read_analogue(master, channel))? {
-            if value > *limit {
+            if value > limit {
                 worst = Verdict::Attention;
             }
             findings.push(format!("{channel:02X}h: {value} ≤ {limit}"));

@@ -73,7 +73,7 @@ pub enum Findings {
     Searched(Vec<Found>),
 }
 
-/// Searches all speeds, parities and addresses. Afterwards our side is set as it was before.
+/// Searches all speeds, parities and addresses; through a link that has no speed of its own, all addresses. Afterwards our side is set as it was before.
 ///
 /// # Errors
 /// The wire, or the user's wish.
@@ -96,7 +96,8 @@ fn search(
     options: &FindOptions,
     progress: &mut dyn FnMut(u64, u64, &Attempt),
 ) -> Result<Findings, Error> {
-    let formats = formats();
+    // Through a device server every format would be the same one, and each would be found.
+    let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
     let per_format = 32 + u64::from(options.one_encoder);
     let total = 1 + per_format * formats.len() as u64;
     progress(0, total, &Attempt::Listening);

@@ -40,12 +40,7 @@ impl Identity {
 /// The line, or a refusal of anything but 56h and 4Eh, which some types do not have.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
-    let serial = match have(master.ask_confirmed(&Request::ReadSerial))? {
-        Some(Reply::Serial(serial)) => serial,
-        _ => {
-            SerialLabel { serial_number: String::new(), firmware_version: String::new(), firmware_date: String::new() }
-        }
-    };
+    let serial = read_serial(master)?;
     let memory = match have(master.ask_confirmed(&Request::FreeMemory))? {
         Some(Reply::FreeMemory(memory)) => Some(memory),
         _ => None,
@@ -78,6 +73,19 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
         Reply::TypeLabel(label) => Ok(label),
         other => Err(Error::Unexpected(format!("type label: {other:?}"))),
     }
+}
+
+/// Reads serial number and firmware; empty texts where the encoder does not have the command.
+///
+/// # Errors
+/// The line, or a refusal.
+pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
+    Ok(match have(master.ask_confirmed(&Request::ReadSerial))? {
+        Some(Reply::Serial(serial)) => serial,
+        _ => {
+            SerialLabel { serial_number: String::new(), firmware_version: String::new(), firmware_date: String::new() }
+        }
+    })
 }
 
 /// Reads the stored interface settings.

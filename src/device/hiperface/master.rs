@@ -103,11 +103,16 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
+    /// Whether speed and parity of our side can be set; else they are the business of somebody behind the link.
+    pub fn sets_format(&self) -> bool {
+        self.ctx.wire.sets_format()
+    }
+
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
     ///
     /// # Errors
     /// When every try failed, when the encoder refused, or when the user wished an end.
-    pub fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
+    pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
@@ -123,7 +128,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// As [`ask`](Self::ask).
-    pub fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
+    pub(super) fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
             if !self.station.reads_twice() {
@@ -154,7 +159,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five tries.
-    pub fn tell(
+    pub(super) fn tell(
         &mut self,
         request: &Request,
         mut is_done: impl FnMut(&mut Self) -> Result<bool, Error>,
@@ -181,7 +186,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The wire, or [`Error::Cancelled`].
-    pub fn tell_all(&mut self, request: &Request) -> Result<(), Error> {
+    pub(super) fn tell_all(&mut self, request: &Request) -> Result<(), Error> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
@@ -200,9 +205,14 @@ impl<'a> Master<'a> {
     pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
         let now = self.now();
         self.station.damaged += 1;
-        let since = *self.station.troubled_since.get_or_insert(now);
-        let next_end = now + self.station.timing().worst_case(request) + self.station.margin;
+        let longest = self.station.timing().worst_case(request) + self.station.margin;
+        // The first try counts as well: at 600 bit/s it alone may take three seconds.
+        let since = *self.station.troubled_since.get_or_insert(now - longest);
+        let next_end = now + longest;
         if tries < TRIES && next_end.since(since) < PATIENCE {
+            if matches!(trouble, Trouble::Silence { .. }) {
+                self.hear_late(tries)?;
+            }
             return Ok(());
         }
         let command = request.command();

@@ -1,7 +1,7 @@
 //! What one does with a HIPERFACE encoder. Each procedure takes a [`Master`], which asks, repeats what may be repeated
 //! and keeps the protocol's times; the manual is SICK 8010701.
 //!
-//! Whatever changes an encoder's memory goes through [`write`] with a plan and a consent to it.
+//! Whatever changes an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
 
 pub mod check;
 mod error;
@@ -19,7 +19,9 @@ pub use error::Error;
 pub use fields::{read_all_fields, read_field, read_field_status, read_range};
 pub use identify::{Identity, identify, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;
-pub use position::{PositionReading, ensure_standstill, read_analogue, read_counter, read_position};
+pub use position::{
+    PositionReading, ensure_standstill, read_analogue, read_analogue_limit, read_counter, read_position,
+};
 pub use reset::{change_line_for_now, reset};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{Codes, Echo, PARAMETERS, Station};

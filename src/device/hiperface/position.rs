@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use super::{Error, Master};
-use crate::protocol::hiperface::{Geometry, Position, Reply, Request, StatusCode};
+use super::identify::read_type_label;
+use super::{Error, Master, read_extended_label};
+use crate::protocol::hiperface::{ExtendedLabel, Geometry, Position, Reply, Request, StatusCode, TypeLabel};
 use crate::units::Moment;
 
 /// A position as it was read.
@@ -46,6 +47,24 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
     match master.ask(&Request::ReadAnalogue { channel })? {
         Reply::Analogue(value) => Ok(value),
         other => Err(Error::Unexpected(format!("analogue value: {other:?}"))),
+    }
+}
+
+/// The value that an analogue channel should not exceed, where the encoder has an extended label that says so.
+///
+/// # Errors
+/// The line.
+pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Option<i16>, Error> {
+    if read_type_label(master)?.encoder_type != TypeLabel::EXTENDED {
+        return Ok(None);
+    }
+    match read_extended_label(master) {
+        Ok(bytes) => {
+            let limits = ExtendedLabel::parse(&bytes).map(|label| label.limits()).unwrap_or_default();
+            Ok(limits.into_iter().find(|(of, _)| *of == channel).map(|(_, limit)| limit))
+        }
+        Err(Error::Rejected { .. }) => Ok(None),
+        Err(error) => Err(error),
     }
 }
 

@@ -4,10 +4,11 @@
 //! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
 
 use super::{
-    Error, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status, read_range,
+    Error, Identity, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
+    read_range,
 };
 use crate::bits::hex_compact;
-use crate::device::hiperface::identify::read_type_label;
+use crate::device::hiperface::identify::{read_serial, read_type_label};
 use crate::device::hiperface::master::Trouble;
 use crate::device::hiperface::position::{distance, range_of};
 use crate::profile::Consent;
@@ -48,7 +49,8 @@ pub struct Interrupted {
     pub left_unlocked: Vec<u8>,
 }
 
-/// Checks the consent and reads again what the plan rests upon.
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
+/// was made, because two new ones have the same memory.
 ///
 /// # Errors
 /// [`Error::Changed`] when anything is no longer as it was; the consent is for another plan; the line.
@@ -56,10 +58,14 @@ pub fn confirm<'p>(
     master: &mut Master<'_>,
     plan: &'p HiperfacePlan,
     consent: Consent,
-    geometry: Option<Geometry>,
+    identity: &Identity,
 ) -> Result<Confirmed<'p>, Error> {
+    let geometry = identity.geometry;
     if !consent.covers(plan.id()) {
         return Err(Error::Unexpected("the consent is for another plan".to_owned()));
+    }
+    if read_type_label(master)?.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
+        return Err(Error::Changed { item: "the encoder itself".to_owned() });
     }
     if read_memory(master)?.fields != plan.base.field_count {
         return Err(Error::Changed { item: "number of data fields".to_owned() });

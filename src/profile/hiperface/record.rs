@@ -1,9 +1,9 @@
 //! What is saved of a HIPERFACE encoder. An access code is never part of it.
 
 use super::{FieldRange, Item};
-use crate::bits::parse_hex;
+use crate::bits::{HexError, parse_hex};
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Unknown, Writer, quoted};
+use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
@@ -75,6 +75,8 @@ pub struct MountingMark {
     pub range: FieldRange,
     /// What it is.
     pub meaning: String,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
 }
 
 /// A data field.
@@ -104,6 +106,7 @@ impl HiperfaceProfile {
                 self.mounting.push(MountingMark {
                     range: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
                     meaning: "commutation offset".to_owned(),
+                    unknown: Unknown::new(),
                 });
             }
         }
@@ -163,7 +166,8 @@ impl HiperfaceProfile {
             writer.open("mounting", '[');
             for mark in &self.mounting {
                 let (item, meaning) = (quoted(&mark.range.to_string()), quoted(&mark.meaning));
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning})"));
+                let unknown = entries_text(&mark.unknown);
+                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
             }
             writer.close(']');
         }
@@ -199,7 +203,7 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
     writer.entry("status", &format!("0x{:02X}", field.status.byte()), &field.status.to_string());
     match &field.bytes {
         Some(bytes) => writer.bytes("bytes", bytes),
-        None => writer.comment("locked: the access code is not known, so there are no bytes"),
+        None => writer.entry("locked", "true", "the access code is not known, so there are no bytes"),
     }
     if let Some(unknown) = unknown {
         writer.unknown(unknown);
@@ -245,7 +249,8 @@ fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
     let Ok(Item::Field(range)) = item.parse::<Item>() else {
         return Err(ProfileError::Value { path, what: format!("{item:?} is not of the form field:N@ADDR+COUNT") });
     };
-    Ok(MountingMark { range, meaning: entries.optional("meaning", "a text")?.unwrap_or_default() })
+    let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
+    Ok(MountingMark { range, meaning, unknown: entries.rest() })
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
@@ -260,6 +265,11 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
         ));
     }
     let bytes = read_bytes(&mut entries, "bytes")?;
+    let locked = entries.optional("locked", "true or false")?.unwrap_or(false);
+    if bytes.is_some() == locked {
+        let what = if locked { "a locked field has none" } else { "missing; a field without them is locked: true" };
+        return Err(wrong(&entries, "bytes", what.to_owned()));
+    }
     if let Some(bytes) = &bytes
         && bytes.len() != status.size().bytes()
     {
@@ -280,6 +290,14 @@ fn read_bytes(entries: &mut Entries, name: &str) -> Result<Option<Vec<u8>>, Prof
             .into_rust::<Vec<String>>()
             .map_err(|_| ProfileError::Shape { path: path.clone(), expected: EXPECTED })?,
     };
-    let bytes = lines.iter().map(|line| parse_hex(line)).collect::<Result<Vec<_>, _>>();
+    let bytes = lines.iter().map(|line| parse_pairs(line)).collect::<Result<Vec<_>, _>>();
     bytes.map(|rows| Some(rows.concat())).map_err(|error| ProfileError::Value { path, what: error.to_string() })
+}
+
+/// Bytes of two digits each: a digit that got lost in an editor is not taken for a byte of its own.
+fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
+    match line.split_whitespace().find(|group| group.len() == 1) {
+        Some(digit) => Err(HexError::Odd(digit.to_owned())),
+        None => parse_hex(line),
+    }
 }

@@ -20,8 +20,10 @@ pub struct RestoreOptions {
 /// An encoder's memory as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
-    /// Serial number.
+    /// Serial number; empty where the encoder does not tell.
     pub serial_number: String,
+    /// Type byte.
+    pub encoder_type: u8,
     /// Free memory and number of fields.
     pub memory: FreeMemory,
     /// All fields in ascending order.
@@ -35,7 +37,7 @@ pub struct Restore {
     pub plan: HiperfacePlan,
     /// Things that are already as the profile says.
     pub unchanged: u64,
-    /// Fields that only the encoder has, or that one side cannot read: left alone.
+    /// Fields that only the encoder has, or that one side cannot read: left alone, or created without content.
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
@@ -51,6 +53,14 @@ pub enum PlanError {
         profile: String,
         /// In the encoder.
         device: String,
+    },
+    /// The profile is of another type of encoder.
+    #[error("the profile is of type {profile:02X}h, the encoder of type {device:02X}h")]
+    OtherType {
+        /// In the profile.
+        profile: u8,
+        /// In the encoder.
+        device: u8,
     },
     /// Only the last field changes its size.
     #[error("field {field} has {device} bytes in the encoder and {profile} in the profile, and is not the last")]
@@ -147,12 +157,9 @@ pub fn plan_restore(
     device: &DeviceState,
     options: RestoreOptions,
 ) -> Result<Restore, PlanError> {
-    let same_device = profile.identity.serial_number == device.serial_number;
-    if !same_device && !options.allow_other_device {
-        return Err(PlanError::OtherDevice {
-            profile: profile.identity.serial_number.clone(),
-            device: device.serial_number.clone(),
-        });
+    let same_device = is_same_device(profile, &device.serial_number);
+    if !options.allow_other_device {
+        check_device(profile, &device.serial_number, device.encoder_type)?;
     }
     let mut planner = Planner {
         profile,
@@ -179,6 +186,28 @@ pub fn plan_restore(
         }
     }
     Ok(planner.finish())
+}
+
+/// Refuses an encoder that the profile was not read from. Encoders that do not tell their serial number are never the
+/// same one.
+///
+/// # Errors
+/// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
+pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_type: u8) -> Result<(), PlanError> {
+    if !is_same_device(profile, serial_number) {
+        return Err(PlanError::OtherDevice {
+            profile: profile.identity.serial_number.clone(),
+            device: serial_number.to_owned(),
+        });
+    }
+    if profile.identity.encoder_type != encoder_type {
+        return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
+    }
+    Ok(())
+}
+
+fn is_same_device(profile: &HiperfaceProfile, serial_number: &str) -> bool {
+    !serial_number.is_empty() && profile.identity.serial_number == serial_number
 }
 
 struct Planner<'a> {
@@ -281,6 +310,10 @@ impl Planner<'_> {
     fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
+        if target.bytes.is_none() {
+            // It is created because others may follow it; what was in it nobody knows.
+            self.missing.push(FieldRange { field: target.number, start: 0, count: None }.to_string());
+        }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });
         if let Some(bytes) = &target.bytes {
             for range in self.allowed(target.number, 0..bytes.len()) {

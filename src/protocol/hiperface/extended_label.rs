@@ -69,6 +69,23 @@ impl ExtendedLabel {
         })
     }
 
+    /// Limits of quantities that 44h can read: the analogue channel and the value that its reading should not exceed.
+    /// Two parameters that follow each other are taken for such a pair; which ones are is in the data sheet (`U`), so a
+    /// pair is good for a remark where its channel answers, and for nothing else.
+    pub fn limits(&self) -> Vec<(u8, i16)> {
+        let mut limits = Vec::new();
+        let mut rest = self.parameters.as_slice();
+        while let [first, others @ ..] = rest {
+            rest = others;
+            let [second, others @ ..] = others else { break };
+            if second.number == first.number + 1 {
+                limits.extend(u8::try_from(first.value).ok().map(|channel| (channel, second.value)));
+                rest = others;
+            }
+        }
+        limits
+    }
+
     fn geometry(linear: bool, first: u32, second: u32) -> Option<Geometry> {
         if first == 0 || second == 0 {
             return None;
@@ -125,6 +142,17 @@ mod tests {
         assert_eq!(label.designation, "SEL37-HFB0-K02");
         let parameters: Vec<(u8, i16)> = label.parameters.iter().map(|p| (p.number, p.value)).collect();
         assert_eq!(parameters, [(0, 0x48), (1, 115)]);
+        assert_eq!(label.limits(), [(0x48, 115)]);
+    }
+
+    #[test]
+    fn a_gap_shifts_no_pair() {
+        let parameter = |number, value| LabelParameter { number, value };
+        let mut label = ExtendedLabel::parse(&label()).unwrap();
+        label.parameters = vec![parameter(0, 7), parameter(2, 0x48), parameter(3, 115), parameter(9, 1)];
+        assert_eq!(label.limits(), [(0x48, 115)]);
+        label.parameters = vec![parameter(0, -1), parameter(1, 5)];
+        assert_eq!(label.limits(), []);
     }
 
     #[test]

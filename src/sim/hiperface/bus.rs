@@ -14,7 +14,7 @@ use crate::sim::{ByteDevice, Faults};
 use crate::units::CharacterFormat;
 use crate::units::{Moment, Parity};
 
-/// A line with one or several encoders, seen from the host. Made by [`Config::bus`].
+/// A line with one or several encoders, seen from the host. Made of a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,

@@ -28,7 +28,7 @@ pub(super) fn commit(
     let store = desk.store.clone();
     let is_virtual = desk.is_virtual;
     let mut master = encoder.master(desk);
-    let confirmed = confirm(&mut master, plan, commit.consent, prepared.identity.geometry)?;
+    let confirmed = confirm(&mut master, plan, commit.consent, &prepared.identity)?;
     let backup = store
         .backups()
         .keep("hiperface", &prepared.identity.serial.serial_number, Timestamp::now(), &before_image(prepared))

@@ -169,8 +169,15 @@ pub struct Committed {
 /// A value that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// A number, with its unit where it has one.
+    /// A number.
     Number(i64),
+    /// An analogue value, and what it should not exceed, where the encoder's extended label says so.
+    Analogue {
+        /// As read.
+        value: i16,
+        /// The limit.
+        limit: Option<i16>,
+    },
     /// Bytes.
     Bytes(Vec<u8>),
 }

@@ -6,8 +6,8 @@ use crate::device::hiperface::{
     Error, Identity, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
 use crate::profile::hiperface::{
-    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar, plan_create,
-    plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
+    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar,
+    check_device, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
 use crate::protocol::hiperface::{BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
 use crate::store::Logbook;
@@ -65,16 +65,15 @@ fn restore(
     tell: &mut dyn FnMut(Progress),
 ) -> Result<(), JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
-    if profile.identity.serial_number != serial_number && !options.allow_other_device {
+    let encoder_type = prepared.identity.label.encoder_type;
+    if !options.allow_other_device {
         // Known before the fields are read.
-        return Err(
-            PlanError::OtherDevice { profile: profile.identity.serial_number.clone(), device: serial_number }.into()
-        );
+        check_device(profile, &serial_number, encoder_type)?;
     }
     let memory = read_memory(master)?;
     let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
     let fields = read_all_fields(master, memory.fields, progress)?;
-    let restore = plan_restore(profile, &DeviceState { serial_number, memory, fields }, options)?;
+    let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     prepared.plan = restore.plan;
     prepared.unchanged = restore.unchanged;
     prepared.missing = restore.missing;

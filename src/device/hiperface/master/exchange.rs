@@ -73,15 +73,16 @@ impl Master<'_> {
             return Err(Error::Cancelled);
         }
         let mut stray = Vec::new();
-        while self.now() < self.station.quiet_until {
-            self.ctx.wire.receive(self.station.quiet_until, &mut stray)?;
-            if !stray.is_empty() {
-                self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(stray.len()));
-                stray.clear();
-                self.wait_for_silence()?;
+        // Looks at least once: what came while nobody listened is no part of the next reply.
+        loop {
+            self.ctx.wire.receive(self.station.quiet_until.max(self.now()), &mut stray)?;
+            if stray.is_empty() {
+                return Ok(());
             }
+            self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(stray.len()));
+            stray.clear();
+            self.wait_for_silence()?;
         }
-        Ok(())
     }
 
     /// Sends a frame, and shows of it what may be shown: also where a recording does not know it.
@@ -93,6 +94,29 @@ impl Master<'_> {
             }
             error
         })
+    }
+
+    /// Listens on after a silence, longer each time: what comes now is the reply to the request before, on a wire that is
+    /// slower than its margin says, and would be taken for the reply to the next. The margin grows by what it was late.
+    pub(super) fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
+        const LONGEST: Duration = Duration::from_secs(2);
+        let from = self.now();
+        let patience = self.station.margin.saturating_mul(1 << tries.min(8)).min(LONGEST);
+        let mut late = Vec::new();
+        self.ctx.wire.receive(from + patience, &mut late)?;
+        if late.is_empty() {
+            return Ok(());
+        }
+        let lateness = self.now().since(from);
+        self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(late.len()));
+        self.wait_for_silence()?;
+        let margin = (self.station.margin + lateness).saturating_mul(3) / 2;
+        self.station.margin = margin.clamp(self.station.margin, LONGEST);
+        tracing::warn!(
+            "replies come {} ms later than expected; margin= in the link says so beforehand",
+            lateness.as_millis()
+        );
+        Ok(())
     }
 
     /// Listens until nothing came for the time-out.
@@ -136,8 +160,10 @@ impl Master<'_> {
             if line.len() == before {
                 break;
             }
-            if !begun && self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty()) {
-                first_at = self.now();
+            let first = self.without_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
+            if let Some(reply) = first {
+                // An adapter delivers several characters at once: the first of them was complete earlier.
+                first_at = self.now() - timing.characters(reply.len() - 1);
             }
         }
         let trailing = self.hear_the_dead_time(&mut line)?;

@@ -41,6 +41,7 @@ fn profile(serial_number: &str, fields: Vec<FieldImage>) -> HiperfaceProfile {
 fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
     DeviceState {
         serial_number: "A".to_owned(),
+        encoder_type: 0x37,
         memory: FreeMemory { blocks: free_blocks, fields: fields.len() as u8 },
         fields,
     }
@@ -139,7 +140,11 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
 #[test]
 fn another_encoder_keeps_its_mounting() {
     let mut wanted = profile("B", vec![field(0, 0xC9, &[(2, 1), (3, 1), (4, 1), (20, 1)])]);
-    wanted.mounting.push(MountingMark { range: FieldRange::new(0, 3, 10), meaning: String::new() });
+    wanted.mounting.push(MountingMark {
+        range: FieldRange::new(0, 3, 10),
+        meaning: String::new(),
+        unknown: Default::default(),
+    });
     let now = device(10, vec![field(0, 0xC9, &[])]);
     assert!(matches!(ops(&wanted, &now, RestoreOptions::default()), Err(PlanError::OtherDevice { .. })));
     let other = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
@@ -148,6 +153,18 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(restore.mounting_left, [FieldRange::new(0, 3, 2)]);
     let with_mounting = RestoreOptions { with_mounting: true, ..other };
     assert_eq!(ops(&wanted, &now, with_mounting).unwrap(), ["0@2+3", "0@20+1"]);
+}
+
+#[test]
+fn another_type_and_an_encoder_without_a_number_are_not_the_same() {
+    let mut wanted = profile("A", vec![field(0, 0xC9, &[])]);
+    wanted.identity.encoder_type = 0x22;
+    let now = device(10, vec![field(0, 0xC9, &[])]);
+    let other_type = PlanError::OtherType { profile: 0x22, device: 0x37 };
+    assert_eq!(ops(&wanted, &now, RestoreOptions::default()), Err(other_type));
+    let nameless = DeviceState { serial_number: String::new(), ..now };
+    let wanted = profile("", vec![field(0, 0xC9, &[])]);
+    assert!(matches!(ops(&wanted, &nameless, RestoreOptions::default()), Err(PlanError::OtherDevice { .. })));
 }
 
 #[test]
