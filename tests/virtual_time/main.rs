@@ -6,6 +6,7 @@ mod echo;
 mod find;
 mod interruption;
 mod keeping;
+mod late;
 mod lost_replies;
 mod noise;
 mod plan_rules;

@@ -132,6 +132,9 @@ pub enum Damage {
     /// More bytes than a reply has.
     #[error("more bytes than the reply has")]
     Trailing,
+    /// It began after the time it had.
+    #[error("the reply came late")]
+    Late,
     /// Our own bytes came back changed.
     #[error("our own bytes came back changed")]
     Echo,

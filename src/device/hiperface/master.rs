@@ -42,6 +42,7 @@ impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.troubled_since = None;
+        station.outstanding_since = None;
         Master { ctx, station, shielded: false }
     }
 

@@ -76,6 +76,10 @@ pub struct Station {
     pub(super) quiet_until: Moment,
     /// Since when nothing sensible came back.
     pub(super) troubled_since: Option<Moment>,
+    /// When the first request was sent that has no reply yet.
+    pub(super) outstanding_since: Option<Moment>,
+    /// When the last request was sent.
+    pub(super) last_sent: Moment,
 }
 
 impl Station {
@@ -95,6 +99,8 @@ impl Station {
             chunk: MAX_TRANSFER,
             quiet_until: Moment::START,
             troubled_since: None,
+            outstanding_since: None,
+            last_sent: Moment::START,
         }
     }
 

@@ -16,6 +16,9 @@ use crate::units::Moment;
 /// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
+/// No wire is slower than this.
+const LONGEST_MARGIN: Duration = Duration::from_secs(2);
+
 /// An exchange that gave no answer.
 pub(in super::super) enum Trouble {
     /// Nothing came back but, maybe, our own bytes.
@@ -53,6 +56,8 @@ impl Master<'_> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
+        self.station.outstanding_since.get_or_insert(sent_at);
+        self.station.last_sent = sent_at;
         self.send(&frame, sent_at)?;
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
@@ -96,27 +101,42 @@ impl Master<'_> {
         })
     }
 
-    /// Listens on after a silence, longer each time: what comes now is the reply to the request before, on a wire that is
-    /// slower than its margin says, and would be taken for the reply to the next. The margin grows by what it was late.
+    /// Listens on after a silence, longer each time: what comes now is the reply to a request before, on a wire that is
+    /// slower than its margin says, and would be taken for the reply to the next.
     pub(super) fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
-        const LONGEST: Duration = Duration::from_secs(2);
-        let from = self.now();
-        let patience = self.station.margin.saturating_mul(1 << tries.min(8)).min(LONGEST);
+        let patience = self.station.margin.saturating_mul(1 << tries.min(8)).min(LONGEST_MARGIN);
         let mut late = Vec::new();
-        self.ctx.wire.receive(from + patience, &mut late)?;
+        self.ctx.wire.receive(self.now() + patience, &mut late)?;
         if late.is_empty() {
             return Ok(());
         }
-        let lateness = self.now().since(from);
         self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(late.len()));
+        self.let_late_ones_pass()
+    }
+
+    /// Something came late: every request that is without a reply may still get one. The first of them tells how late
+    /// the wire is at most, and for so long after the last of them nothing is sent.
+    fn let_late_ones_pass(&mut self) -> Result<(), Error> {
+        let now = self.now();
+        let lateness = now.since(self.station.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
+        let passed = self.station.last_sent + lateness + self.station.margin;
+        let mut late = Vec::new();
+        while self.now() < passed {
+            self.ctx.wire.receive(passed, &mut late)?;
+        }
         self.wait_for_silence()?;
-        let margin = (self.station.margin + lateness).saturating_mul(3) / 2;
-        self.station.margin = margin.clamp(self.station.margin, LONGEST);
-        tracing::warn!(
-            "replies come {} ms later than expected; margin= in the link says so beforehand",
-            lateness.as_millis()
-        );
+        self.allow_for(lateness);
         Ok(())
+    }
+
+    /// From now on replies may come that much later, and half as much again.
+    fn allow_for(&mut self, lateness: Duration) {
+        let margin = (self.station.margin + lateness).saturating_mul(3) / 2;
+        self.station.margin = margin.min(LONGEST_MARGIN).max(self.station.margin);
+        tracing::warn!(
+            "replies come later than expected: waiting {} ms longer; margin= in the link says so beforehand",
+            self.station.margin.as_millis()
+        );
     }
 
     /// Listens until nothing came for the time-out.
@@ -166,8 +186,17 @@ impl Master<'_> {
                 first_at = self.now() - timing.characters(reply.len() - 1);
             }
         }
-        let trailing = self.hear_the_dead_time(&mut line)?;
-        Ok(self.take_apart(&line, request, frame, first_at, trailing))
+        let begun = self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty());
+        let more = self.hear_the_dead_time(&mut line)?;
+        let intrusion = match (begun, more) {
+            (_, false) => None,
+            (true, true) => Some(Damage::Trailing),
+            (false, true) => {
+                self.let_late_ones_pass()?;
+                Some(Damage::Late)
+            }
+        };
+        Ok(self.take_apart(&line, request, frame, first_at, intrusion))
     }
 
     /// The dead time, listening. True when something came that belongs to no reply.
@@ -203,7 +232,7 @@ impl Master<'_> {
         request: &Request,
         frame: &SecretFrame,
         first_at: Moment,
-        trailing: bool,
+        intrusion: Option<Damage>,
     ) -> Heard {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
@@ -215,7 +244,7 @@ impl Master<'_> {
             Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
             Echo::Unknown => false,
         };
-        let damage = if wrong_echo { Some(Damage::Echo) } else { trailing.then_some(Damage::Trailing) };
+        let damage = if wrong_echo { Some(Damage::Echo) } else { intrusion };
         Heard { reply, first_at, echo_heard, damage }
     }
 
@@ -234,6 +263,7 @@ impl Master<'_> {
             // The request was right when it left: the line damaged it.
             return Err(Trouble::Damage(Damage::AtEncoder(*code)));
         }
+        self.station.outstanding_since = None;
         if self.station.echo == Echo::Unknown {
             self.station.echo = if heard.echo_heard { Echo::On } else { Echo::Off };
         }
