@@ -6,7 +6,6 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::link::LinkUrl;
-use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore.
@@ -48,7 +47,7 @@ pub(super) enum Command {
     Status(Device),
     /// The position.
     Position(Position),
-    /// One value: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    /// One value.
     Read(Read),
     /// Read everything that can be restored, and what identifies the device.
     Save(Save),
@@ -60,8 +59,7 @@ pub(super) enum Command {
     Restore(Restore),
     /// Write one value.
     Write(Write),
-    /// reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, delete-field,
-    /// change-code, increment-counter, clear-counter, configure-for-now.
+    /// An action: restart, check, set the position, data fields, access codes … (help do lists them).
     Do(Do),
     /// Explain captured bytes, offline.
     Decode(Decode),
@@ -105,7 +103,8 @@ pub(super) struct Position {
 #[derive(Args)]
 pub(super) struct Read {
     pub(super) device: DeviceKind,
-    pub(super) item: Item,
+    /// What to name: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    pub(super) item: String,
 }
 
 #[derive(Args)]
@@ -121,6 +120,7 @@ pub(super) struct Save {
 
 #[derive(Args)]
 pub(super) struct Diff {
+    /// A profile.
     pub(super) left: PathBuf,
     /// Another profile; without it, --link.
     pub(super) right: Option<PathBuf>,
@@ -128,11 +128,13 @@ pub(super) struct Diff {
 
 #[derive(Args)]
 pub(super) struct Verify {
+    /// The profile.
     pub(super) file: PathBuf,
 }
 
 #[derive(Args)]
 pub(super) struct Restore {
+    /// The profile.
     pub(super) file: PathBuf,
     /// Print exactly the operations that would be carried out; write nothing.
     #[arg(long)]
@@ -163,7 +165,8 @@ pub(super) struct Consenting {
 #[derive(Args)]
 pub(super) struct Write {
     pub(super) device: DeviceKind,
-    pub(super) item: Item,
+    /// What to name: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    pub(super) item: String,
     /// A number (decimal or 0x), or hex bytes for a field.
     #[arg(allow_hyphen_values = true)]
     pub(super) value: String,

@@ -1,21 +1,18 @@
 //! The command line: the same jobs without a window. It parses, asks for consent and prints; the work is done by the
 //! worker.
 
-mod act;
 mod args;
-mod decode;
-mod inspect;
+mod hiperface;
 mod output;
-mod profiles;
+mod ports;
 mod runner;
 mod simulate;
-mod write;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, DeviceKind};
 use output::Output;
 
 /// How a command ended.
@@ -70,19 +67,40 @@ fn dispatch(arguments: Arguments) -> Result {
     let Arguments { common, command } = arguments;
     let output = Output::new(common.json);
     match command {
-        Command::Ports => inspect::ports(&output),
-        Command::Find(find) => inspect::find(&common, &output, &find),
-        Command::Identify(_) => inspect::identify(&common, &output),
-        Command::Status(_) => inspect::status(&common, &output),
-        Command::Position(position) => inspect::position(&common, &output, &position),
-        Command::Read(read) => inspect::read(&common, &output, &read.item),
-        Command::Save(save) => profiles::save(&common, &output, &save),
-        Command::Diff(diff) => profiles::diff(&common, &output, &diff),
-        Command::Verify(verify) => profiles::verify(&common, &output, &verify.file),
-        Command::Restore(restore) => profiles::restore(&common, &output, &restore),
-        Command::Write(write) => write::write(&common, &output, &write),
-        Command::Do(act) => act::act(&common, &output, &act),
-        Command::Decode(decode) => decode::decode(&output, &decode.hex),
-        Command::Simulate(simulate) => simulate::simulate(&simulate),
+        Command::Ports => ports::ports(&output),
+        Command::Find(find) => match find.device {
+            DeviceKind::Hiperface => hiperface::find(&common, &output, &find),
+        },
+        Command::Identify(on) => match on.device {
+            DeviceKind::Hiperface => hiperface::identify(&common, &output),
+        },
+        Command::Status(on) => match on.device {
+            DeviceKind::Hiperface => hiperface::status(&common, &output),
+        },
+        Command::Position(position) => match position.device {
+            DeviceKind::Hiperface => hiperface::position(&common, &output, &position),
+        },
+        Command::Read(read) => match read.device {
+            DeviceKind::Hiperface => hiperface::read(&common, &output, &read.item),
+        },
+        Command::Save(save) => match save.device {
+            DeviceKind::Hiperface => hiperface::save(&common, &output, &save),
+        },
+        Command::Write(write) => match write.device {
+            DeviceKind::Hiperface => hiperface::write(&common, &output, &write),
+        },
+        Command::Do(act) => match act.device {
+            DeviceKind::Hiperface => hiperface::act(&common, &output, &act),
+        },
+        Command::Decode(decode) => match decode.protocol {
+            DeviceKind::Hiperface => hiperface::decode(&output, &decode.hex),
+        },
+        Command::Simulate(simulate) => match simulate.device {
+            DeviceKind::Hiperface => simulate::simulate(&simulate),
+        },
+        // The kind of device is in the file.
+        Command::Diff(diff) => hiperface::diff(&common, &output, &diff),
+        Command::Verify(verify) => hiperface::verify(&common, &output, &verify.file),
+        Command::Restore(restore) => hiperface::restore(&common, &output, &restore),
     }
 }

@@ -60,6 +60,12 @@ impl Output {
     }
 }
 
+/// A number with its noun: `1 data field`, `3 data fields`.
+pub(super) fn count(number: usize, noun: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{ending}")
+}
+
 /// Help as it is; an error in the arguments in at most four lines, the last of them the usage.
 pub(super) fn say_usage(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};

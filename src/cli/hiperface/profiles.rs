@@ -5,19 +5,19 @@ use std::path::Path;
 use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
-use super::args::{Common, Diff, Restore, Save};
-use super::output::{Lines, Output};
-use super::runner::{Runner, failed, unexpected};
 use super::write::{commit, operations, plan_text, require_consent};
-use super::{Done, Failure, Result};
 use crate::app::explain;
+use crate::cli::args::{Common, Diff, Restore, Save};
+use crate::cli::output::{Lines, Output, count};
+use crate::cli::runner::{Runner, failed, unexpected};
+use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{HiperfaceProfile, RestoreOptions, compare};
 use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, SavedProfile};
 
-pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(in crate::cli) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;
     let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
     name_locked(output, &saved, "saved without its bytes");
@@ -26,7 +26,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let document = Document::new(now(), Body::Hiperface(saved.profile));
     write_atomically(&save.file, document.emit().as_bytes()).map_err(|error| failed(&explain::file(&error)))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
-    output.show(&json, &format!("{}: {fields} data fields\n", save.file.display()))?;
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
     Ok(Done::Well)
 }
 
@@ -64,7 +64,7 @@ fn load(path: &Path) -> Result<HiperfaceProfile> {
     Ok(profile)
 }
 
-pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
+pub(in crate::cli) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     if diff.right.is_some() == common.link.is_some() {
         return Err(Failure::Usage("diff takes a second file or --link URL, one of them".to_owned()));
     }
@@ -78,7 +78,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
 
-pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
+pub(in crate::cli) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(file)?;
     let device = device(common, output)?;
     name_other_device(output, &profile, &device);
@@ -129,7 +129,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     Ok(if equal { Done::Well } else { Done::Differs })
 }
 
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
+pub(in crate::cli) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
     let profile = Box::new(load(&restore.file)?);
     if !restore.dry_run {
         require_consent(&restore.consent)?;

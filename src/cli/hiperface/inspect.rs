@@ -1,38 +1,22 @@
-//! Commands that only look: `ports`, `find`, `identify`, `status`, `position`, `read`.
+//! Commands that only look: `find`, `identify`, `status`, `position`, `read`.
 
 use std::time::{Duration, Instant};
 
 use serde_json::{Value as Json, json};
 
-use super::args::{Common, Find, Position};
-use super::output::{Lines, Output};
-use super::runner::{Ended, Runner, failed, unexpected};
-use super::{Done, Failure, Result};
 use crate::app::explain;
 use crate::bits::{hex, hex_compact};
+use crate::cli::args::{Common, Find, Position};
+use crate::cli::output::{Lines, Output};
+use crate::cli::runner::{Ended, Runner, unexpected};
+use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Error, Identity, PositionReading};
-use crate::link;
 use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::{EncoderTypes, LineSettings, StatusCode};
 use crate::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError, Value};
 
-pub(super) fn ports(output: &Output) -> Result {
-    let ports = link::ports().map_err(|error| failed(&explain::link(&error)))?;
-    let list: Vec<Json> = ports
-        .iter()
-        .map(|port| json!({"path": port.path, "description": port.description, "serial_number": port.serial_number}))
-        .collect();
-    let mut lines = Lines::default();
-    for port in &ports {
-        lines.add(&port.path, &port.description);
-    }
-    let text = if ports.is_empty() { "no serial ports\n".to_owned() } else { lines.text() };
-    output.show(&json!({ "ports": list }), &text)?;
-    Ok(Done::Well)
-}
-
-pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
     output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
@@ -95,7 +79,7 @@ fn link_parameters(found: &Found) -> String {
     format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
 }
 
-pub(super) fn identify(common: &Common, output: &Output) -> Result {
+pub(in crate::cli) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     let free = identity.memory.map(|memory| memory.bytes());
@@ -159,7 +143,7 @@ fn identity(runner: &mut Runner) -> Result<Identity> {
     }
 }
 
-pub(super) fn status(common: &Common, output: &Output) -> Result {
+pub(in crate::cli) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let codes = match runner.run(HiperfaceJob::Status)? {
         HiperfaceOutput::Status(codes) => codes,
@@ -178,7 +162,7 @@ fn code_list(codes: &[StatusCode]) -> Vec<Json> {
 }
 
 /// Codes one a line, or that there are none.
-pub(super) fn codes_text(codes: &[StatusCode]) -> String {
+pub(in crate::cli) fn codes_text(codes: &[StatusCode]) -> String {
     if codes.is_empty() {
         return "no errors or warnings\n".to_owned();
     }
@@ -186,7 +170,7 @@ pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     codes.iter().map(|code| format!("{:7}  {code}\n", kind(code))).collect()
 }
 
-pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(in crate::cli) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     if identity.geometry.is_none() {
@@ -248,7 +232,8 @@ fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
     output.show(&json, "no position\n")
 }
 
-pub(super) fn read(common: &Common, output: &Output, item: &Item) -> Result {
+pub(in crate::cli) fn read(common: &Common, output: &Output, item: &str) -> Result {
+    let item = &super::item(item)?;
     let mut runner = Runner::open(common)?;
     let value = match runner.run(HiperfaceJob::Read(*item))? {
         HiperfaceOutput::Value(value) => value,

@@ -2,12 +2,12 @@
 
 use serde_json::json;
 
-use super::output::Output;
-use super::{Done, Failure, Result};
 use crate::bits::{hex, hex_compact, parse_hex};
+use crate::cli::output::Output;
+use crate::cli::{Done, Failure, Result};
 use crate::protocol::hiperface::{Frame, Request, describe};
 
-pub(super) fn decode(output: &Output, words: &[String]) -> Result {
+pub(in crate::cli) fn decode(output: &Output, words: &[String]) -> Result {
     let frames = frames(words)?;
     let mut list = Vec::new();
     let mut text = String::new();
@@ -37,5 +37,8 @@ fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
         .iter()
         .map(|word| parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not hex bytes: {why}"))))
         .collect::<Result<_>>()?;
+    if parts.iter().all(Vec::is_empty) {
+        return Err(Failure::Usage("there are no bytes to explain".to_owned()));
+    }
     if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
 }

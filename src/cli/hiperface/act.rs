@@ -2,17 +2,17 @@
 
 use serde_json::json;
 
-use super::args::{Action, Common, Do, parse_code};
 use super::inspect::codes_text;
-use super::output::{Lines, Output};
-use super::runner::{Runner, unexpected};
 use super::write::{change_and_show, out_of_range, parse_number, settings};
-use super::{Done, Failure, Result};
+use crate::cli::args::{Action, Common, Do, parse_code};
+use crate::cli::output::{Lines, Output};
+use crate::cli::runner::{Runner, unexpected};
+use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::check::{Line, Step, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
-pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(in crate::cli) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {
@@ -149,8 +149,7 @@ fn check(common: &Common, output: &Output, restart: bool) -> Result {
 fn check_text(lines: &[Line]) -> String {
     let mut text = Lines::default();
     for line in lines {
-        let findings = if line.findings.is_empty() { "–".to_owned() } else { line.findings.join("; ") };
-        text.add(step(line.step), format!("{:9}  {findings}", verdict(line.verdict)));
+        text.add(step(line.step), format!("{:9}  {}", verdict(line.verdict), line.findings.join("; ")).trim_end());
     }
     text.text()
 }

@@ -4,24 +4,25 @@ use std::io::{IsTerminal, stderr, stdin};
 
 use serde_json::{Value as Json, json};
 
-use super::args::{Common, Consenting, Write};
-use super::output::{Lines, Output, say};
-use super::runner::{Runner, unexpected};
-use super::{Done, Failure, Result};
 use crate::app::{Language, explain};
 use crate::bits::{hex, hex_compact, parse_hex};
+use crate::cli::args::{Common, Consenting, Write};
+use crate::cli::output::{Lines, Output, say};
+use crate::cli::runner::{Runner, unexpected};
+use crate::cli::{Done, Failure, Result};
 use crate::profile::Consent;
 use crate::profile::hiperface::{HiperfacePlan, Item, Op};
 use crate::protocol::hiperface::{DataFieldStatus, DeviceAddress, LineSettings};
 use crate::worker::hiperface::{Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, Prepared};
 
-pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
-    let change = change_of(write.item, &write.value)?;
-    change_and_show(common, output, change, &write.consent, &write.item.to_string())
+pub(in crate::cli) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+    let item = super::item(&write.item)?;
+    let change = change_of(item, &write.value)?;
+    change_and_show(common, output, change, &write.consent, &item.to_string())
 }
 
 /// Prepares a change, asks, carries it out and prints what came of it.
-pub(super) fn change_and_show(
+pub(in crate::cli) fn change_and_show(
     common: &Common,
     output: &Output,
     change: Change,
@@ -35,6 +36,7 @@ pub(super) fn change_and_show(
         other => return Err(unexpected(&other)),
     };
     let operations = operations(&prepared.plan);
+    let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
     let committed = commit(&mut runner, output, prepared, consent)?;
     let written = &committed.written;
     let json = json!({
@@ -54,6 +56,9 @@ pub(super) fn change_and_show(
             lines.text()
         }
     };
+    if changes_code {
+        output.remark("An access code cannot be read back; the encoder has acknowledged it.");
+    }
     output.show_written(&json, &text)?;
     Ok(Done::Well)
 }
@@ -91,7 +96,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
 }
 
 /// A settings byte without reserved values.
-pub(super) fn settings(value: &str) -> Result<LineSettings> {
+pub(in crate::cli) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
         return Ok(settings);
@@ -115,12 +120,12 @@ fn number(item: Item, value: &str) -> Result<i64> {
 }
 
 /// A value that is a number and lies beyond its limits.
-pub(super) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
+pub(in crate::cli) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
     Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
 }
 
 /// Decimal, or hexadecimal with `0x`; a sign in front.
-pub(super) fn parse_number(text: &str) -> Option<i64> {
+pub(in crate::cli) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),
         None => (1, text),
@@ -134,7 +139,7 @@ pub(super) fn parse_number(text: &str) -> Option<i64> {
 }
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
-pub(super) fn require_consent(consent: &Consenting) -> Result<()> {
+pub(in crate::cli) fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
     }
@@ -148,7 +153,7 @@ fn can_ask() -> bool {
 }
 
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
-pub(super) fn commit(
+pub(in crate::cli) fn commit(
     runner: &mut Runner,
     output: &Output,
     prepared: Prepared,
@@ -185,7 +190,7 @@ fn ask() -> Result<()> {
 }
 
 /// The plan for a person: each operation old → new, and what it costs.
-pub(super) fn plan_text(prepared: &Prepared) -> String {
+pub(in crate::cli) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     if plan.is_empty() {
         return "nothing to write: it is so already\n".to_owned();
@@ -204,7 +209,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
 }
 
 /// The operations as JSON.
-pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
+pub(in crate::cli) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
     plan.ops
         .iter()
         .map(|op| {
