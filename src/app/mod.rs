@@ -3,8 +3,10 @@
 
 pub mod explain;
 pub mod hiperface;
+mod look;
 mod settings;
 mod texts;
 
+pub use look::{Look, Palette, Rgb, Spaces, TextSizes};
 pub use settings::{Settings, Theme};
 pub use texts::{Language, Text, Texts};

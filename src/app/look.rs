@@ -1,0 +1,191 @@
+//! The look of the window as data (`assets/theme.ron`): colours by what they mean, sizes, distances. Drawing takes them
+//! from here; this module draws nothing.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::Theme;
+
+/// A colour, without transparency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Rgb(pub [u8; 3]);
+
+/// Text sizes in points.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TextSizes {
+    /// Beside and below things.
+    pub caption: f32,
+    /// Text.
+    pub body: f32,
+    /// Headings.
+    pub section: f32,
+    /// The main value of a card.
+    pub value: f32,
+    /// The live position.
+    pub live: f32,
+}
+
+/// Distances in points, multiples of four.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spaces {
+    /// Inside a control.
+    pub inside: f32,
+    /// Between controls.
+    pub between: f32,
+    /// Between groups.
+    pub groups: f32,
+    /// Around a tab's content.
+    pub around: f32,
+}
+
+/// Colours by what they mean.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Palette {
+    /// The window.
+    pub surface: Rgb,
+    /// Cards and panels.
+    pub raised: Rgb,
+    /// Plots, hex, trace.
+    pub sunken: Rgb,
+    /// Borders and grids.
+    pub line: Rgb,
+    /// Values.
+    pub text: Rgb,
+    /// Labels and units.
+    pub muted: Rgb,
+    /// Focus, selection, the primary button.
+    pub accent: Rgb,
+    /// Text on the accent.
+    pub on_accent: Rgb,
+    /// Edited and not yet written.
+    pub staged: Rgb,
+    /// Verified, connected.
+    pub good: Rgb,
+    /// Warning; a virtual device.
+    pub warn: Rgb,
+    /// Error; STOP.
+    pub bad: Rgb,
+    /// Text on STOP.
+    pub on_bad: Rgb,
+    /// Plots, fields, cams.
+    pub series: [Rgb; 8],
+}
+
+/// The whole look.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Look {
+    /// Text sizes.
+    pub text: TextSizes,
+    /// Distances.
+    pub space: Spaces,
+    /// Corners of cards.
+    pub radius: f32,
+    dark: Palette,
+    light: Palette,
+}
+
+static BUILT_IN: LazyLock<Result<Look, String>> =
+    LazyLock::new(|| ron::from_str(Look::SOURCE).map_err(|error| error.to_string()));
+
+impl Look {
+    /// The table's source.
+    pub const SOURCE: &'static str = include_str!("../../assets/theme.ron");
+
+    /// The look that ships with the program.
+    ///
+    /// # Errors
+    /// What is wrong with the table: a defect of the build, which a test keeps from shipping.
+    pub fn built_in() -> Result<&'static Look, &'static str> {
+        BUILT_IN.as_ref().map_err(String::as_str)
+    }
+
+    /// The colours of a theme.
+    pub fn palette(&self, theme: Theme) -> &Palette {
+        match theme {
+            Theme::Dark => &self.dark,
+            Theme::Light => &self.light,
+        }
+    }
+}
+
+impl TryFrom<String> for Rgb {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let bytes = text.strip_prefix('#').and_then(|digits| crate::bits::parse_hex(digits).ok());
+        match bytes.as_deref() {
+            Some([red, green, blue]) => Ok(Rgb([*red, *green, *blue])),
+            _ => Err(format!("{text:?} is not a colour of the form #RRGGBB")),
+        }
+    }
+}
+
+impl Rgb {
+    /// Contrast against another colour, 1 to 21, as WCAG 2 defines it.
+    pub fn contrast(self, other: Rgb) -> f64 {
+        let (a, b) = (self.luminance(), other.luminance());
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    fn luminance(self) -> f64 {
+        let [red, green, blue] = self.0.map(|channel| {
+            let value = f64::from(channel) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        });
+        0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contrast_is_that_of_the_standard() {
+        let rgb = |text: &str| Rgb::try_from(text.to_owned()).unwrap();
+        assert!((rgb("#000000").contrast(rgb("#FFFFFF")) - 21.0).abs() < 1e-9);
+        // A known pair: #767676 is the lightest grey that is legible on white.
+        assert!((rgb("#767676").contrast(rgb("#FFFFFF")) - 4.54).abs() < 0.01);
+        assert!(Rgb::try_from("#12345".to_owned()).is_err() && Rgb::try_from("123456".to_owned()).is_err());
+    }
+
+    #[test]
+    fn every_text_is_legible_on_every_surface() {
+        let look = Look::built_in().unwrap();
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = look.palette(theme);
+            let Palette { text, muted, accent, staged, good, warn, bad, .. } = *palette;
+            for surface in [palette.surface, palette.raised, palette.sunken] {
+                for (name, colour) in [
+                    ("text", text),
+                    ("muted", muted),
+                    ("accent", accent),
+                    ("staged", staged),
+                    ("good", good),
+                    ("warn", warn),
+                    ("bad", bad),
+                ] {
+                    let contrast = colour.contrast(surface);
+                    assert!(contrast >= 4.5, "{theme:?}: {name} on {surface:?} has {contrast:.2}");
+                }
+            }
+            assert!(palette.on_accent.contrast(accent) >= 4.5 && palette.on_bad.contrast(bad) >= 4.5, "{theme:?}");
+            for (number, series) in palette.series.iter().enumerate() {
+                let contrast = series.contrast(palette.sunken);
+                assert!(contrast >= 3.0, "{theme:?}: series {number} has {contrast:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_are_on_the_grid() {
+        let Spaces { inside, between, groups, around } = Look::built_in().unwrap().space;
+        assert!([inside, between, groups, around].iter().all(|space| space % 4.0 == 0.0));
+    }
+}
