@@ -1,5 +1,5 @@
-//! What the studio remembers from one start to the next: looks, language, links, the arrangement of its panels. A file
-//! that cannot be read costs the memory of a few clicks: it is set aside by the next save, and the defaults hold.
+//! What the studio remembers from one start to the next: looks, language, links, the arrangement of its panels. A text
+//! that cannot be read costs the memory of a few clicks, and the defaults hold. Files are opened elsewhere.
 
 use serde::{Deserialize, Serialize};
 

@@ -105,10 +105,16 @@ impl Master<'_> {
     /// slower than its margin says, and would be taken for the reply to the next.
     pub(super) fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
         let patience = self.station.margin.saturating_mul(1 << tries.min(8)).min(LONGEST_MARGIN);
+        let end = self.now() + patience;
         let mut late = Vec::new();
-        self.ctx.wire.receive(self.now() + patience, &mut late)?;
-        if late.is_empty() {
-            return Ok(());
+        while late.is_empty() {
+            if self.now() >= end {
+                return Ok(());
+            }
+            // On a slow wire this takes seconds: a wish to end is heard in them.
+            self.check_cancel()?;
+            let slice = (self.now() + Duration::from_millis(50)).min(end);
+            self.ctx.wire.receive(slice, &mut late)?;
         }
         self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(late.len()));
         self.let_late_ones_pass()
