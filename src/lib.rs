@@ -22,3 +22,6 @@ pub mod worker;
 // floor 5: what the program can do, without drawing
 pub mod app;
 pub mod cli;
+
+// floor 6: drawing
+pub mod ui;

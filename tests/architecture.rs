@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms directly under `src/` and their floors.
-const ROOMS: [(&str, u8); 13] = [
+const ROOMS: [(&str, u8); 14] = [
     ("units", 1),
     ("bits", 1),
     ("protocol", 2),
@@ -20,6 +20,7 @@ const ROOMS: [(&str, u8); 13] = [
     ("worker", 4),
     ("app", 5),
     ("cli", 5),
+    ("ui", 6),
     ("lib", 6),
     ("main", 6),
 ];

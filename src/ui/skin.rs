@@ -1,0 +1,189 @@
+//! The look of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the words of
+//! one language. Every view gets a [`Skin`]; no view names a colour, a size or a font of its own.
+
+use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
+
+use crate::app::{Language, Look, Palette, Rgb, Spaces, Text, TextSizes, Theme};
+
+impl From<Rgb> for Color32 {
+    fn from(Rgb([red, green, blue]): Rgb) -> Self {
+        Color32::from_rgb(red, green, blue)
+    }
+}
+
+/// How everything looks and which language it speaks.
+#[derive(Clone, Copy, Debug)]
+pub struct Skin {
+    /// Colours by what they mean.
+    pub palette: &'static Palette,
+    /// Text sizes.
+    pub sizes: &'static TextSizes,
+    /// Distances.
+    pub space: &'static Spaces,
+    /// Corners of cards.
+    pub radius: CornerRadius,
+    /// Language of the window.
+    pub language: Language,
+    theme: Theme,
+}
+
+impl Skin {
+    /// The skin of a theme in a language.
+    pub fn new(look: &'static Look, theme: Theme, language: Language) -> Self {
+        Skin {
+            palette: look.palette(theme),
+            sizes: &look.text,
+            space: &look.space,
+            radius: CornerRadius::from(look.radius),
+            language,
+            theme,
+        }
+    }
+
+    /// The text of that name in the window's language.
+    pub fn say(&self, id: &'static str) -> String {
+        Text::new(id).words(self.language)
+    }
+
+    /// A text with its arguments in the window's language.
+    pub fn words(&self, text: &Text) -> String {
+        text.words(self.language)
+    }
+
+    /// A label: what a value beside it is.
+    pub fn label(&self, words: impl Into<String>) -> RichText {
+        RichText::new(words).color(self.palette.muted)
+    }
+
+    /// A caption: small, beside and below things.
+    pub fn caption(&self, words: impl Into<String>) -> RichText {
+        RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
+    }
+
+    /// The heading of a section or a card.
+    pub fn heading(&self, words: impl Into<String>) -> RichText {
+        RichText::new(words).font(self.strong(self.sizes.section))
+    }
+
+    /// Bytes, registers, and every number that changes.
+    pub fn mono(&self, words: impl Into<String>) -> RichText {
+        RichText::new(words).font(FontId::monospace(self.sizes.body))
+    }
+
+    /// The main value of a card.
+    pub fn value(&self, words: impl Into<String>) -> RichText {
+        RichText::new(words).font(FontId::monospace(self.sizes.value))
+    }
+
+    /// The heavier of the two weights.
+    pub fn strong(&self, size: f32) -> FontId {
+        FontId::new(size, FontFamily::Name(STRONG.into()))
+    }
+
+    /// The frame of a card: raised, a line around it, no shadow.
+    pub fn card(&self) -> egui::Frame {
+        egui::Frame::NONE
+            .fill(self.palette.raised.into())
+            .stroke(Stroke::new(1.0, self.palette.line))
+            .corner_radius(self.radius)
+            .inner_margin(Margin::same(12))
+    }
+
+    /// The frame of what is read rather than touched: plots, bytes, trace.
+    pub fn sunken(&self) -> egui::Frame {
+        egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
+    }
+
+    /// Puts the theme on a context.
+    pub fn dress(&self, ctx: &egui::Context) {
+        let theme = match self.theme {
+            Theme::Dark => egui::Theme::Dark,
+            Theme::Light => egui::Theme::Light,
+        };
+        ctx.set_theme(theme);
+        ctx.style_mut_of(theme, |style| {
+            style.text_styles = [
+                (TextStyle::Small, FontId::proportional(self.sizes.caption)),
+                (TextStyle::Body, FontId::proportional(self.sizes.body)),
+                (TextStyle::Button, FontId::proportional(self.sizes.body)),
+                (TextStyle::Heading, self.strong(self.sizes.section)),
+                (TextStyle::Monospace, FontId::monospace(self.sizes.body)),
+            ]
+            .into();
+            let (inside, between) = (self.space.inside, self.space.between);
+            style.spacing.item_spacing = egui::vec2(between, between);
+            style.spacing.button_padding = egui::vec2(between + 2.0, inside);
+            style.spacing.interact_size.y = 28.0;
+            style.spacing.icon_width = 16.0;
+            style.spacing.combo_width = 96.0;
+            style.spacing.menu_margin = Margin::same(8);
+            style.spacing.window_margin = Margin::same(16);
+            style.spacing.scroll = egui::style::ScrollStyle::solid();
+            style.interaction.selectable_labels = false;
+            style.animation_time = 0.1;
+            self.colour(&mut style.visuals);
+        });
+    }
+
+    fn colour(&self, visuals: &mut egui::Visuals) {
+        let palette = self.palette;
+        let faint = Color32::from(palette.accent).gamma_multiply(0.12);
+        visuals.override_text_color = None;
+        visuals.panel_fill = palette.surface.into();
+        visuals.window_fill = palette.raised.into();
+        visuals.window_stroke = Stroke::new(1.0, palette.line);
+        visuals.window_corner_radius = self.radius;
+        visuals.menu_corner_radius = self.radius;
+        visuals.window_shadow = egui::Shadow::NONE;
+        visuals.popup_shadow = egui::Shadow::NONE;
+        visuals.extreme_bg_color = palette.sunken.into();
+        visuals.text_edit_bg_color = Some(palette.sunken.into());
+        visuals.faint_bg_color = palette.sunken.into();
+        visuals.code_bg_color = palette.sunken.into();
+        visuals.hyperlink_color = palette.accent.into();
+        visuals.warn_fg_color = palette.warn.into();
+        visuals.error_fg_color = palette.bad.into();
+        visuals.weak_text_color = Some(palette.muted.into());
+        visuals.selection.bg_fill = Color32::from(palette.accent).gamma_multiply(0.25);
+        visuals.selection.stroke = Stroke::new(1.0, palette.accent);
+        visuals.striped = false;
+        let corner = CornerRadius::same(4);
+        let text = Color32::from(palette.text);
+        let widgets = &mut visuals.widgets;
+        for (widget, fill, border, ink) in [
+            (&mut widgets.noninteractive, palette.raised.into(), palette.line, text),
+            (&mut widgets.inactive, palette.raised.into(), palette.line, text),
+            (&mut widgets.hovered, faint, palette.accent, text),
+            (&mut widgets.active, faint.gamma_multiply(2.0), palette.accent, text),
+            (&mut widgets.open, faint, palette.accent, text),
+        ] {
+            widget.bg_fill = fill;
+            widget.weak_bg_fill = fill;
+            widget.bg_stroke = Stroke::new(1.0, border);
+            widget.fg_stroke = Stroke::new(1.0, ink);
+            widget.corner_radius = corner;
+            widget.expansion = 0.0;
+        }
+    }
+}
+
+const STRONG: &str = "strong";
+
+/// The fonts that ship with the program: one for text in two weights, one for bytes and numbers, one of icons.
+pub fn install_fonts(ctx: &egui::Context) {
+    let mut fonts = FontDefinitions::empty();
+    let files: [(&str, &'static [u8]); 4] = [
+        ("inter", include_bytes!("../../assets/fonts/Inter-Regular.otf")),
+        (STRONG, include_bytes!("../../assets/fonts/Inter-SemiBold.otf")),
+        ("mono", include_bytes!("../../assets/fonts/JetBrainsMono-Regular.ttf")),
+        ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
+    ];
+    for (name, bytes) in files {
+        fonts.font_data.insert(name.to_owned(), FontData::from_static(bytes).into());
+    }
+    let family = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    fonts.families.insert(FontFamily::Proportional, family(&["inter", "icons", "mono"]));
+    fonts.families.insert(FontFamily::Monospace, family(&["mono", "icons", "inter"]));
+    fonts.families.insert(FontFamily::Name(STRONG.into()), family(&[STRONG, "icons", "mono"]));
+    ctx.set_fonts(fonts);
+}
