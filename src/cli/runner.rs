@@ -26,7 +26,7 @@ use crate::worker::{Event, OpenError, Progress, Session, Worker};
 /// A session on its thread.
 pub(super) struct Runner {
     worker: Worker<Hiperface>,
-    /// Ctrl-C was pressed: kept apart from the worker's wish, which ends with each job.
+    /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
     /// Codes that the encoder announced on the way of the last job.
     pub(super) codes_met: Vec<StatusCode>,
@@ -65,18 +65,18 @@ impl Runner {
             record(&mut session, path)?;
         }
         let format = session.station().format;
-        let cancel = session.cancel();
+        let worker = Worker::spawn(session, Arc::new(|| ()))
+            .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
+        let stopper = worker.stopper();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
         ctrlc::set_handler(move || {
             if pressed.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            cancel.request();
+            stopper.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
-        let worker = Worker::spawn(session, Arc::new(|| ()))
-            .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
         Ok(Runner { worker, interrupted, codes_met: Vec::new(), format })
     }
 
@@ -88,10 +88,9 @@ impl Runner {
     /// Runs a job to its end and lets the caller look at an error.
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
         self.codes_met.clear();
-        self.check_interrupt()?;
         let id = self.worker.submit(job).map_err(|_| Ended::Worker)?;
         if self.interrupted.load(Ordering::SeqCst) {
-            // It came while the job was handed over, which takes back an earlier wish.
+            // It came before the job, for which it is meant as well.
             self.worker.stop();
         }
         let bar = Bar::default();

@@ -16,12 +16,12 @@ pub use open::open;
 use super::{Desk, Device, Progress, Session};
 use crate::device::hiperface::find::Attempt;
 use crate::device::hiperface::{
-    self as device, Codes, Error, Master, Station, check, find, identify, read_analogue, read_counter, read_field,
-    read_field_status, read_position, read_range, read_status,
+    self as device, Codes, Error, Master, Sample, Station, check, find, identify, read_analogue, read_counter,
+    read_field, read_field_status, read_position, read_range, read_sample, read_status,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::hiperface::{FieldRange, Item, PlanError};
-use crate::protocol::hiperface::{EncoderTypes, StatusCode};
+use crate::protocol::hiperface::{EncoderTypes, Geometry, StatusCode};
 use crate::store::Store;
 
 /// A HIPERFACE encoder at the end of its wire.
@@ -29,6 +29,8 @@ pub struct Hiperface {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<EncoderTypes>,
+    /// As the encoder was last identified in this session: samples are seen with it.
+    geometry: Option<Geometry>,
 }
 
 impl fmt::Debug for Hiperface {
@@ -54,7 +56,8 @@ impl Session<Hiperface> {
         types: EncoderTypes,
         is_virtual: bool,
     ) -> Self {
-        Session::with(Hiperface { wire, station, types: Arc::new(types) }, clock, store, is_virtual)
+        let geometry = station.geometry;
+        Session::with(Hiperface { wire, station, types: Arc::new(types), geometry }, clock, store, is_virtual)
     }
 
     /// The access codes that the user knows.
@@ -74,6 +77,7 @@ impl Device for Hiperface {
     type Error = JobError;
     /// Status codes that replies announced.
     type Remark = Vec<StatusCode>;
+    type Sample = Sample;
 
     fn run(
         &mut self,
@@ -87,7 +91,11 @@ impl Device for Hiperface {
                 HiperfaceOutput::Prepared(Box::new(prepare::prepare(self, desk, change, tell)?))
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, tell)?),
-            HiperfaceJob::Identify => HiperfaceOutput::Identity(identify(&mut self.master(desk), &types)?),
+            HiperfaceJob::Identify => {
+                let identity = identify(&mut self.master(desk), &types)?;
+                self.geometry = identity.geometry;
+                HiperfaceOutput::Identity(identity)
+            }
             HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(desk))?),
             HiperfaceJob::Position(geometry) => {
                 HiperfaceOutput::Position(read_position(&mut self.master(desk), geometry)?)
@@ -115,6 +123,15 @@ impl Device for Hiperface {
                 HiperfaceOutput::Configured
             }
         })
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+        let geometry = self.geometry;
+        let met_before = self.station.codes_met.len();
+        let sample = read_sample(&mut self.master(desk), geometry)?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        Ok(sample)
     }
 
     fn is_cancelled(error: &JobError) -> bool {

@@ -1,4 +1,5 @@
-//! The background I/O worker: one thread a session, one job at a time, and a stop that overtakes everything.
+//! The background I/O worker: one thread a session, one job at a time, a live wish to be sampled while there is none, and
+//! a stop that overtakes everything.
 //!
 //! Nothing here knows a protocol: a [`Device`] brings its jobs, its results and its errors as types of its own, so that a
 //! session with one kind of device cannot be asked for another's.
@@ -7,21 +8,29 @@
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
 pub mod hiperface;
+mod live;
 mod open;
+mod outbox;
+mod ring;
 mod session;
+mod thread;
 
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
+pub use live::Stopper;
 pub use open::OpenError;
+pub use ring::Ring;
 pub use session::{Desk, Session};
 
 use crate::link::{Cancel, LinkError};
+use live::Live;
+use outbox::{CAPACITY, Outbox};
+use thread::{Bench, Never, Order};
 
 /// A kind of device at the end of a session: its wire, what is known about it, and what can be done with it.
 pub trait Device: Send + 'static {
@@ -33,6 +42,8 @@ pub trait Device: Send + 'static {
     type Error: Send + fmt::Debug;
     /// What the device says on the way, whatever it is asked.
     type Remark: Send + fmt::Debug;
+    /// What is taken again and again while it is polled.
+    type Sample: Send + fmt::Debug + 'static;
 
     /// Carries out a job.
     ///
@@ -44,6 +55,12 @@ pub trait Device: Send + 'static {
         job: Self::Job,
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Self::Output, Self::Error>;
+
+    /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
+    ///
+    /// # Errors
+    /// When there is none: polling ends.
+    fn sample(&mut self, desk: &mut Desk) -> Result<Self::Sample, Self::Error>;
 
     /// The error is the user's wish.
     fn is_cancelled(error: &Self::Error) -> bool;
@@ -88,6 +105,8 @@ pub enum Event<D: Device> {
     Failed(JobId, Box<D::Error>),
     /// It ended because the user wished it; with what was written until then, where it writes.
     Cancelled(JobId, Box<D::Error>),
+    /// A sample failed, and polling is off.
+    PollFailed(Box<D::Error>),
     /// The wire is gone, found while nothing was to do.
     Lost(LinkError),
 }
@@ -98,62 +117,98 @@ pub enum SubmitError {
     /// The job slot is taken; jobs do not queue.
     #[error("busy with another job")]
     Busy,
+    /// As many events wait to be read as the channel takes: first those.
+    #[error("what was told is not read")]
+    Unread,
     /// The worker is gone.
     #[error("the session has ended")]
     Ended,
 }
 
-/// A session's thread, seen from outside. Dropping it stops what runs and ends the thread.
+/// A session's thread, seen from outside. Dropping it stops what runs and ends the thread, and does not wait for it.
 pub struct Worker<D: Device> {
-    jobs: Sender<(JobId, D::Job)>,
+    orders: Sender<Order<D>>,
     events: Receiver<Event<D>>,
-    cancel: Cancel,
+    samples: Ring<D::Sample>,
+    live: Live,
     busy: Arc<AtomicBool>,
+    ended: Receiver<Never>,
     next: u64,
 }
 
-/// Events that wait to be read, at most; progress counts once.
-const CAPACITY: usize = 64;
-/// How often an idle worker looks whether its wire is still there.
-const CHECK: Duration = Duration::from_millis(500);
+/// Samples that wait to be taken, at most.
+const SAMPLES: usize = 4096;
 
 impl<D: Device> Worker<D> {
-    /// Starts a thread for a session. `wake` is called after each event.
+    /// Starts a thread for a session. `wake` is called after each event, and not for samples.
     ///
     /// # Errors
     /// When the system has no thread left.
     pub fn spawn(session: Session<D>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
-        let (jobs, incoming) = bounded(1);
+        let (orders, incoming) = bounded(1);
         let (outgoing, events) = bounded(CAPACITY);
-        let cancel = session.cancel();
+        let (alive, ended) = bounded(0);
+        let (live, changes) = Live::new();
+        let samples = Ring::new(SAMPLES);
         let busy = Arc::new(AtomicBool::new(false));
-        let outbox = Outbox { sender: outgoing, wake, waiting: Vec::new(), progress: None };
-        let slot = busy.clone();
-        thread::Builder::new().name("session".to_owned()).spawn(move || {
-            let slot = Slot(slot);
-            work(session, &incoming, outbox, &slot.0);
-        })?;
-        Ok(Worker { jobs, events, cancel, busy, next: 0 })
+        let bench = Bench {
+            session,
+            orders: incoming,
+            changes,
+            live: live.clone(),
+            samples: samples.clone(),
+            outbox: Outbox::new(outgoing, wake),
+            busy: busy.clone(),
+        };
+        thread::start(bench, alive)?;
+        Ok(Worker { orders, events, samples, live, busy, ended, next: 0 })
     }
 
-    /// Gives the worker something to do.
+    /// Gives the worker something to do. It goes before sampling, and waits for no more than the exchange that runs.
     ///
     /// # Errors
     /// See [`SubmitError`].
     pub fn submit(&mut self, job: D::Job) -> Result<JobId, SubmitError> {
+        if self.events.is_full() {
+            return Err(SubmitError::Unread);
+        }
         if self.busy.swap(true, Ordering::SeqCst) {
             return Err(SubmitError::Busy);
         }
-        self.cancel.reset();
         let id = JobId(self.next);
         self.next += 1;
-        self.jobs.try_send((id, job)).map_err(|_| SubmitError::Ended)?;
+        // Each job has a wish to end of its own: an old one does not concern it, and none is taken back.
+        let cancel = Cancel::default();
+        self.live.next_job(cancel.clone());
+        self.orders.try_send(Order { id, job, cancel }).map_err(|_| SubmitError::Ended)?;
+        self.live.interrupt_sample();
         Ok(id)
     }
 
-    /// Ends the running job at the next point at which it can end.
+    /// Ends polling, and the running job at the next point at which it can end.
     pub fn stop(&self) {
-        self.cancel.request();
+        self.live.stop();
+    }
+
+    /// [`stop`](Self::stop) for whoever does not hold the worker.
+    pub fn stopper(&self) -> Stopper {
+        self.live.stopper()
+    }
+
+    /// Wishes samples, one each `interval` from start to start while no job runs, back to back with zero; or none. The
+    /// latest wish counts, from now on.
+    pub fn poll(&self, interval: Option<Duration>) {
+        self.live.poll(interval);
+    }
+
+    /// The wish in force: `None` also after a sample failed or a stop.
+    pub fn polling(&self) -> Option<Duration> {
+        self.live.polling()
+    }
+
+    /// The samples taken, at most 4096 of them; nobody is woken for one.
+    pub fn samples(&self) -> &Ring<D::Sample> {
+        &self.samples
     }
 
     /// A job runs.
@@ -165,141 +220,53 @@ impl<D: Device> Worker<D> {
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }
+
+    /// The thread has ended and the wire is free.
+    pub fn is_ended(&self) -> bool {
+        has_ended(&self.ended)
+    }
+
+    /// Asks what runs to end and lets the thread go, without waiting for it.
+    pub fn end(self) -> Ending<D> {
+        // Dropping the worker does both.
+        Ending { events: self.events.clone(), ended: self.ended.clone() }
+    }
+
+    /// [`end`](Self::end), waiting at most `patience`; true when the thread has ended and the wire is free.
+    pub fn close(self, patience: Duration) -> bool {
+        self.end().wait(patience)
+    }
 }
 
 impl<D: Device> Drop for Worker<D> {
     fn drop(&mut self) {
-        self.cancel.request();
+        self.live.stop();
     }
 }
 
-/// The job slot of a thread: free when the thread is gone, however it ended.
-struct Slot(Arc<AtomicBool>);
+/// A worker that was let go: its thread ends as soon as what runs has ended.
+pub struct Ending<D: Device> {
+    events: Receiver<Event<D>>,
+    ended: Receiver<Never>,
+}
 
-impl Drop for Slot {
-    fn drop(&mut self) {
-        self.0.store(false, Ordering::SeqCst);
+impl<D: Device> Ending<D> {
+    /// What the worker still tells: how its last job ended.
+    pub fn events(&self) -> &Receiver<Event<D>> {
+        &self.events
+    }
+
+    /// The thread has ended and the wire is free.
+    pub fn is_ended(&self) -> bool {
+        has_ended(&self.ended)
+    }
+
+    /// Waits at most `patience` for the end; true when it has come.
+    pub fn wait(&self, patience: Duration) -> bool {
+        matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 }
 
-fn work<D: Device>(
-    mut session: Session<D>,
-    jobs: &Receiver<(JobId, D::Job)>,
-    mut outbox: Outbox<D>,
-    busy: &AtomicBool,
-) {
-    let mut lost = false;
-    loop {
-        let patience = if outbox.is_empty() { CHECK } else { Duration::from_millis(5) };
-        match jobs.recv_timeout(patience) {
-            Ok((id, job)) => {
-                lost = false;
-                // The slot is free before the last event tells so: whoever reads it may submit at once.
-                let end = session.run(id, job, &mut |event| outbox.send(event));
-                busy.store(false, Ordering::SeqCst);
-                outbox.send(end);
-            }
-            Err(RecvTimeoutError::Timeout) => {
-                outbox.flush_late();
-                if !lost && let Err(error) = session.check() {
-                    lost = true;
-                    outbox.send(Event::Lost(error));
-                }
-            }
-            Err(RecvTimeoutError::Disconnected) => return,
-        }
-    }
-}
-
-/// Events on their way out. What does not fit into the channel waits here; the number of those is bounded, because a job
-/// has a handful and the next one comes from whoever reads them.
-struct Outbox<D: Device> {
-    sender: Sender<Event<D>>,
-    wake: Arc<dyn Fn() + Send + Sync>,
-    waiting: Vec<Event<D>>,
-    progress: Option<Event<D>>,
-}
-
-impl<D: Device> Outbox<D> {
-    fn send(&mut self, event: Event<D>) {
-        match event {
-            Event::Progress(..) => self.progress = Some(event),
-            other => {
-                // It makes the progress before it old: that goes first or not at all.
-                self.flush();
-                self.progress = None;
-                self.waiting.push(other);
-            }
-        }
-        self.flush();
-        (self.wake)();
-    }
-
-    fn is_empty(&self) -> bool {
-        self.waiting.is_empty() && self.progress.is_none()
-    }
-
-    fn flush(&mut self) {
-        let mut waiting = std::mem::take(&mut self.waiting).into_iter();
-        while let Some(event) = waiting.next() {
-            match self.sender.try_send(event) {
-                Ok(()) => {}
-                Err(TrySendError::Full(event)) => {
-                    self.waiting.push(event);
-                    self.waiting.extend(waiting);
-                    return;
-                }
-                Err(TrySendError::Disconnected(_)) => return,
-            }
-        }
-        // Behind the start of its job, never before it. Half of the channel is for progress, so that it never stands in
-        // the way of an end.
-        if self.sender.len() < CAPACITY / 2
-            && let Some(progress) = self.progress.take()
-        {
-            let _ = self.sender.try_send(progress);
-        }
-    }
-
-    /// Sends what had to wait, and wakes whoever reads.
-    fn flush_late(&mut self) {
-        if !self.is_empty() {
-            self.flush();
-            (self.wake)();
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::atomic::AtomicUsize;
-
-    use super::hiperface::Hiperface;
-    use super::*;
-
-    fn progress(job: u64) -> Event<Hiperface> {
-        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: String::new() })
-    }
-
-    #[test]
-    fn progress_never_overtakes_the_start_of_its_job_and_late_events_wake() {
-        let (sender, events) = bounded(CAPACITY);
-        let wakes = Arc::new(AtomicUsize::new(0));
-        let counter = wakes.clone();
-        let wake = Arc::new(move || {
-            counter.fetch_add(1, Ordering::SeqCst);
-        });
-        let mut outbox = Outbox { sender, wake, waiting: Vec::new(), progress: None };
-        for job in 0..CAPACITY as u64 {
-            outbox.send(Event::Started(JobId(job)));
-        }
-        outbox.send(Event::Started(JobId(1000)));
-        outbox.send(progress(1000));
-        assert_eq!(events.try_iter().count(), CAPACITY, "the channel was full");
-        let before = wakes.load(Ordering::SeqCst);
-        outbox.flush_late();
-        assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
-        let late: Vec<Event<Hiperface>> = events.try_iter().collect();
-        assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");
-    }
+fn has_ended(ended: &Receiver<Never>) -> bool {
+    matches!(ended.try_recv(), Err(TryRecvError::Disconnected))
 }

@@ -68,7 +68,7 @@ impl<D: Device> Session<D> {
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
         let result = self.device.run(&mut self.desk, job, &mut |progress| tell(Event::Progress(id, progress)));
-        if let Some(remark) = self.device.take_remark() {
+        if let Some(remark) = self.take_remark() {
             tell(Event::Remark(remark));
         }
         match result {
@@ -76,6 +76,19 @@ impl<D: Device> Session<D> {
             Err(error) if D::is_cancelled(&error) => Event::Cancelled(id, Box::new(error)),
             Err(error) => Event::Failed(id, Box::new(error)),
         }
+    }
+
+    /// Takes a sample here and now.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
+        self.device.sample(&mut self.desk)
+    }
+
+    /// What the device said since the last time, where no event tells it.
+    pub(super) fn take_remark(&mut self) -> Option<D::Remark> {
+        self.device.take_remark()
     }
 
     /// Carries out a job here and now, for whoever wants nothing but its result.

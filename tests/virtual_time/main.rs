@@ -10,6 +10,7 @@ mod late;
 mod lost_replies;
 mod noise;
 mod plan_rules;
+mod polling;
 mod position;
 mod settings;
 mod support;

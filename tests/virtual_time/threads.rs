@@ -15,13 +15,13 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
 /// More than any of these takes; a hanging thread is what it is for.
-const LONG: Duration = Duration::from_secs(20);
+pub(crate) const LONG: Duration = Duration::from_secs(20);
 
-struct Bench {
-    worker: Worker<Hiperface>,
-    tap: Arc<Mutex<Tap>>,
+pub(crate) struct Bench {
+    pub(crate) worker: Worker<Hiperface>,
+    pub(crate) tap: Arc<Mutex<Tap>>,
     clock: Arc<dyn Clock>,
-    wakes: Arc<AtomicUsize>,
+    pub(crate) wakes: Arc<AtomicUsize>,
     _folder: tempfile::TempDir,
 }
 
@@ -40,11 +40,11 @@ fn bench(query: &str, clock: Arc<dyn Clock>) -> Bench {
     Bench { worker: Worker::spawn(session, wake).unwrap(), tap, clock, wakes, _folder: folder }
 }
 
-fn in_real_time(query: &str) -> Bench {
+pub(crate) fn in_real_time(query: &str) -> Bench {
     bench(query, Arc::new(RealClock::start()))
 }
 
-fn in_virtual_time(query: &str) -> Bench {
+pub(crate) fn in_virtual_time(query: &str) -> Bench {
     bench(query, Arc::new(VirtualClock::default()))
 }
 
@@ -56,7 +56,7 @@ fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
 }
 
 /// All events up to the end of a job.
-fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
+pub(crate) fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
         let event = worker.events().recv_timeout(LONG).expect("an end");
@@ -72,7 +72,7 @@ fn search() -> HiperfaceJob {
     HiperfaceJob::Find(FindOptions::default())
 }
 
-fn identify() -> HiperfaceJob {
+pub(crate) fn identify() -> HiperfaceJob {
     HiperfaceJob::Identify
 }
 
@@ -155,6 +155,70 @@ fn a_dropped_worker_ends_its_thread_with_a_job_or_without() {
         }
         while events.recv_timeout(LONG).is_ok() {}
     }
+}
+
+#[test]
+fn a_closed_worker_has_ended_with_a_job_or_without() {
+    for busy in [true, false] {
+        let mut bench = in_real_time("settings=0xE0");
+        if busy {
+            bench.worker.submit(search()).unwrap();
+        }
+        assert!(!bench.worker.is_ended());
+        assert!(bench.worker.close(LONG));
+        assert_eq!(Arc::strong_count(&bench.clock), 1, "the session is gone");
+    }
+}
+
+#[test]
+fn a_worker_that_was_let_go_still_tells_how_its_job_ended() {
+    let mut bench = in_real_time("settings=0xE0");
+    let id = bench.worker.submit(search()).unwrap();
+    let ending = bench.worker.end();
+    assert!(ending.wait(LONG));
+    assert!(ending.is_ended());
+    assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
+}
+
+/// A stop reaches what runs, from wherever it comes, and nothing that is submitted later.
+#[test]
+fn a_stop_is_for_one_job() {
+    let mut bench = in_virtual_time("");
+    let stopper = bench.worker.stopper();
+    stopper.stop();
+    bench.worker.submit(identify()).unwrap();
+    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Finished(..))), "the stop came before");
+
+    let mut bench = in_real_time("settings=0xE0");
+    let stopper = bench.worker.stopper();
+    bench.worker.submit(search()).unwrap();
+    std::thread::spawn(move || stopper.stop());
+    until_end(&bench.worker);
+    assert!(bench.tap.lock().unwrap().sent.len() < 32, "the search has ended early");
+}
+
+/// Whoever reads nothing is given nothing more to read.
+#[test]
+fn as_long_as_events_wait_there_is_no_new_job() {
+    let mut bench = in_virtual_time("");
+    let mut jobs = 0;
+    let refused = loop {
+        match bench.worker.submit(identify()) {
+            Ok(_) => jobs += 1,
+            Err(refused) => break refused,
+        }
+        let submitted = Instant::now();
+        while bench.worker.is_busy() {
+            assert!(submitted.elapsed() < LONG);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    };
+    assert_eq!(refused, SubmitError::Unread);
+    let mut ends = 0;
+    while ends < jobs {
+        ends += usize::from(is_end(&bench.worker.events().recv_timeout(LONG).unwrap()).is_some());
+    }
+    bench.worker.submit(identify()).unwrap();
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::runner::{Ended, Runner, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
-use crate::device::hiperface::{Error, Identity, PositionReading};
+use crate::device::hiperface::{Identity, PositionReading};
 use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::{EncoderTypes, LineSettings, StatusCode};
 use crate::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError, Value};
@@ -194,17 +194,11 @@ pub(in crate::cli) fn position(common: &Common, output: &Output, position: &Posi
                 show_position(output, &reading)?;
             }
             Ok(other) => return Err(unexpected(&other)),
-            Err(Ended::Job(error)) if spoilt(&error) => show_no_position(output, &error)?,
+            Err(Ended::Job(error)) if error.means_no_position() => show_no_position(output, &error)?,
             Err(ended) => return Err(ended.into_failure()),
         }
     }
     Ok(Done::Well)
-}
-
-/// The encoder is there and has no position to give at the moment.
-fn spoilt(error: &JobError) -> bool {
-    matches!(error, JobError::Device(Error::Rejected { codes, .. })
-        if codes.iter().any(|code| code.spoils_position()))
 }
 
 fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {

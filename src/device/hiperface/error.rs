@@ -156,6 +156,11 @@ impl Error {
         }
     }
 
+    /// The encoder is there and has no position to give at the moment.
+    pub fn means_no_position(&self) -> bool {
+        matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
+    }
+
     /// The encoder refused with this code.
     pub fn is_rejection(&self, code: StatusCode) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.contains(&code))

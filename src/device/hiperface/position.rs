@@ -39,6 +39,43 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     Ok(PositionReading { at: timed.at, raw, position, valid, codes })
 }
 
+/// What polling gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    /// The position.
+    Position(PositionReading),
+    /// The encoder is there and has no position to give at the moment.
+    NoPosition {
+        /// When it said so.
+        at: Moment,
+        /// Why, and what else it reported.
+        codes: Vec<StatusCode>,
+    },
+}
+
+/// Reads the position once, as [`read_position`]; that the encoder has none at the moment is an answer too.
+///
+/// # Errors
+/// The line, or a refusal for another reason.
+pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Sample, Error> {
+    let met_before = master.station().codes_met.len();
+    match read_position(master, geometry) {
+        Ok(reading) => Ok(Sample::Position(reading)),
+        Err(error) if error.means_no_position() => {
+            let at = master.now();
+            let mut codes = match error {
+                Error::Rejected { codes, .. } => codes,
+                _ => Vec::new(),
+            };
+            let met = master.station().codes_met.get(met_before..).unwrap_or_default();
+            let more: Vec<StatusCode> = met.iter().copied().filter(|code| !codes.contains(code)).collect();
+            codes.extend(more);
+            Ok(Sample::NoPosition { at, codes })
+        }
+        Err(error) => Err(error),
+    }
+}
+
 /// Reads an analogue channel (44h): usually signed 10 bits for 5 V, else as the data sheet says.
 ///
 /// # Errors

@@ -241,3 +241,10 @@ pub enum JobError {
         planned: usize,
     },
 }
+
+impl JobError {
+    /// The encoder is there and has no position to give at the moment.
+    pub fn means_no_position(&self) -> bool {
+        matches!(self, JobError::Device(error) if error.means_no_position())
+    }
+}

@@ -1,0 +1,103 @@
+//! What a worker is wished while its thread runs: an end, and how often to sample. The latest wish counts; none waits in a
+//! queue and none waits for the thread.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+
+use crate::link::Cancel;
+
+/// Longer intervals are this one.
+const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// The live wishes of a session. Clones share them.
+#[derive(Clone)]
+pub(super) struct Live {
+    wishes: Arc<Mutex<Wishes>>,
+    /// Cuts a sample in its repetitions short.
+    sampling: Cancel,
+    /// Wakes the thread; a full channel means that it is about to wake.
+    changed: Sender<()>,
+}
+
+struct Wishes {
+    /// The end of the running job, or of the last.
+    job: Cancel,
+    interval: Option<Duration>,
+}
+
+impl Live {
+    /// Nothing is wished; the thread listens for changes.
+    pub(super) fn new() -> (Self, Receiver<()>) {
+        let (changed, changes) = bounded(1);
+        let wishes = Arc::new(Mutex::new(Wishes { job: Cancel::default(), interval: None }));
+        (Live { wishes, sampling: Cancel::default(), changed }, changes)
+    }
+
+    /// From now on a stop is meant for this job.
+    pub(super) fn next_job(&self, cancel: Cancel) {
+        self.lock().job = cancel;
+    }
+
+    pub(super) fn stop(&self) {
+        let mut wishes = self.lock();
+        wishes.interval = None;
+        wishes.job.request();
+        drop(wishes);
+        self.interrupt_sample();
+        self.wake();
+    }
+
+    pub(super) fn poll(&self, interval: Option<Duration>) {
+        self.lock().interval = interval.map(|interval| interval.min(LONGEST));
+        if interval.is_none() {
+            self.interrupt_sample();
+        }
+        self.wake();
+    }
+
+    pub(super) fn polling(&self) -> Option<Duration> {
+        self.lock().interval
+    }
+
+    /// Ends polling from the thread's side, where a sample failed.
+    pub(super) fn poll_failed(&self) {
+        self.lock().interval = None;
+    }
+
+    /// Whoever calls this has wished what it is for before: the thread takes the token back first and looks for wishes
+    /// then, so that none is overlooked.
+    pub(super) fn interrupt_sample(&self) {
+        self.sampling.request();
+    }
+
+    /// The token of the samples.
+    pub(super) fn sampling(&self) -> &Cancel {
+        &self.sampling
+    }
+
+    pub(super) fn stopper(&self) -> Stopper {
+        Stopper(self.clone())
+    }
+
+    fn wake(&self) {
+        // Full: the thread has not seen the wish before this one and will see both.
+        let _ = self.changed.try_send(());
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Wishes> {
+        self.wishes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A worker's stop, for whoever does not hold the worker. Clones reach the same one.
+#[derive(Clone)]
+pub struct Stopper(Live);
+
+impl Stopper {
+    /// Ends polling, and the running job at the next point at which it can end. One that is submitted later is not meant.
+    pub fn stop(&self) {
+        self.0.stop();
+    }
+}

@@ -1,0 +1,110 @@
+//! Events on their way out of a session's thread: none about a job is lost, progress is coalesced, nobody waits.
+
+use std::sync::Arc;
+
+use crossbeam_channel::{Sender, TrySendError};
+
+use super::{Device, Event};
+
+/// Events that wait to be read, at most; progress counts once.
+pub(super) const CAPACITY: usize = 64;
+
+/// Events on their way out. What does not fit into the channel waits here: no more than one job tells, because the next
+/// is not taken while the channel is full.
+pub(super) struct Outbox<D: Device> {
+    sender: Sender<Event<D>>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    waiting: Vec<Event<D>>,
+    progress: Option<Event<D>>,
+}
+
+impl<D: Device> Outbox<D> {
+    pub(super) fn new(sender: Sender<Event<D>>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
+        Outbox { sender, wake, waiting: Vec::new(), progress: None }
+    }
+
+    pub(super) fn send(&mut self, event: Event<D>) {
+        match event {
+            Event::Progress(..) => self.progress = Some(event),
+            other => {
+                // It makes the progress before it old: that goes first or not at all.
+                self.flush();
+                self.progress = None;
+                self.waiting.push(other);
+            }
+        }
+        self.flush();
+        (self.wake)();
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.waiting.is_empty() && self.progress.is_none()
+    }
+
+    fn flush(&mut self) {
+        let mut waiting = std::mem::take(&mut self.waiting).into_iter();
+        while let Some(event) = waiting.next() {
+            match self.sender.try_send(event) {
+                Ok(()) => {}
+                Err(TrySendError::Full(event)) => {
+                    self.waiting.push(event);
+                    self.waiting.extend(waiting);
+                    return;
+                }
+                Err(TrySendError::Disconnected(_)) => return,
+            }
+        }
+        // Behind the start of its job, never before it. Half of the channel is for progress, so that it never stands in
+        // the way of an end.
+        if self.sender.len() < CAPACITY / 2
+            && let Some(progress) = self.progress.take()
+        {
+            let _ = self.sender.try_send(progress);
+        }
+    }
+
+    /// Sends what had to wait, and wakes whoever reads.
+    pub(super) fn flush_late(&mut self) {
+        if !self.is_empty() {
+            self.flush();
+            (self.wake)();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use crossbeam_channel::bounded;
+
+    use super::*;
+    use crate::worker::hiperface::Hiperface;
+    use crate::worker::{JobId, Progress};
+
+    fn progress(job: u64) -> Event<Hiperface> {
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: String::new() })
+    }
+
+    #[test]
+    fn progress_never_overtakes_the_start_of_its_job_and_late_events_wake() {
+        let (sender, events) = bounded(CAPACITY);
+        let wakes = Arc::new(AtomicUsize::new(0));
+        let counter = wakes.clone();
+        let wake = Arc::new(move || {
+            counter.fetch_add(1, Ordering::SeqCst);
+        });
+        let mut outbox = Outbox::new(sender, wake);
+        for job in 0..CAPACITY as u64 {
+            outbox.send(Event::Started(JobId(job)));
+        }
+        outbox.send(Event::Started(JobId(1000)));
+        outbox.send(progress(1000));
+        assert_eq!(events.try_iter().count(), CAPACITY, "the channel was full");
+        let before = wakes.load(Ordering::SeqCst);
+        outbox.flush_late();
+        assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
+        let late: Vec<Event<Hiperface>> = events.try_iter().collect();
+        assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");
+    }
+}

@@ -1,0 +1,111 @@
+//! A bounded ring for what may be dropped: samples, frames of a trace. Whoever fills it never waits for whoever empties
+//! it; what did not fit is counted, and the oldest goes first.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A bounded ring. Clones share it.
+pub struct Ring<T>(Arc<Mutex<State<T>>>);
+
+struct State<T> {
+    items: VecDeque<T>,
+    capacity: usize,
+    dropped: u64,
+}
+
+impl<T> Ring<T> {
+    /// An empty ring for so many things, at least one.
+    pub fn new(capacity: usize) -> Self {
+        let capacity = capacity.max(1);
+        Ring(Arc::new(Mutex::new(State { items: VecDeque::new(), capacity, dropped: 0 })))
+    }
+
+    /// Adds one; in a full ring the oldest makes room.
+    pub fn push(&self, item: T) {
+        let mut state = self.lock();
+        let oldest = if state.items.len() >= state.capacity { state.items.pop_front() } else { None };
+        state.dropped += u64::from(oldest.is_some());
+        state.items.push_back(item);
+        // Taking it apart may take time, and is nothing for the others to wait for.
+        drop(state);
+        drop(oldest);
+    }
+
+    /// Takes out everything, oldest first, and how many were dropped since the last time.
+    pub fn drain(&self) -> (Vec<T>, u64) {
+        let mut state = self.lock();
+        let items = std::mem::take(&mut state.items);
+        let dropped = std::mem::take(&mut state.dropped);
+        drop(state);
+        (items.into(), dropped)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State<T>> {
+        // Nothing in here can panic half-way.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<T> Clone for Ring<T> {
+    fn clone(&self) -> Self {
+        Ring(self.0.clone())
+    }
+}
+
+impl<T> fmt::Debug for Ring<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let state = self.lock();
+        write!(f, "Ring({} of {}, {} dropped)", state.items.len(), state.capacity, state.dropped)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_went_in_comes_out_in_order_and_once() {
+        let ring = Ring::new(3);
+        assert_eq!(ring.drain(), (vec![], 0));
+        ring.push(1);
+        ring.clone().push(2);
+        assert_eq!(ring.drain(), (vec![1, 2], 0));
+        assert_eq!(ring.drain(), (vec![], 0));
+    }
+
+    #[test]
+    fn a_full_ring_drops_the_oldest_and_counts() {
+        let ring = Ring::new(3);
+        (0..10).for_each(|item| ring.push(item));
+        assert_eq!(format!("{ring:?}"), "Ring(3 of 3, 7 dropped)");
+        assert_eq!(ring.drain(), (vec![7, 8, 9], 7));
+        ring.push(10);
+        assert_eq!(ring.drain(), (vec![10], 0), "the count begins anew");
+    }
+
+    #[test]
+    fn a_ring_for_nothing_keeps_the_newest() {
+        let ring = Ring::new(0);
+        ring.push('a');
+        ring.push('b');
+        assert_eq!(ring.drain(), (vec!['b'], 1));
+    }
+
+    #[test]
+    fn nothing_is_lost_uncounted_between_threads() {
+        let ring = Ring::new(16);
+        let (mut taken, mut dropped) = (0, 0);
+        std::thread::scope(|scope| {
+            let producer = scope.spawn(|| (0..10_000).for_each(|item| ring.push(item)));
+            while !producer.is_finished() {
+                let (items, lost) = ring.drain();
+                assert!(items.windows(2).all(|pair| pair[0] < pair[1]));
+                taken += items.len() as u64;
+                dropped += lost;
+            }
+        });
+        let (items, lost) = ring.drain();
+        assert_eq!(taken + items.len() as u64 + dropped + lost, 10_000);
+    }
+}

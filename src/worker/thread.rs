@@ -1,0 +1,188 @@
+//! The thread of a session: jobs as they come, samples in between, and a look at the wire now and then.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
+
+use super::live::Live;
+use super::outbox::Outbox;
+use super::{Device, Event, JobId, Ring, Session};
+use crate::link::Cancel;
+
+/// How often an idle worker looks whether its wire is still there.
+const CHECK: Duration = Duration::from_millis(500);
+/// How often it tries again to send what the full channel did not take.
+const RETRY: Duration = Duration::from_millis(5);
+
+/// A job on its way to the thread.
+pub(super) struct Order<D: Device> {
+    pub(super) id: JobId,
+    pub(super) job: D::Job,
+    /// The wish to end this one.
+    pub(super) cancel: Cancel,
+}
+
+/// Nothing of this kind is ever sent: its channel tells by its end that the thread has ended.
+pub(super) enum Never {}
+
+/// All that a session's thread works with.
+pub(super) struct Bench<D: Device> {
+    pub(super) session: Session<D>,
+    pub(super) orders: Receiver<Order<D>>,
+    /// A live wish has changed.
+    pub(super) changes: Receiver<()>,
+    pub(super) live: Live,
+    pub(super) samples: Ring<D::Sample>,
+    pub(super) outbox: Outbox<D>,
+    pub(super) busy: Arc<AtomicBool>,
+}
+
+/// Starts the thread; `alive` goes last, when the wire is free.
+///
+/// # Errors
+/// When the system has no thread left.
+pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io::Result<()> {
+    std::thread::Builder::new().name("session".to_owned()).spawn(move || {
+        let _alive = alive;
+        let _slot = Slot(bench.busy.clone());
+        work(bench);
+    })?;
+    Ok(())
+}
+
+/// The job slot of a thread: free when the thread is gone, however it ended.
+struct Slot(Arc<AtomicBool>);
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::SeqCst);
+    }
+}
+
+fn work<D: Device>(mut bench: Bench<D>) {
+    let mut pace = Pace::default();
+    let mut lost = false;
+    let mut next_check = Instant::now() + CHECK;
+    loop {
+        // The token first, then what it may have been wished for: see `Live::interrupt_sample`.
+        bench.live.sampling().reset();
+        match bench.orders.try_recv() {
+            Ok(order) => {
+                bench.carry_out(order);
+                lost = false;
+                next_check = Instant::now() + CHECK;
+                continue;
+            }
+            Err(TryRecvError::Disconnected) => return,
+            Err(TryRecvError::Empty) => {}
+        }
+        bench.outbox.flush_late();
+        let due = pace.due(bench.live.polling());
+        let now = Instant::now();
+        if due.is_some_and(|due| due <= now) {
+            if bench.take_sample() {
+                pace.taken(Instant::now());
+            }
+            lost = false;
+            next_check = Instant::now() + CHECK;
+            continue;
+        }
+        if now >= next_check {
+            next_check = now + CHECK;
+            if !lost && let Err(error) = bench.session.check() {
+                lost = true;
+                bench.outbox.send(Event::Lost(error));
+            }
+        }
+        let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
+        let until = [due, retry].into_iter().flatten().fold(next_check, Instant::min);
+        bench.wait(until.saturating_duration_since(Instant::now()));
+    }
+}
+
+impl<D: Device> Bench<D> {
+    fn carry_out(&mut self, order: Order<D>) {
+        self.session.set_cancel(order.cancel);
+        let outbox = &mut self.outbox;
+        let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
+        // The slot is free before the last event tells so: whoever reads it may submit at once.
+        self.busy.store(false, Ordering::SeqCst);
+        self.outbox.send(end);
+    }
+
+    /// False when a job or another wish came in between: the sample is still due.
+    fn take_sample(&mut self) -> bool {
+        self.session.set_cancel(self.live.sampling().clone());
+        match self.session.sample() {
+            Ok(sample) => self.samples.push(sample),
+            Err(error) if D::is_cancelled(&error) => return false,
+            Err(error) => {
+                self.live.poll_failed();
+                if let Some(remark) = self.session.take_remark() {
+                    self.outbox.send(Event::Remark(remark));
+                }
+                self.outbox.send(Event::PollFailed(Box::new(error)));
+            }
+        }
+        true
+    }
+
+    /// Waits for a job, a changed wish or the time. A job stays in its channel: the loop takes it.
+    fn wait(&self, patience: Duration) {
+        let mut ready = Select::new();
+        ready.recv(&self.orders);
+        ready.recv(&self.changes);
+        // The time is up: nothing is ready, and that is no error.
+        let _ = ready.ready_timeout(patience);
+        let _ = self.changes.try_recv();
+    }
+}
+
+/// When the next sample is due: at equal distances from start to start, and never several at once after a late one.
+#[derive(Default)]
+struct Pace {
+    interval: Option<Duration>,
+    next: Option<Instant>,
+}
+
+impl Pace {
+    /// The next sample, by the wish that is in force; a new wish begins now.
+    fn due(&mut self, wish: Option<Duration>) -> Option<Instant> {
+        if wish != self.interval {
+            self.interval = wish;
+            self.next = wish.map(|_| Instant::now());
+        }
+        self.next
+    }
+
+    fn taken(&mut self, now: Instant) {
+        self.next = match (self.next, self.interval) {
+            (Some(due), Some(interval)) => Some((due + interval).max(now)),
+            _ => None,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_sample_is_followed_by_one_and_not_by_a_burst() {
+        let step = Duration::from_millis(100);
+        let mut pace = Pace::default();
+        assert_eq!(pace.due(None), None);
+        let start = pace.due(Some(step)).unwrap();
+        pace.taken(start + step / 4);
+        assert_eq!(pace.due(Some(step)), Some(start + step), "from start to start");
+        pace.taken(start + step * 5);
+        assert_eq!(pace.due(Some(step)), Some(start + step * 5), "at once, once");
+        pace.taken(start + step * 5 + step / 4);
+        assert_eq!(pace.due(Some(step)), Some(start + step * 6));
+        assert_eq!(pace.due(None), None);
+        pace.taken(start);
+        assert_eq!(pace.due(None), None);
+    }
+}

@@ -1,0 +1,148 @@
+//! Polling on a session's thread: samples while no job is there, jobs first, and an end that is told once.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use encoder_studio::device::hiperface::{Error, Sample};
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::hiperface::StatusCode;
+use encoder_studio::worker::hiperface::{Hiperface, HiperfaceJob, JobError};
+use encoder_studio::worker::{Event, Worker};
+
+use crate::support::Desk;
+use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, until_end};
+
+const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
+/// No test waits for the second sample at this distance.
+const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
+
+/// At least so many samples, as they come.
+fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
+    let started = Instant::now();
+    let mut samples = Vec::new();
+    while samples.len() < count {
+        assert!(started.elapsed() < LONG, "{} samples", samples.len());
+        samples.extend(worker.samples().drain().0);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    samples
+}
+
+/// Nothing comes any more, once what is under way has come.
+fn nothing_comes(bench: &Bench) {
+    let started = Instant::now();
+    loop {
+        std::thread::sleep(Duration::from_millis(50));
+        if bench.worker.samples().drain() == (vec![], 0) {
+            return;
+        }
+        assert!(started.elapsed() < LONG, "it goes on");
+    }
+}
+
+fn position(sample: &Sample) -> Option<Option<u64>> {
+    match sample {
+        Sample::Position(reading) => Some(reading.position.and_then(|position| position.turns())),
+        Sample::NoPosition { .. } => None,
+    }
+}
+
+#[test]
+fn samples_come_without_a_job_and_jobs_in_between() {
+    let mut bench = in_virtual_time("");
+    assert_eq!(bench.worker.polling(), None);
+    bench.worker.poll(BACK_TO_BACK);
+    let blind = samples(&bench.worker, 3);
+    assert_eq!(position(&blind[0]), Some(None), "nobody has asked what encoder it is");
+    assert_eq!(bench.wakes.load(Ordering::SeqCst), 0, "nobody is woken for a sample");
+    for _ in 0..20 {
+        bench.worker.submit(identify()).unwrap();
+        let events = until_end(&bench.worker);
+        assert!(matches!(events.last(), Some(Event::Finished(..))), "{events:?}");
+        assert_eq!(events.len(), 2, "{events:?}");
+        bench.worker.samples().drain();
+        let seen = samples(&bench.worker, 2);
+        assert!(position(&seen[1]).flatten().is_some(), "{:?}", seen[1]);
+    }
+    assert_eq!(bench.worker.polling(), BACK_TO_BACK);
+}
+
+#[test]
+fn another_wish_counts_at_once() {
+    let bench = in_virtual_time("");
+    bench.worker.poll(SELDOM);
+    samples(&bench.worker, 1);
+    nothing_comes(&bench);
+    bench.worker.poll(Some(Duration::from_millis(1)));
+    samples(&bench.worker, 10);
+    bench.worker.poll(SELDOM);
+    nothing_comes(&bench);
+    bench.worker.poll(BACK_TO_BACK);
+    samples(&bench.worker, 10);
+    bench.worker.poll(None);
+    nothing_comes(&bench);
+    assert_eq!(bench.worker.polling(), None);
+}
+
+#[test]
+fn a_stop_ends_polling() {
+    let bench = in_virtual_time("");
+    for stop in [Worker::stop, |worker: &Worker<Hiperface>| worker.stopper().stop()] {
+        bench.worker.poll(BACK_TO_BACK);
+        samples(&bench.worker, 3);
+        stop(&bench.worker);
+        assert_eq!(bench.worker.polling(), None);
+        nothing_comes(&bench);
+    }
+    bench.worker.poll(BACK_TO_BACK);
+    assert!(bench.worker.close(LONG));
+}
+
+#[test]
+fn polling_that_fails_ends_and_is_told_once() {
+    let mut bench = in_virtual_time("fault=silent-after:5");
+    bench.worker.poll(BACK_TO_BACK);
+    let told = bench.worker.events().recv_timeout(LONG).unwrap();
+    let Event::PollFailed(error) = &told else { panic!("{told:?}") };
+    assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
+    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.samples().drain().0.len(), 4, "five replies, the first of which is the type label");
+    assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "once");
+    bench.worker.submit(identify()).unwrap();
+    assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))));
+    bench.worker.poll(BACK_TO_BACK);
+    assert!(matches!(bench.worker.events().recv_timeout(LONG), Ok(Event::PollFailed(_))), "once each time");
+}
+
+/// A job does not wait until a silent encoder has been asked five times, and polling goes on after it.
+#[test]
+fn a_job_cuts_the_repetitions_of_a_sample_short() {
+    let mut bench = in_real_time("fault=silent-after:0");
+    bench.worker.poll(SELDOM);
+    let started = Instant::now();
+    while bench.tap.lock().unwrap().sent.is_empty() {
+        assert!(started.elapsed() < LONG);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let id = bench.worker.submit(HiperfaceJob::Status).unwrap();
+    let events = until_end(&bench.worker);
+    assert!(matches!(events[0], Event::Started(started) if started == id), "{events:?}");
+    assert!(matches!(events.last(), Some(Event::Failed(..))));
+    let told = bench.worker.events().recv_timeout(LONG).unwrap();
+    assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
+}
+
+/// That there is no position is a sample too; another refusal is none.
+#[test]
+fn an_encoder_without_a_position_is_polled_on() {
+    let mut desk = Desk::new("rpm=9000");
+    for _ in 0..3 {
+        let Sample::NoPosition { codes, .. } = desk.session.sample().unwrap() else { panic!("too fast") };
+        assert!(codes.contains(&StatusCode::TOO_FAST), "{codes:?}");
+        assert!(desk.session.station().codes_met.is_empty(), "they are told with the sample");
+    }
+    let now = desk.clock.now();
+    desk.bus().encoder_mut(0).unwrap().set_rpm(now, 0.0);
+    let sample = desk.session.sample().unwrap();
+    assert!(matches!(&sample, Sample::Position(reading) if reading.valid), "{sample:?}");
+}
