@@ -91,6 +91,16 @@ impl Device for Hiperface {
                 HiperfaceOutput::Prepared(Box::new(prepare::prepare(self, desk, change, tell)?))
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, tell)?),
+            HiperfaceJob::Survey => {
+                let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+                let survey = device::survey(&mut self.master(desk), &types, progress)?;
+                self.geometry = survey.identity.geometry;
+                HiperfaceOutput::Surveyed(Box::new(survey))
+            }
+            HiperfaceJob::UseCode { number, code } => {
+                self.station.codes.set(number, code);
+                HiperfaceOutput::CodeNoted
+            }
             HiperfaceJob::Identify => {
                 let identity = identify(&mut self.master(desk), &types)?;
                 self.geometry = identity.geometry;

@@ -14,4 +14,5 @@ mod polling;
 mod position;
 mod settings;
 mod support;
+mod survey;
 mod threads;

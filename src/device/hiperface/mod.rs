@@ -13,6 +13,7 @@ mod position;
 mod reset;
 mod save;
 mod station;
+mod survey;
 pub mod write;
 
 pub use error::Error;
@@ -26,3 +27,5 @@ pub use position::{
 pub use reset::{change_line_for_now, reset};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{Codes, Echo, PARAMETERS, Station};
+use survey::look_around;
+pub use survey::{Survey, survey};

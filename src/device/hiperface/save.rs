@@ -1,6 +1,6 @@
 //! Reading everything that can be restored, and what identifies the encoder.
 
-use super::{Error, Identity, Master, identify, read_all_fields, read_counter, read_position};
+use super::{Error, Identity, Master, Sample, Survey, look_around};
 use crate::profile::Unknown;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
 use crate::protocol::hiperface::EncoderTypes;
@@ -31,16 +31,16 @@ fn save_once(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    let identity = identify(master, types)?;
-    let fields = read_all_fields(master, identity.memory.map_or(0, |memory| memory.fields), progress)?;
+    let Survey { identity, fields, counter, position, .. } = look_around(master, types, progress)?;
     if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
         && options.complete
     {
         return Err(Error::CodeUnknown { field: locked.number, number: locked.status.code() });
     }
-    // Neither is needed for a restore: an encoder that refuses them is saved all the same.
-    let position = refused(read_position(master, identity.geometry).map(|reading| reading.raw))?;
-    let counter = refused(read_counter(master))?;
+    let position = match position {
+        Some(Sample::Position(reading)) => Some(reading.raw),
+        Some(Sample::NoPosition { .. }) | None => None,
+    };
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
@@ -66,12 +66,4 @@ pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Record
     };
     profile.mark_mounting();
     profile
-}
-
-fn refused<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
-    match result {
-        Ok(value) => Ok(Some(value)),
-        Err(Error::Rejected { .. }) => Ok(None),
-        Err(error) => Err(error),
-    }
 }

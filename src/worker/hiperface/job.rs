@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::device::hiperface::check::Line;
 use crate::device::hiperface::find::{FindOptions, Findings};
 use crate::device::hiperface::write::{Interrupted, Written};
-use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions};
+use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions, Survey};
 use crate::profile::Consent;
 use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, PlanError, RestoreOptions};
 use crate::protocol::hiperface::{
@@ -20,6 +20,8 @@ pub const WEAR_LIMIT: u64 = 1_000_000;
 /// What a session with a HIPERFACE encoder does.
 #[derive(Debug)]
 pub enum HiperfaceJob {
+    /// Everything there is to see: for a window, after connecting.
+    Survey,
     /// Who is there.
     Identify,
     /// The whole error queue.
@@ -41,6 +43,13 @@ pub enum HiperfaceJob {
     Find(FindOptions),
     /// 67h, and our side after it.
     ConfigureForNow(LineSettings),
+    /// Uses an access code from now on; nothing is sent.
+    UseCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its value; it is shown nowhere.
+        code: AccessCode,
+    },
     /// Makes a plan; writes nothing.
     Prepare(Change),
     /// Carries a plan out.
@@ -195,6 +204,7 @@ pub struct SavedProfile {
 #[derive(Debug)]
 #[expect(missing_docs, reason = "each is the result of the job of that name")]
 pub enum HiperfaceOutput {
+    Surveyed(Box<Survey>),
     Identity(Identity),
     Status(Vec<StatusCode>),
     Position(PositionReading),
@@ -204,6 +214,7 @@ pub enum HiperfaceOutput {
     Reset(Vec<StatusCode>),
     Found(Findings),
     Configured,
+    CodeNoted,
     Prepared(Box<Prepared>),
     Committed(Committed),
 }
