@@ -76,7 +76,7 @@ fn nothing_is_learned_from_a_reply_that_is_its_request() {
 fn a_byte_that_has_the_value_of_its_code_is_read() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
-        desk.change(Change::Store { range: FieldRange::new(0, 7, 1), bytes: vec![0x55] }).unwrap();
+        desk.change(Change::Store(vec![(FieldRange::new(0, 7, 1), vec![0x55])])).unwrap();
         let item = Item::Field(FieldRange::new(0, 7, 1));
         let HiperfaceOutput::Value(value) = desk.run(HiperfaceJob::Read(item)).unwrap() else { panic!() };
         assert_eq!(value, Value::Bytes(vec![0x55]));

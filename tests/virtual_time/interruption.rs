@@ -19,7 +19,7 @@ fn scene() -> (Desk, HiperfaceProfile) {
     for (number, byte, count) in [(1, 0xE8, 16), (2, 0xC9, 32), (3, 0xC8, 16)] {
         desk.change(Change::CreateField { number, status: status(byte) }).unwrap();
         let bytes = bytes(number, count);
-        desk.change(Change::Store { range: FieldRange::new(number, 0, count), bytes }).unwrap();
+        desk.change(Change::Store(vec![(FieldRange::new(number, 0, count), bytes)])).unwrap();
     }
     desk.change(Change::LockField { number: 1, lock: true }).unwrap();
     let mut wanted = desk.save().unwrap();

@@ -10,7 +10,7 @@ use encoder_studio::worker::hiperface::{Change, JobError};
 use crate::support::{Desk, backup};
 
 fn store_byte(value: u8) -> Change {
-    Change::Store { range: FieldRange::new(0, 3, 1), bytes: vec![value] }
+    Change::Store(vec![(FieldRange::new(0, 3, 1), vec![value])])
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn noisy_desk(seed: u8, noise: &str) -> Desk {
         let status = encoder_studio::protocol::hiperface::DataFieldStatus::from_byte(status);
         desk.change(Change::CreateField { number, status }).unwrap();
         let bytes = bytes(seed.wrapping_add(number), status.size().bytes());
-        desk.change(Change::Store { range: FieldRange::new(number, 0, bytes.len()), bytes }).unwrap();
+        desk.change(Change::Store(vec![(FieldRange::new(number, 0, bytes.len()), bytes)])).unwrap();
     }
     mend(&desk, noise);
     let mut noisy = desk.copied();

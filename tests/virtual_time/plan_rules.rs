@@ -9,7 +9,7 @@ use encoder_studio::worker::hiperface::{Change, Commit, HiperfaceJob, JobError};
 use crate::support::{Desk, bytes, restore_of};
 
 fn store(field: u8, start: usize, bytes: Vec<u8>) -> Change {
-    Change::Store { range: FieldRange::new(field, start, bytes.len()), bytes }
+    Change::Store(vec![(FieldRange::new(field, start, bytes.len()), bytes)])
 }
 
 #[test]
@@ -166,4 +166,39 @@ fn protected_fields_and_other_limits_are_refused_without_a_write() {
     assert_eq!(desk.wear(), worn);
     let ops = desk.prepare(Change::DeleteField { number: 0 }).unwrap().plan.ops;
     assert!(matches!(ops[..], [Op::Define { field: 0, to, .. }] if !to.exists()));
+}
+
+/// Edits of several fields: one plan, one backup, each field read once, and no byte sent that stands there already.
+#[test]
+fn several_edits_are_written_in_one_go() {
+    let mut desk = Desk::new("");
+    desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xE8) }).unwrap();
+    let before = desk.memory();
+    let (there, worn) = (before[0].1[28], desk.wear());
+    let other = |at: usize| !before[0].1[at];
+    let edits = vec![
+        (FieldRange::new(1, 3, 1), vec![0x33]),
+        (FieldRange::new(0, 28, 1), vec![there]),
+        (FieldRange::new(0, 21, 1), vec![other(21)]),
+        (FieldRange::new(0, 20, 1), vec![other(20)]),
+        (FieldRange::new(0, 2, 1), vec![other(2)]),
+    ];
+    let reads = desk.tap().count(Command::ReadData);
+    let prepared = desk.prepare(Change::Store(edits)).unwrap();
+    assert_eq!(desk.tap().count(Command::ReadData) - reads, 2, "each field once");
+    let ops: Vec<String> = prepared.plan.ops.iter().map(Op::item).collect();
+    assert_eq!(ops, ["field:0@2+1", "field:0@20+2", "field:1@3+1"]);
+    assert_eq!(prepared.plan.base.fields.iter().map(|field| field.number).collect::<Vec<_>>(), [0, 1]);
+    desk.commit(&prepared).unwrap();
+    let mut expected = before.clone();
+    for at in [2, 20, 21] {
+        expected[0].1[at] = other(at);
+    }
+    expected[1].1[3] = 0x33;
+    assert_eq!(desk.memory(), expected);
+    assert_eq!(desk.wear() - worn, 3);
+    match desk.prepare(Change::Store(vec![(FieldRange::new(0, 0, 1), vec![1]), (FieldRange::new(7, 0, 1), vec![1])])) {
+        Err(JobError::Plan(PlanError::NoSuchField { field: 7, count: 2 })) => {}
+        other => panic!("{other:?}"),
+    }
 }

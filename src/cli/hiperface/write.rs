@@ -73,7 +73,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
             if let Some(count) = range.count.filter(|count| *count != bytes.len()) {
                 return Err(Failure::Usage(format!("{range} takes {count} bytes, {} are given", bytes.len())));
             }
-            Ok(Change::Store { range, bytes })
+            Ok(Change::Store(vec![(range, bytes)]))
         }
         Item::Status(number) => {
             let status = DataFieldStatus::from_byte(byte_within(item, value, 0x80..=0xFF)?);

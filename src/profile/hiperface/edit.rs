@@ -1,29 +1,70 @@
 //! Plans for single changes, each with the encoder's own rules checked before anything is sent.
 
-use super::{Base, FieldImage, HiperfacePlan, Op, PlanError, Scalar};
+use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, Scalar};
 use crate::protocol::hiperface::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Writes exactly these bytes; nothing when they stand there already.
+/// Writes exactly these bytes, edits that adjoin or overlap in one operation, of two for the same byte the later. Nothing
+/// where all bytes of such an operation stand there already. `fields` are those that the edits touch, once each.
 ///
 /// # Errors
-/// The field is protected or unreadable, or the bytes do not fit into it.
-pub fn plan_store(fields: u8, field: &FieldImage, start: usize, bytes: &[u8]) -> Result<HiperfacePlan, PlanError> {
+/// A field is not there, protected or unreadable, or the bytes do not fit into it or into the range they are for.
+pub fn plan_store(
+    field_count: u8,
+    fields: &[FieldImage],
+    edits: &[(FieldRange, Vec<u8>)],
+) -> Result<HiperfacePlan, PlanError> {
+    let mut fields = fields.to_vec();
+    fields.sort_by_key(|field| field.number);
+    if let Some((range, _)) = edits.iter().find(|(range, _)| !fields.iter().any(|field| field.number == range.field)) {
+        return Err(PlanError::NoSuchField { field: range.field, count: field_count });
+    }
+    let mut ops = Vec::new();
+    for field in &fields {
+        ops.extend(stores(field, edits.iter().filter(|(range, _)| range.field == field.number))?);
+    }
+    Ok(plan(field_count, fields, ops))
+}
+
+/// The operations for one field, by ascending address. A field has at most 128 bytes, as has a transfer.
+fn stores<'e>(
+    field: &FieldImage,
+    edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,
+) -> Result<Vec<Op>, PlanError> {
     let number = field.number;
     let content = field.bytes.as_ref().ok_or(PlanError::CodeUnknown { field: number, code: field.status.code() })?;
-    let outside =
-        PlanError::OutOfField { field: number, last: field.status.size().bytes() - 1, start, count: bytes.len() };
-    let end = start.checked_add(bytes.len()).ok_or(outside.clone())?;
-    let old = content.get(start..end).filter(|old| !old.is_empty()).ok_or(outside.clone())?;
+    let mut wanted = vec![None; content.len()];
+    for (range, bytes) in edits {
+        let (last, start, count) = (field.status.size().bytes() - 1, range.start, bytes.len());
+        let end = start.checked_add(count).filter(|_| count > 0 && range.count.is_none_or(|given| given == count));
+        let place = end.and_then(|end| wanted.get_mut(start..end)).ok_or(PlanError::OutOfField {
+            field: number,
+            last,
+            start,
+            count,
+        })?;
+        place.iter_mut().zip(bytes).for_each(|(place, byte)| *place = Some(*byte));
+    }
+    let mut runs: Vec<(usize, Vec<u8>)> = Vec::new();
+    for (at, byte) in wanted.into_iter().enumerate().filter_map(|(at, byte)| Some((at, byte?))) {
+        match runs.last_mut() {
+            Some((start, run)) if *start + run.len() == at => run.push(byte),
+            _ => runs.push((at, vec![byte])),
+        }
+    }
     let mut ops = Vec::new();
-    if old != bytes {
+    for (start, new) in runs {
+        let old = content.get(start..start + new.len()).unwrap_or_default().to_vec();
+        if old == new {
+            continue;
+        }
         if !field.status.is_writable() {
             return Err(PlanError::WriteProtected { field: number });
         }
-        let address = u8::try_from(start).map_err(|_| outside)?;
-        let (old, new) = (Some(old.to_vec()), bytes.to_vec());
-        ops.push(Op::Store { field: number, address, status: field.status, old, new });
+        let (last, count) = (field.status.size().bytes() - 1, new.len());
+        let address = u8::try_from(start).map_err(|_| PlanError::OutOfField { field: number, last, start, count })?;
+        ops.push(Op::Store { field: number, address, status: field.status, old: Some(old), new });
     }
-    Ok(plan(fields, vec![field.clone()], ops))
+    Ok(ops)
 }
 
 /// Creates the next field.
@@ -98,16 +139,57 @@ mod tests {
         FieldImage { number, status, bytes: Some(vec![0; status.size().bytes()]) }
     }
 
+    fn store(field: &FieldImage, start: usize, bytes: &[u8]) -> Result<HiperfacePlan, PlanError> {
+        plan_store(
+            2,
+            std::slice::from_ref(field),
+            &[(FieldRange::new(field.number, start, bytes.len()), bytes.to_vec())],
+        )
+    }
+
     #[test]
     fn bytes_are_stored_as_given_or_not_at_all() {
-        let plan = plan_store(2, &field(1, 0xE8), 5, &[0x08, 0x00, 0x15]).unwrap();
+        let plan = store(&field(1, 0xE8), 5, &[0x08, 0x00, 0x15]).unwrap();
         assert!(matches!(&plan.ops[..], [Op::Store { field: 1, address: 5, new, .. }] if *new == [0x08, 0x00, 0x15]));
-        assert!(plan_store(2, &field(1, 0xE8), 5, &[0, 0]).unwrap().is_empty());
-        assert_eq!(plan_store(2, &field(1, 0xA8), 5, &[1]), Err(PlanError::WriteProtected { field: 1 }));
+        assert!(store(&field(1, 0xE8), 5, &[0, 0]).unwrap().is_empty());
+        assert_eq!(store(&field(1, 0xA8), 5, &[1]), Err(PlanError::WriteProtected { field: 1 }));
         let outside = PlanError::OutOfField { field: 1, last: 15, start: 15, count: 2 };
-        assert_eq!(plan_store(2, &field(1, 0xE8), 15, &[1, 2]), Err(outside));
-        assert!(plan_store(2, &field(1, 0xE8), usize::MAX, &[1, 2]).is_err());
-        assert!(plan_store(2, &field(1, 0xE8), 0, &[]).is_err());
+        assert_eq!(store(&field(1, 0xE8), 15, &[1, 2]), Err(outside));
+        assert!(store(&field(1, 0xE8), usize::MAX, &[1, 2]).is_err());
+        assert!(store(&field(1, 0xE8), 0, &[]).is_err());
+        let miscounted = plan_store(2, &[field(1, 0xE8)], &[(FieldRange::new(1, 3, 1), vec![1, 2])]);
+        assert_eq!(miscounted, Err(PlanError::OutOfField { field: 1, last: 15, start: 3, count: 2 }));
+        let absent = plan_store(2, &[field(1, 0xE8)], &[(FieldRange::new(2, 0, 1), vec![1])]);
+        assert_eq!(absent, Err(PlanError::NoSuchField { field: 2, count: 2 }));
+    }
+
+    #[test]
+    fn several_edits_are_one_plan() {
+        let fields = [field(1, 0xE8), field(0, 0xE9)];
+        let edit = |field, start, bytes: &[u8]| (FieldRange::new(field, start, bytes.len()), bytes.to_vec());
+        let edits = [
+            edit(1, 4, &[5]),
+            edit(0, 30, &[9, 9]),
+            edit(1, 2, &[3, 4]),
+            edit(0, 8, &[0, 0, 0]),
+            edit(1, 0, &[7]),
+            edit(0, 0, &[1, 1]),
+            edit(0, 1, &[2]),
+        ];
+        let plan = plan_store(2, &fields, &edits).unwrap();
+        let base: Vec<u8> = plan.base.fields.iter().map(|field| field.number).collect();
+        assert_eq!(base, [0, 1], "each once");
+        let ops: Vec<(u8, u8, Vec<u8>)> = plan
+            .ops
+            .iter()
+            .map(|op| match op {
+                Op::Store { field, address, new, .. } => (*field, *address, new.clone()),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        let expected = [(0, 0, vec![1, 2]), (0, 30, vec![9, 9]), (1, 0, vec![7]), (1, 2, vec![3, 4, 5])];
+        assert_eq!(ops, expected, "what stands there already is not sent");
+        assert!(plan_store(2, &[], &[]).unwrap().is_empty());
     }
 
     #[test]

@@ -66,13 +66,8 @@ pub enum Change {
         /// What the restore may do.
         options: RestoreOptions,
     },
-    /// Write bytes of a data field.
-    Store {
-        /// Which field, from where; a count has to be that of the bytes.
-        range: FieldRange,
-        /// The bytes.
-        bytes: Vec<u8>,
-    },
+    /// Write bytes of data fields: where, and which; a count has to be that of the bytes.
+    Store(Vec<(FieldRange, Vec<u8>)>),
     /// Create a data field.
     CreateField {
         /// Its number.

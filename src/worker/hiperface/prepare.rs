@@ -1,5 +1,7 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
+use std::collections::BTreeSet;
+
 use super::{Change, Hiperface, JobError, Prepared};
 use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
@@ -109,13 +111,11 @@ fn set_position(
 fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobError> {
     let memory = read_memory(master)?;
     let plan = match change {
-        Change::Store { range, bytes } => {
-            let field = existing(master, memory, range.field)?;
-            if range.count.is_some_and(|count| count != bytes.len()) {
-                let (last, count) = (field.status.size().bytes() - 1, bytes.len());
-                return Err(PlanError::OutOfField { field: range.field, last, start: range.start, count }.into());
-            }
-            plan_store(memory.fields, &field, range.start, &bytes)?
+        Change::Store(edits) => {
+            let touched: BTreeSet<u8> = edits.iter().map(|(range, _)| range.field).collect();
+            let fields =
+                touched.into_iter().map(|field| existing(master, memory, field)).collect::<Result<Vec<_>, _>>()?;
+            plan_store(memory.fields, &fields, &edits)?
         }
         Change::CreateField { number, status } => plan_create(memory, number, status)?,
         Change::Redefine { number, status } => {
