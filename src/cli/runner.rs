@@ -20,7 +20,7 @@ use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, open};
+use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, open};
 use crate::worker::{Event, OpenError, Progress, Session, Worker};
 
 /// A session on its thread.
@@ -97,7 +97,7 @@ impl Runner {
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
                 Event::Progress(of, progress) if of == id => bar.show(&progress),
-                Event::Remark(codes) => {
+                Event::Remark(Remark::Codes(codes)) => {
                     name_codes(&codes);
                     self.codes_met.extend(codes);
                 }

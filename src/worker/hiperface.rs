@@ -9,12 +9,13 @@ use std::fmt;
 use std::sync::Arc;
 
 pub use job::{
-    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile, Value, WEAR_LIMIT,
+    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark, SavedProfile, Value,
+    WEAR_LIMIT,
 };
 pub use open::open;
 
-use super::{Desk, Device, Progress, Session};
-use crate::device::hiperface::find::Attempt;
+use super::{Desk, Device, Progress, Session, Tell};
+use crate::device::hiperface::find::News;
 use crate::device::hiperface::{
     self as device, Codes, Error, Master, Sample, Station, check, find, identify, read_analogue, read_counter,
     read_field, read_field_status, read_position, read_range, read_sample, read_status,
@@ -75,24 +76,24 @@ impl Device for Hiperface {
     type Job = HiperfaceJob;
     type Output = HiperfaceOutput;
     type Error = JobError;
-    /// Status codes that replies announced.
-    type Remark = Vec<StatusCode>;
+    type Remark = Remark;
     type Sample = Sample;
 
     fn run(
         &mut self,
         desk: &mut Desk,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Progress),
+        tell: &mut dyn FnMut(Tell<Remark>),
     ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
+        let steps = &mut |progress| tell(Tell::Progress(progress));
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
-                HiperfaceOutput::Prepared(Box::new(prepare::prepare(self, desk, change, tell)?))
+                HiperfaceOutput::Prepared(Box::new(prepare::prepare(self, desk, change, steps)?))
             }
-            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, tell)?),
+            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
             HiperfaceJob::Survey => {
-                let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+                let progress = &mut |done, total| steps(Progress { done, total, what: format!("field:{done}") });
                 let survey = device::survey(&mut self.master(desk), &types, progress)?;
                 self.geometry = survey.identity.geometry;
                 HiperfaceOutput::Surveyed(Box::new(survey))
@@ -112,7 +113,7 @@ impl Device for Hiperface {
             }
             HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
             HiperfaceJob::Save(options) => {
-                let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+                let progress = &mut |done, total| steps(Progress { done, total, what: format!("field:{done}") });
                 let profile = device::save(&mut self.master(desk), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
@@ -123,10 +124,8 @@ impl Device for Hiperface {
             }
             HiperfaceJob::Reset => HiperfaceOutput::Reset(device::reset(&mut self.master(desk))?),
             HiperfaceJob::Find(options) => {
-                let progress = &mut |done, total, attempt: &Attempt| {
-                    tell(Progress { done, total, what: attempt.to_string() });
-                };
-                HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, progress)?)
+                let watch = &mut |news: News<'_>| tell(told(news));
+                HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
                 device::change_line_for_now(&mut self.master(desk), settings)?;
@@ -152,12 +151,19 @@ impl Device for Hiperface {
         }
     }
 
-    fn take_remark(&mut self) -> Option<Vec<StatusCode>> {
-        Some(self.station.take_codes()).filter(|codes| !codes.is_empty())
+    fn take_remark(&mut self) -> Option<Remark> {
+        Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes)
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
+    }
+}
+
+fn told(news: News<'_>) -> Tell<Remark> {
+    match news {
+        News::Trying { done, total, attempt } => Tell::Progress(Progress { done, total, what: attempt.to_string() }),
+        News::Found(found) => Tell::Remark(Remark::Found(found.clone())),
     }
 }
 

@@ -53,7 +53,7 @@ pub trait Device: Send + 'static {
         &mut self,
         desk: &mut Desk,
         job: Self::Job,
-        tell: &mut dyn FnMut(Progress),
+        tell: &mut dyn FnMut(Tell<Self::Remark>),
     ) -> Result<Self::Output, Self::Error>;
 
     /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
@@ -76,7 +76,7 @@ pub trait Device: Send + 'static {
 }
 
 /// The number of a job within its session.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct JobId(u64);
 
 /// How far a job is.
@@ -90,6 +90,15 @@ pub struct Progress {
     pub what: String,
 }
 
+/// What a job tells on its way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Tell<R> {
+    /// How far it is.
+    Progress(Progress),
+    /// What the device said; each is passed on.
+    Remark(R),
+}
+
 /// What a worker tells.
 #[derive(Debug)]
 pub enum Event<D: Device> {
@@ -97,7 +106,7 @@ pub enum Event<D: Device> {
     Started(JobId),
     /// How far it is.
     Progress(JobId, Progress),
-    /// What the device said on the way.
+    /// What the device said on the way, while the job runs or at its end.
     Remark(D::Remark),
     /// It is done.
     Finished(JobId, Box<D::Output>),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Device, Event, JobId, Progress};
+use super::{Device, Event, JobId, Tell};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -67,7 +67,10 @@ impl<D: Device> Session<D> {
     /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
-        let result = self.device.run(&mut self.desk, job, &mut |progress| tell(Event::Progress(id, progress)));
+        let result = self.device.run(&mut self.desk, job, &mut |told| match told {
+            Tell::Progress(progress) => tell(Event::Progress(id, progress)),
+            Tell::Remark(remark) => tell(Event::Remark(remark)),
+        });
         if let Some(remark) = self.take_remark() {
             tell(Event::Remark(remark));
         }
@@ -96,6 +99,6 @@ impl<D: Device> Session<D> {
     /// # Errors
     /// Those of the job.
     pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
-        self.device.run(&mut self.desk, job, &mut |_: Progress| {})
+        self.device.run(&mut self.desk, job, &mut |_| {})
     }
 }

@@ -3,9 +3,11 @@
 use std::time::Duration;
 
 use encoder_studio::device::hiperface::find::{FindOptions, Findings, Found};
-use encoder_studio::link::Clock;
+use encoder_studio::link::{Cancel, Clock};
 use encoder_studio::protocol::hiperface::LineSettings;
-use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput};
+use encoder_studio::units::CharacterFormat;
+use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
@@ -20,7 +22,7 @@ fn find(desk: &mut Desk, options: FindOptions) -> Findings {
 
 fn searched(desk: &mut Desk, options: FindOptions) -> Vec<Found> {
     match find(desk, options) {
-        Findings::Searched(found) => found,
+        Findings::Searched { found, complete: true } => found,
         other => panic!("{other:?}"),
     }
 }
@@ -99,7 +101,7 @@ fn a_power_cycle_opens_the_default_window() {
         let options = FindOptions { one_encoder, power_cycle: Some(Duration::from_secs(30)) };
         let found = searched(&mut desk, options);
         assert_eq!(found[0].address, 0x40);
-        assert_eq!(found[0].format, encoder_studio::units::CharacterFormat::FACTORY);
+        assert_eq!(found[0].format, CharacterFormat::FACTORY);
         assert_eq!(found[0].label.settings.byte(), settings, "what it has stored is told");
     }
 }
@@ -112,4 +114,40 @@ fn through_a_device_server_each_encoder_is_found_once() {
     let found = searched(&mut desk, FindOptions::default());
     assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), [0x43, 0x44]);
     assert_eq!(desk.tap().sent.len(), 32, "each address once");
+}
+
+/// Whoever ends a search sees what has answered, and our side of the line is as before.
+#[test]
+fn an_interrupted_search_tells_what_it_found() {
+    // 40h is asked first, at the encoders' own settings.
+    let mut desk = Desk::new("encoders=2&address=0x4A");
+    for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
+        desk.tap().sent.clear();
+        desk.session.set_cancel(Cancel::after(questions));
+        let Findings::Searched { found, complete } = find(&mut desk, FindOptions::default()) else { panic!() };
+        assert!(!complete);
+        assert_eq!(found.iter().map(|found| found.address).collect::<Vec<_>>(), expected, "{questions}");
+        assert_eq!(desk.tap().sent.len() as u64, questions);
+        let station = desk.session.station();
+        assert_eq!((station.address, station.format), (0x40, CharacterFormat::FACTORY));
+    }
+}
+
+/// Each encoder is told as it answers, before the end.
+#[test]
+fn encoders_are_told_as_they_answer() {
+    let mut desk = Desk::new("encoders=3&address=0x52");
+    let mut told = Vec::new();
+    let mut progress = 0;
+    let end =
+        desk.session.run(JobId::default(), HiperfaceJob::Find(FindOptions::default()), &mut |event| match event {
+            Event::Remark(Remark::Found(found)) => told.push((found, progress)),
+            Event::Progress(_, step) => progress = step.done,
+            _ => {}
+        });
+    let Event::Finished(_, output) = end else { panic!("{end:?}") };
+    let HiperfaceOutput::Found(Findings::Searched { found, complete: true }) = *output else { panic!("{output:?}") };
+    assert_eq!(told.iter().map(|(found, _)| found.clone()).collect::<Vec<_>>(), found);
+    assert_eq!(told.iter().map(|(found, _)| found.address).collect::<Vec<_>>(), [0x52, 0x53, 0x54]);
+    assert!(told.iter().all(|(_, at)| *at <= 32), "while the others are still to be asked");
 }

@@ -89,7 +89,7 @@ fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
     let events = until_end(&bench.worker);
     assert!(stopped.elapsed() < Duration::from_secs(1), "{:?}", stopped.elapsed());
     assert!(matches!(events.first(), Some(Event::Started(started)) if *started == id));
-    assert!(matches!(events.last(), Some(Event::Cancelled(ended, _)) if *ended == id), "{events:?}");
+    assert!(matches!(events.last(), Some(Event::Finished(ended, _)) if *ended == id), "{events:?}");
     // The next job is not stopped by the old wish.
     *bench.tap.lock().unwrap() = Tap::default();
     bench.worker.submit(HiperfaceJob::Status).unwrap();

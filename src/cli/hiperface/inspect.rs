@@ -22,8 +22,13 @@ pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Res
     output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
-        HiperfaceOutput::Found(Findings::Searched(found)) => {
+        HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
             show_found(output, &found)?;
+            if !complete {
+                return Err(Failure::Failed(vec![
+                    "The search was cut short: there may be more encoders than those that answered.".to_owned(),
+                ]));
+            }
             if found.is_empty() {
                 return Err(Failure::Failed(vec![
                     "No encoder answered. Check supply and wiring (A/B); with one encoder connected, try --one-encoder \

@@ -61,6 +61,22 @@ impl fmt::Display for Attempt {
     }
 }
 
+/// What a search tells while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News<'a> {
+    /// The next try.
+    Trying {
+        /// Tries done.
+        done: u64,
+        /// Tries in all.
+        total: u64,
+        /// This one.
+        attempt: &'a Attempt,
+    },
+    /// An encoder that answered, once for each.
+    Found(&'a Found),
+}
+
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Findings {
@@ -69,63 +85,90 @@ pub enum Findings {
         /// Bytes heard in the time of listening.
         bytes: usize,
     },
-    /// All that answered, in the order in which they did; maybe none.
-    Searched(Vec<Found>),
+    /// The line was searched.
+    Searched {
+        /// All that answered, in the order in which they did; maybe none.
+        found: Vec<Found>,
+        /// Everything was tried; else the user wished an end before.
+        complete: bool,
+    },
 }
 
-/// Searches all speeds, parities and addresses; through a link that has no speed of its own, all addresses. Afterwards our side is set as it was before.
+/// Searches all speeds, parities and addresses; through a link that has no speed of its own, all addresses. Afterwards our
+/// side is set as it was before. A wish to end ends the search with what answered until then.
 ///
 /// # Errors
-/// The wire, or the user's wish.
+/// The wire.
 pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,
-    progress: &mut dyn FnMut(u64, u64, &Attempt),
+    watch: &mut dyn FnMut(News<'_>),
 ) -> Result<Findings, Error> {
     let before = (master.station().address, master.station().format);
-    let findings = search(master, options, progress);
+    let mut search = Search { found: Vec::new(), watch };
+    let result = search.run(master, options);
     master.shielded(|master| {
         master.station().address = before.0;
         master.set_format(before.1)
     })?;
-    findings
+    match result {
+        Ok(Some(bytes)) => Ok(Findings::ForeignTraffic { bytes }),
+        Ok(None) => Ok(Findings::Searched { found: search.found, complete: true }),
+        Err(Error::Cancelled) => Ok(Findings::Searched { found: search.found, complete: false }),
+        Err(error) => Err(error),
+    }
 }
 
-fn search(
-    master: &mut Master<'_>,
-    options: &FindOptions,
-    progress: &mut dyn FnMut(u64, u64, &Attempt),
-) -> Result<Findings, Error> {
-    // Through a device server every format would be the same one, and each would be found.
-    let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
-    let per_format = 32 + u64::from(options.one_encoder);
-    let total = 1 + per_format * formats.len() as u64;
-    progress(0, total, &Attempt::Listening);
-    let heard = master.overhear(LISTEN)?;
-    if !heard.is_empty() {
-        return Ok(Findings::ForeignTraffic { bytes: heard.len() });
-    }
-    let mut found = Vec::new();
-    if let Some(patience) = options.power_cycle {
-        progress(0, total, &Attempt::DefaultWindow);
-        found.extend(catch_default_window(master, patience, options.one_encoder)?);
-    }
-    let mut done = 1;
-    for format in formats {
-        master.set_format(format)?;
-        let found_before = found.len();
-        let broadcast = options.one_encoder.then_some(BROADCAST);
-        for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
-            progress(done, total, &Attempt::Probing { address, format });
-            done += 1;
-            if address == BROADCAST && found.len() > found_before {
-                continue;
+struct Search<'a> {
+    found: Vec<Found>,
+    watch: &'a mut dyn FnMut(News<'_>),
+}
+
+impl Search<'_> {
+    /// Gives the number of bytes that somebody else sent, where nothing was searched because of them.
+    fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
+        // Through a device server every format would be the same one, and each would be found.
+        let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
+        let per_format = 32 + u64::from(options.one_encoder);
+        let total = 1 + per_format * formats.len() as u64;
+        self.tell(0, total, &Attempt::Listening);
+        let heard = master.overhear(LISTEN)?;
+        if !heard.is_empty() {
+            return Ok(Some(heard.len()));
+        }
+        if let Some(patience) = options.power_cycle {
+            self.tell(0, total, &Attempt::DefaultWindow);
+            let hit = catch_default_window(master, patience, options.one_encoder)?;
+            self.add(hit);
+        }
+        let mut done = 1;
+        for format in formats {
+            master.set_format(format)?;
+            let found_before = self.found.len();
+            let broadcast = options.one_encoder.then_some(BROADCAST);
+            for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
+                self.tell(done, total, &Attempt::Probing { address, format });
+                done += 1;
+                if address == BROADCAST && self.found.len() > found_before {
+                    continue;
+                }
+                let hit = probe(master, address, format)?;
+                self.add(hit);
             }
-            let hit = probe(master, address, format)?.filter(|hit| !found.contains(hit));
-            found.extend(hit);
+        }
+        Ok(None)
+    }
+
+    fn tell(&mut self, done: u64, total: u64, attempt: &Attempt) {
+        (self.watch)(News::Trying { done, total, attempt });
+    }
+
+    fn add(&mut self, hit: Option<Found>) {
+        if let Some(hit) = hit.filter(|hit| !self.found.contains(hit)) {
+            (self.watch)(News::Found(&hit));
+            self.found.push(hit);
         }
     }
-    Ok(Findings::Searched(found))
 }
 
 /// The likely first: 9600 with each parity, then the other speeds.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::device::hiperface::check::Line;
-use crate::device::hiperface::find::{FindOptions, Findings};
+use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::write::{Interrupted, Written};
 use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions, Survey};
 use crate::profile::Consent;
@@ -193,6 +193,15 @@ pub struct SavedProfile {
     pub profile: HiperfaceProfile,
     /// Fields that could not be read, with the number of the code that guards them.
     pub locked: Vec<(u8, CodeNumber)>,
+}
+
+/// What a HIPERFACE encoder says on the way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// Status codes that replies announced.
+    Codes(Vec<StatusCode>),
+    /// An encoder that answered while one searched.
+    Found(Found),
 }
 
 /// What a HIPERFACE job gives.
