@@ -9,6 +9,7 @@ use jiff::civil::DateTime;
 use jiff::tz::TimeZone;
 
 use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_names::{Case, safe_name};
 use super::files::{create_folder, write_new};
 
 /// A file name's time: UTC, and without the colons that Windows forbids.
@@ -81,7 +82,7 @@ impl Backups {
 
     fn folder_of(&self, device: &str, serial_number: &str) -> PathBuf {
         // `device` is a word of the program's own, but a path out of the folder is none whoever makes it.
-        self.0.join(folder_name(device, Case::Kept)).join(folder_name(serial_number, Case::Told))
+        self.0.join(safe_name(device, Case::Kept)).join(safe_name(serial_number, Case::Told))
     }
 }
 
@@ -102,65 +103,10 @@ fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
     (file_name(&taken.strftime(TIME).to_string(), number) == name).then_some((taken, number))
 }
 
-/// Whether a folder's name has to differ where the texts differ only in upper and lower case, which Windows and macOS do
-/// not tell apart.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Case {
-    Kept,
-    Told,
-}
-
-/// A folder name for any text, different for different texts, on every system: letters, digits, `.`, `_` and `-` stand
-/// for themselves, every other byte is `%XX`. With [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each
-/// letter.
-fn folder_name(text: &str, case: Case) -> String {
-    if text.is_empty() {
-        return "%none".to_owned();
-    }
-    let reserved = is_reserved(text);
-    let last = text.len() - 1;
-    let mut name = String::new();
-    let mut cases = String::new();
-    for (at, byte) in text.bytes().enumerate() {
-        // A dot in front hides the folder, one at the end is lost on Windows, and `.` and `..` are no names at all.
-        let plain = match byte {
-            b'.' => at != 0 && at != last,
-            b'_' | b'-' => true,
-            _ => byte.is_ascii_alphanumeric() && !(reserved && at == 0),
-        };
-        if !plain {
-            name.push_str(&format!("%{byte:02X}"));
-            continue;
-        }
-        name.push(char::from(byte));
-        if byte.is_ascii_alphabetic() {
-            cases.push(if byte.is_ascii_lowercase() { 'l' } else { 'u' });
-        }
-    }
-    if case == Case::Told && cases.contains('l') {
-        name.push('%');
-        name.push_str(&cases);
-    }
-    name
-}
-
-/// Names that are devices on Windows, with any extension.
-fn is_reserved(text: &str) -> bool {
-    let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
-    match stem.as_str() {
-        "CON" | "PRN" | "AUX" | "NUL" => true,
-        _ => ["COM", "LPT"].iter().any(|port| {
-            stem.strip_prefix(port)
-                .is_some_and(|number| number.len() == 1 && number.bytes().all(|c| c.is_ascii_digit()))
-        }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::store::read_text;
-    use proptest::prelude::*;
 
     fn at(text: &str) -> Timestamp {
         text.parse().unwrap()
@@ -243,7 +189,7 @@ mod tests {
         ];
         let (root, backups) = backups();
         for (serial_number, expected) in cases {
-            assert_eq!(folder_name(serial_number, Case::Told), expected, "{serial_number:?}");
+            assert_eq!(safe_name(serial_number, Case::Told), expected, "{serial_number:?}");
             let path = backups.keep("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
             assert_eq!(path.parent(), Some(root.path().join("data/backups/hiperface").join(expected).as_path()));
             let listed = backups.list("hiperface", serial_number).unwrap();
@@ -261,39 +207,5 @@ mod tests {
         let error = backups.keep("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
         assert_eq!((error.task, error.problem), (FileTask::CreateFolder, FileProblem::NotFolder));
         assert!(backups.list("hiperface", "1").is_err());
-    }
-
-    /// The text of a folder's name, read without regard to case.
-    fn read_back(name: &str) -> Vec<u8> {
-        let name = name.to_ascii_uppercase();
-        if name == "%NONE" {
-            return Vec::new();
-        }
-        let (name, cases) = match name.rsplit_once('%') {
-            Some((name, cases)) if cases.starts_with(['L', 'U']) => (name, cases),
-            _ => (name.as_str(), ""),
-        };
-        let mut cases = cases.bytes();
-        let mut rest = name.as_bytes();
-        let mut text = Vec::new();
-        while let [byte, tail @ ..] = rest {
-            rest = tail;
-            if *byte == b'%' {
-                text.push(u8::from_str_radix(str::from_utf8(&rest[..2]).unwrap(), 16).unwrap());
-                rest = &rest[2..];
-            } else if byte.is_ascii_alphabetic() && cases.next() == Some(b'L') {
-                text.push(byte.to_ascii_lowercase());
-            } else {
-                text.push(*byte);
-            }
-        }
-        text
-    }
-
-    proptest! {
-        #[test]
-        fn different_serial_numbers_never_share_a_folder(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
-            prop_assert_eq!(read_back(&folder_name(&text, Case::Told)), text.as_bytes());
-        }
     }
 }

@@ -27,6 +27,8 @@ pub enum FileTask {
     List,
     /// A folder was made, with those above it.
     CreateFolder,
+    /// A file was removed.
+    Remove,
 }
 
 impl fmt::Display for FileTask {
@@ -36,6 +38,7 @@ impl fmt::Display for FileTask {
             FileTask::Write => "write",
             FileTask::List => "list",
             FileTask::CreateFolder => "create",
+            FileTask::Remove => "remove",
         })
     }
 }

@@ -1,8 +1,11 @@
-//! The program's own folders: backups and the logbook (data), device tables of the user's own (configuration).
+//! The program's own folders: backups, drafts, the logbook and the log (data), settings and device tables of the user's own
+//! (configuration).
 //! No folder is made before something is written into it, and no access code is ever written.
 
 mod backups;
+mod drafts;
 mod file_error;
+mod file_names;
 mod files;
 mod logbook;
 
@@ -11,6 +14,7 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 
 pub use backups::{Backup, Backups};
+pub use drafts::Drafts;
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use files::{MAX_TEXT, read_text, write_atomically};
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
@@ -66,6 +70,21 @@ impl Store {
         Backups::in_folder(self.data.join("backups"))
     }
 
+    /// What users have begun and not yet written.
+    pub fn drafts(&self) -> Drafts {
+        Drafts::in_folder(self.data.join("drafts"))
+    }
+
+    /// The file of the program's settings; it need not exist.
+    pub fn settings_path(&self) -> PathBuf {
+        self.config.join("settings.ron")
+    }
+
+    /// The file for the program's own messages; it need not exist.
+    pub fn log_path(&self) -> PathBuf {
+        self.data.join("encoder-studio.log")
+    }
+
     /// The file for [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
@@ -114,7 +133,10 @@ mod tests {
         let store = Store::at(root.path());
         assert_eq!(store.encoder_types(), Ok(EncoderTypes::built_in()));
         assert_eq!(store.backups().list("hiperface", "1"), Ok(Vec::new()));
-        assert!(store.logbook_path().starts_with(root.path()));
+        assert_eq!(store.drafts().load("hiperface", "1"), Ok(None));
+        let paths = [store.logbook_path(), store.log_path(), store.settings_path()];
+        let expected = ["data/logbook.sqlite", "data/encoder-studio.log", "config/settings.ron"];
+        assert_eq!(paths, expected.map(|path| root.path().join(path)));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
     }
 

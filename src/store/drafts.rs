@@ -1,0 +1,120 @@
+//! Drafts: what a user has begun and not yet written into a device, so that neither a crash nor a pulled cable takes it.
+//! One file each; what the text says is the caller's, and access codes are not to be in it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_names::{Case, safe_name};
+use super::files::{create_folder, read_text, write_atomically};
+
+const EXTENSION: &str = "ron";
+
+/// The folder of drafts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drafts(PathBuf);
+
+impl Drafts {
+    pub(super) fn in_folder(folder: PathBuf) -> Self {
+        Drafts(folder)
+    }
+
+    /// Writes a draft, `<device>/<key>.ron`, over the one before.
+    ///
+    /// # Errors
+    /// Where the folder cannot be made or the file cannot be written; then the one before is still there.
+    pub fn keep(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
+        create_folder(&self.folder_of(device))?;
+        write_atomically(&self.path_of(device, key), text.as_bytes())
+    }
+
+    /// Reads a draft; `None` where there is none.
+    ///
+    /// # Errors
+    /// Where there is one that cannot be read.
+    pub fn load(&self, device: &str, key: &str) -> Result<Option<String>, FileError> {
+        match read_text(&self.path_of(device, key)) {
+            Ok(text) => Ok(Some(text)),
+            Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Removes a draft; there need not be one.
+    ///
+    /// # Errors
+    /// Where it cannot be removed.
+    pub fn remove(&self, device: &str, key: &str) -> Result<(), FileError> {
+        let path = self.path_of(device, key);
+        match fs::remove_file(&path).map_err(FileProblem::from) {
+            Ok(()) | Err(FileProblem::NotFound) => Ok(()),
+            Err(problem) => Err(problem.of(FileTask::Remove, &path)),
+        }
+    }
+
+    fn folder_of(&self, device: &str) -> PathBuf {
+        self.0.join(safe_name(device, Case::Kept))
+    }
+
+    fn path_of(&self, device: &str, key: &str) -> PathBuf {
+        self.folder_of(device).join(format!("{}.{EXTENSION}", safe_name(key, Case::Told)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drafts() -> (tempfile::TempDir, Drafts) {
+        let root = tempfile::tempdir().unwrap();
+        let drafts = Drafts::in_folder(root.path().join("data/drafts"));
+        (root, drafts)
+    }
+
+    #[test]
+    fn a_draft_is_kept_replaced_and_removed() {
+        let (root, drafts) = drafts();
+        assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(None));
+        assert_eq!(drafts.remove("hiperface", "GB0450179"), Ok(()));
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0, "looking makes no folder");
+        for text in ["first, and longer", "second"] {
+            drafts.keep("hiperface", "GB0450179", text).unwrap();
+            assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(Some(text.to_owned())));
+        }
+        let folder = root.path().join("data/drafts/hiperface");
+        assert_eq!(read_text(&folder.join("GB0450179.ron")).unwrap(), "second");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+        drafts.remove("hiperface", "GB0450179").unwrap();
+        assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(None));
+        assert_eq!(drafts.remove("hiperface", "GB0450179"), Ok(()));
+    }
+
+    #[test]
+    fn every_key_has_a_draft_of_its_own_inside_the_folder() {
+        let (root, drafts) = drafts();
+        let keys = ["", "a", "A", ".", "..", "../x", "a/b", "NUL", "%none", "a.ron"];
+        for key in keys {
+            drafts.keep("hiperface", key, key).unwrap();
+        }
+        for key in keys {
+            assert_eq!(drafts.load("hiperface", key), Ok(Some(key.to_owned())), "{key:?}");
+        }
+        assert_eq!(fs::read_dir(root.path().join("data/drafts/hiperface")).unwrap().count(), keys.len());
+        drafts.keep("../..", "x", "x").unwrap();
+        assert!(root.path().join("data/drafts/%2E.%2F.%2E/x%l.ron").is_file());
+    }
+
+    #[test]
+    fn what_stands_in_the_way_is_told() {
+        let (root, drafts) = drafts();
+        let path = root.path().join("data/drafts/hiperface/1.ron");
+        fs::create_dir_all(&path).unwrap();
+        let task = |result: Result<(), FileError>| result.unwrap_err().task;
+        assert_eq!(task(drafts.load("hiperface", "1").map(drop)), FileTask::Read);
+        assert_eq!(task(drafts.keep("hiperface", "1", "x")), FileTask::Write);
+        assert_eq!(task(drafts.remove("hiperface", "1")), FileTask::Remove);
+        fs::remove_dir_all(root.path().join("data")).unwrap();
+        fs::write(root.path().join("data"), "x").unwrap();
+        assert_eq!(task(drafts.keep("hiperface", "1", "x")), FileTask::CreateFolder);
+    }
+}

@@ -1,0 +1,97 @@
+//! Names of folders and files made from texts that are not ours: serial numbers, names of items.
+
+/// Whether a name has to differ where the texts differ only in upper and lower case, which Windows and macOS do
+/// not tell apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Case {
+    /// They are told apart by more than their case.
+    Kept,
+    /// Nothing else need tell them apart.
+    Told,
+}
+
+/// A name of a folder, or of a file without its extension, for any text, different for different texts, on every system: letters, digits, `.`, `_` and `-` stand
+/// for themselves, every other byte is `%XX`. With [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each
+/// letter.
+pub(super) fn safe_name(text: &str, case: Case) -> String {
+    if text.is_empty() {
+        return "%none".to_owned();
+    }
+    let reserved = is_reserved(text);
+    let last = text.len() - 1;
+    let mut name = String::new();
+    let mut cases = String::new();
+    for (at, byte) in text.bytes().enumerate() {
+        // A dot in front hides the folder, one at the end is lost on Windows, and `.` and `..` are no names at all.
+        let plain = match byte {
+            b'.' => at != 0 && at != last,
+            b'_' | b'-' => true,
+            _ => byte.is_ascii_alphanumeric() && !(reserved && at == 0),
+        };
+        if !plain {
+            name.push_str(&format!("%{byte:02X}"));
+            continue;
+        }
+        name.push(char::from(byte));
+        if byte.is_ascii_alphabetic() {
+            cases.push(if byte.is_ascii_lowercase() { 'l' } else { 'u' });
+        }
+    }
+    if case == Case::Told && cases.contains('l') {
+        name.push('%');
+        name.push_str(&cases);
+    }
+    name
+}
+
+/// Names that are devices on Windows, with any extension.
+fn is_reserved(text: &str) -> bool {
+    let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
+    match stem.as_str() {
+        "CON" | "PRN" | "AUX" | "NUL" => true,
+        _ => ["COM", "LPT"].iter().any(|port| {
+            stem.strip_prefix(port)
+                .is_some_and(|number| number.len() == 1 && number.bytes().all(|c| c.is_ascii_digit()))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The text of a name, read without regard to case.
+    fn read_back(name: &str) -> Vec<u8> {
+        let name = name.to_ascii_uppercase();
+        if name == "%NONE" {
+            return Vec::new();
+        }
+        let (name, cases) = match name.rsplit_once('%') {
+            Some((name, cases)) if cases.starts_with(['L', 'U']) => (name, cases),
+            _ => (name.as_str(), ""),
+        };
+        let mut cases = cases.bytes();
+        let mut rest = name.as_bytes();
+        let mut text = Vec::new();
+        while let [byte, tail @ ..] = rest {
+            rest = tail;
+            if *byte == b'%' {
+                text.push(u8::from_str_radix(str::from_utf8(&rest[..2]).unwrap(), 16).unwrap());
+                rest = &rest[2..];
+            } else if byte.is_ascii_alphabetic() && cases.next() == Some(b'L') {
+                text.push(byte.to_ascii_lowercase());
+            } else {
+                text.push(*byte);
+            }
+        }
+        text
+    }
+
+    proptest! {
+        #[test]
+        fn different_texts_never_share_a_name(text in "(?s).{0,12}|[a-zA-Z.%]{0,6}|(?i:con|lpt1)[.a]?") {
+            prop_assert_eq!(read_back(&safe_name(&text, Case::Told)), text.as_bytes());
+        }
+    }
+}
