@@ -189,7 +189,10 @@ impl<D: Device> Worker<D> {
         // Each job has a wish to end of its own: an old one does not concern it, and none is taken back.
         let cancel = Cancel::default();
         self.live.next_job(cancel.clone());
-        self.orders.try_send(Order { id, job, cancel }).map_err(|_| SubmitError::Ended)?;
+        if self.orders.try_send(Order { id, job, cancel }).is_err() {
+            self.busy.store(false, Ordering::SeqCst);
+            return Err(SubmitError::Ended);
+        }
         self.live.interrupt_sample();
         Ok(id)
     }

@@ -136,13 +136,18 @@ fn a_field_left_without_its_protection_is_named_and_the_next_restore_protects_it
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
+/// What has answered until then is printed: the first format and address are those of this encoder.
 #[test]
 fn a_search_is_interrupted() {
     let bench = Bench::new();
-    let child = bench.program(&["find", "hiperface", "--link", "sim:?settings=0xE5&address=0x43"]).spawn().unwrap();
-    sleep(Duration::from_millis(1500));
-    signal(&child, "INT");
-    let ran = ended(child, Instant::now());
-    ran.fails(1, &["Cancelled"]);
-    assert!(ran.took < Duration::from_secs(5), "{ran:?}");
+    for (query, found) in [("settings=0xE5&address=0x43", false), ("address=0x40", true)] {
+        let link = format!("sim:?{query}");
+        let child = bench.program(&["find", "hiperface", "--link", &link]).spawn().unwrap();
+        sleep(Duration::from_millis(2000));
+        signal(&child, "INT");
+        let ran = ended(child, Instant::now());
+        assert_eq!(ran.out.contains("address 40h at 9600"), found, "{ran:?}");
+        assert!(ran.took < Duration::from_secs(5), "{ran:?}");
+        assert!(ran.status == Some(1) && ran.err.contains("Cancelled: the search was cut short"), "{ran:?}");
+    }
 }

@@ -26,7 +26,8 @@ pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Res
             show_found(output, &found)?;
             if !complete {
                 return Err(Failure::Failed(vec![
-                    "The search was cut short: there may be more encoders than those that answered.".to_owned(),
+                    "Cancelled: the search was cut short, there may be more encoders than those that answered."
+                        .to_owned(),
                 ]));
             }
             if found.is_empty() {
