@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A language of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Language {
-    /// English; the command line always speaks it.
+    /// English.
     English,
     /// German.
     German,
@@ -36,6 +36,16 @@ pub struct Texts(BTreeMap<String, Row>);
 struct Row {
     en: String,
     de: String,
+    /// English for the command line; empty where it is that of the window.
+    #[serde(default)]
+    terminal: String,
+}
+
+/// Where a text is said.
+#[derive(Clone, Copy)]
+enum Place {
+    Window(Language),
+    Terminal,
 }
 
 static BUILT_IN: LazyLock<Texts> = LazyLock::new(|| {
@@ -68,12 +78,22 @@ impl Text {
         self.id
     }
 
-    /// The words in a language.
+    /// The words in the window, with hints for somebody in front of it.
     pub fn words(&self, language: Language) -> String {
+        self.said(Place::Window(language))
+    }
+
+    /// The words on the command line, which always speaks English, with hints for its users.
+    pub fn terminal(&self) -> String {
+        self.said(Place::Terminal)
+    }
+
+    fn said(&self, place: Place) -> String {
         let Some(row) = BUILT_IN.0.get(self.id) else { return self.id.to_owned() };
-        let template = match language {
-            Language::English => &row.en,
-            Language::German => &row.de,
+        let template = match place {
+            Place::Window(Language::German) => &row.de,
+            Place::Terminal if !row.terminal.is_empty() => &row.terminal,
+            Place::Window(Language::English) | Place::Terminal => &row.en,
         };
         // One pass over the template: an argument may contain braces of its own.
         let mut words = String::new();
@@ -83,7 +103,7 @@ impl Text {
             let Some((name, behind)) = after.split_once('}') else { break };
             match self.arguments.iter().find(|(own, _)| *own == name) {
                 Some((_, Argument::Words(value))) => words.push_str(value),
-                Some((_, Argument::Text(text))) => words.push_str(&text.words(language)),
+                Some((_, Argument::Text(text))) => words.push_str(&text.said(place)),
                 None => words.push_str(name),
             }
             rest = behind;
@@ -127,6 +147,7 @@ mod tests {
         for (id, row) in &table {
             assert!(!row.en.is_empty() && !row.de.is_empty(), "{id}");
             assert_eq!(places(&row.en), places(&row.de), "{id}");
+            assert!(places(&row.terminal).iter().all(|place| places(&row.en).contains(place)), "{id}");
         }
     }
 
@@ -135,5 +156,24 @@ mod tests {
         let text = Text::new("link.busy").with("target", "{target}");
         assert!(text.words(Language::English).starts_with("{target} is in use"));
         assert!(text.words(Language::German).starts_with("{target} wird von"));
+    }
+
+    #[test]
+    fn the_command_line_has_hints_of_its_own() {
+        let cause = Text::new("link.not_found").with("target", "COM3");
+        let text = Text::new("encoder.unclear").with("command", "reset").with_text("cause", cause);
+        assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
+        assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
+        assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
+    }
+
+    #[test]
+    fn the_window_says_nothing_about_the_command_line() {
+        let table: BTreeMap<String, Row> = ron::from_str(Texts::SOURCE).unwrap();
+        for (id, row) in &table {
+            for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {
+                assert!(!row.en.contains(hint) && !row.de.contains(hint), "{id}: {hint}");
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, stderr, stdin};
 
 use serde_json::{Value as Json, json};
 
-use crate::app::{Language, explain};
+use crate::app::explain;
 use crate::bits::{hex, hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
 use crate::cli::output::{Lines, Output, say};
@@ -171,7 +171,7 @@ pub(in crate::cli) fn commit(
     match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
         HiperfaceOutput::Committed(committed) => {
             if let Some(why) = &committed.logbook_warning {
-                output.remark(&explain::logbook(why).words(Language::English));
+                output.remark(&explain::logbook(why).terminal());
             }
             Ok(committed)
         }
