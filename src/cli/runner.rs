@@ -134,8 +134,10 @@ impl Runner {
 impl Ended {
     pub(super) fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => Failure::Failed(explain::job(&error).iter().map(|text| text.terminal()).collect()),
-            Ended::Interrupted => failed(&explain::encoder(&Error::Cancelled)),
+            Ended::Job(error) => {
+                Failure::Failed(explain::hiperface::job(&error).iter().map(|text| text.terminal()).collect())
+            }
+            Ended::Interrupted => failed(&explain::hiperface::encoder(&Error::Cancelled)),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
