@@ -24,7 +24,21 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Argument {
     Words(String),
+    /// As English writes it, with a point.
+    Number(String),
     Text(Text),
+    List(Vec<Text>),
+}
+
+impl Argument {
+    fn said(&self, place: Place) -> String {
+        match self {
+            Argument::Number(number) if matches!(place, Place::Window(Language::German)) => number.replace('.', ","),
+            Argument::Words(words) | Argument::Number(words) => words.clone(),
+            Argument::Text(text) => text.said(place),
+            Argument::List(texts) => texts.iter().map(|text| text.said(place)).collect::<Vec<_>>().join(", "),
+        }
+    }
 }
 
 /// The table.
@@ -73,6 +87,20 @@ impl Text {
         self
     }
 
+    /// With a number of so many decimals for `{name}`: 1.5 in English, 1,5 in German.
+    #[must_use]
+    pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
+        self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
+        self
+    }
+
+    /// With other texts for `{name}`, one after the other with commas.
+    #[must_use]
+    pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
+        self.arguments.push((name, Argument::List(texts.into_iter().collect())));
+        self
+    }
+
     /// The text's name in the table.
     pub fn id(&self) -> &'static str {
         self.id
@@ -102,8 +130,7 @@ impl Text {
             words.push_str(before);
             let Some((name, behind)) = after.split_once('}') else { break };
             match self.arguments.iter().find(|(own, _)| *own == name) {
-                Some((_, Argument::Words(value))) => words.push_str(value),
-                Some((_, Argument::Text(text))) => words.push_str(&text.said(place)),
+                Some((_, argument)) => words.push_str(&argument.said(place)),
                 None => words.push_str(name),
             }
             rest = behind;
@@ -156,6 +183,17 @@ mod tests {
         let text = Text::new("link.busy").with("target", "{target}");
         assert!(text.words(Language::English).starts_with("{target} is in use"));
         assert!(text.words(Language::German).starts_with("{target} wird von"));
+    }
+
+    #[test]
+    fn numbers_and_lists_are_said_in_the_language() {
+        let text = Text::new("link.busy").with_number("target", 1.25, 1);
+        assert!(text.words(Language::English).starts_with("1.2 is"));
+        assert!(text.words(Language::German).starts_with("1,2 wird"));
+        assert!(text.terminal().starts_with("1.2 is"));
+        let list = [Text::new("status.code_09"), Text::new("status.code_0a")];
+        let text = Text::new("encoder.rejected").with("command", "reset").with_list("codes", list);
+        assert!(text.words(Language::German).ends_with("abgelehnt: Paritätsfehler, Prüfsummenfehler."));
     }
 
     #[test]

@@ -1,6 +1,10 @@
-//! Errors of jobs with a HIPERFACE encoder in words.
+//! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
+
+mod words;
 
 use std::path::Path;
+
+pub use words::{status, status_with_number};
 
 use super::{file, link};
 use crate::app::Text;
@@ -59,8 +63,8 @@ pub fn encoder(error: &Error) -> Text {
         Error::Rejected { command, codes } => {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
-            let words: Vec<String> = codes.iter().map(ToString::to_string).collect();
-            Text::new(id).with("command", command.row().name).with("codes", words.join(", "))
+            let codes = codes.iter().copied().map(status_with_number);
+            Text::new(id).with("command", command.row().name).with_list("codes", codes)
         }
         Error::Unclear { command, cause } => {
             Text::new("encoder.unclear").with("command", command.row().name).with_text("cause", encoder(cause))
