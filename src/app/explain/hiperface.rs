@@ -1,10 +1,15 @@
 //! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
 
+mod check;
 mod words;
 
 use std::path::Path;
 
-pub use words::{status, status_with_number};
+pub use check::{finding, step, verdict};
+pub use words::{
+    field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,
+    status_with_number,
+};
 
 use super::{file, link};
 use crate::app::Text;

@@ -94,3 +94,8 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
 pub fn logbook(why: &str) -> Text {
     Text::new("write.logbook").with("why", why)
 }
+
+/// What is the same in every language: a name, a number, bytes.
+pub fn plain(words: impl ToString) -> Text {
+    Text::new("plain.words").with("words", words)
+}
