@@ -1,11 +1,13 @@
 //! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
 
 mod check;
+mod op;
 mod words;
 
 use std::path::Path;
 
 pub use check::{finding, step, verdict};
+pub use op::{OpWords, op};
 pub use words::{
     field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,
     status_with_number,
