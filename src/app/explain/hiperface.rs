@@ -1,12 +1,14 @@
 //! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
 
 mod check;
+mod damage;
 mod op;
 mod words;
 
 use std::path::Path;
 
 pub use check::{finding, step, verdict};
+pub use damage::damage;
 pub use op::{OpWords, op};
 pub use words::{
     field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,
@@ -64,7 +66,8 @@ pub fn encoder(error: &Error) -> Text {
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
-            Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries).with("why", cause)
+            let text = Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries);
+            text.with_text("why", damage(cause))
         }
         Error::NeverSilent => Text::new("encoder.never_silent"),
         Error::Rejected { command, codes } => {
