@@ -1,6 +1,7 @@
-//! What the program knows and can do, without drawing: the words for a person, the user's edits beside an encoder's
-//! memory, what is remembered.
+//! What the program knows and can do, without drawing: the words for a person, the form to connect with, the user's
+//! edits beside an encoder's memory, what is remembered.
 
+pub mod connect;
 pub mod explain;
 pub mod hiperface;
 mod look;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A language of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Language {
-    /// English; the command line always speaks it.
+    /// English.
     English,
     /// German.
     German,
@@ -24,7 +24,21 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Argument {
     Words(String),
+    /// As English writes it, with a point.
+    Number(String),
     Text(Text),
+    List(Vec<Text>),
+}
+
+impl Argument {
+    fn said(&self, place: Place) -> String {
+        match self {
+            Argument::Number(number) if matches!(place, Place::Window(Language::German)) => number.replace('.', ","),
+            Argument::Words(words) | Argument::Number(words) => words.clone(),
+            Argument::Text(text) => text.said(place),
+            Argument::List(texts) => texts.iter().map(|text| text.said(place)).collect::<Vec<_>>().join(", "),
+        }
+    }
 }
 
 /// The table.
@@ -36,6 +50,16 @@ pub struct Texts(BTreeMap<String, Row>);
 struct Row {
     en: String,
     de: String,
+    /// English for the command line; empty where it is that of the window.
+    #[serde(default)]
+    terminal: String,
+}
+
+/// Where a text is said.
+#[derive(Clone, Copy)]
+enum Place {
+    Window(Language),
+    Terminal,
 }
 
 static BUILT_IN: LazyLock<Texts> = LazyLock::new(|| {
@@ -63,17 +87,41 @@ impl Text {
         self
     }
 
+    /// With a number of so many decimals for `{name}`: 1.5 in English, 1,5 in German.
+    #[must_use]
+    pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
+        self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
+        self
+    }
+
+    /// With other texts for `{name}`, one after the other with commas.
+    #[must_use]
+    pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
+        self.arguments.push((name, Argument::List(texts.into_iter().collect())));
+        self
+    }
+
     /// The text's name in the table.
     pub fn id(&self) -> &'static str {
         self.id
     }
 
-    /// The words in a language.
+    /// The words in the window, with hints for somebody in front of it.
     pub fn words(&self, language: Language) -> String {
+        self.said(Place::Window(language))
+    }
+
+    /// The words on the command line, which always speaks English, with hints for its users.
+    pub fn terminal(&self) -> String {
+        self.said(Place::Terminal)
+    }
+
+    fn said(&self, place: Place) -> String {
         let Some(row) = BUILT_IN.0.get(self.id) else { return self.id.to_owned() };
-        let template = match language {
-            Language::English => &row.en,
-            Language::German => &row.de,
+        let template = match place {
+            Place::Window(Language::German) => &row.de,
+            Place::Terminal if !row.terminal.is_empty() => &row.terminal,
+            Place::Window(Language::English) | Place::Terminal => &row.en,
         };
         // One pass over the template: an argument may contain braces of its own.
         let mut words = String::new();
@@ -82,8 +130,7 @@ impl Text {
             words.push_str(before);
             let Some((name, behind)) = after.split_once('}') else { break };
             match self.arguments.iter().find(|(own, _)| *own == name) {
-                Some((_, Argument::Words(value))) => words.push_str(value),
-                Some((_, Argument::Text(text))) => words.push_str(&text.words(language)),
+                Some((_, argument)) => words.push_str(&argument.said(place)),
                 None => words.push_str(name),
             }
             rest = behind;
@@ -127,6 +174,7 @@ mod tests {
         for (id, row) in &table {
             assert!(!row.en.is_empty() && !row.de.is_empty(), "{id}");
             assert_eq!(places(&row.en), places(&row.de), "{id}");
+            assert!(places(&row.terminal).iter().all(|place| places(&row.en).contains(place)), "{id}");
         }
     }
 
@@ -135,5 +183,35 @@ mod tests {
         let text = Text::new("link.busy").with("target", "{target}");
         assert!(text.words(Language::English).starts_with("{target} is in use"));
         assert!(text.words(Language::German).starts_with("{target} wird von"));
+    }
+
+    #[test]
+    fn numbers_and_lists_are_said_in_the_language() {
+        let text = Text::new("link.busy").with_number("target", 1.25, 1);
+        assert!(text.words(Language::English).starts_with("1.2 is"));
+        assert!(text.words(Language::German).starts_with("1,2 wird"));
+        assert!(text.terminal().starts_with("1.2 is"));
+        let list = [Text::new("status.code_09"), Text::new("status.code_0a")];
+        let text = Text::new("encoder.rejected").with("command", "reset").with_list("codes", list);
+        assert!(text.words(Language::German).ends_with("abgelehnt: Paritätsfehler, Prüfsummenfehler."));
+    }
+
+    #[test]
+    fn the_command_line_has_hints_of_its_own() {
+        let cause = Text::new("link.not_found").with("target", "COM3");
+        let text = Text::new("encoder.unclear").with("command", "reset").with_text("cause", cause);
+        assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
+        assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
+        assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
+    }
+
+    #[test]
+    fn the_window_says_nothing_about_the_command_line() {
+        let table: BTreeMap<String, Row> = ron::from_str(Texts::SOURCE).unwrap();
+        for (id, row) in &table {
+            for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {
+                assert!(!row.en.contains(hint) && !row.de.contains(hint), "{id}: {hint}");
+            }
+        }
     }
 }

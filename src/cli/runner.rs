@@ -13,8 +13,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::args::{Code, Common};
 use super::output::say;
 use super::{Failure, Result};
+use crate::app::Text;
 use crate::app::explain;
-use crate::app::{Language, Text};
 use crate::device::hiperface::Error;
 use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
@@ -55,7 +55,7 @@ impl Runner {
         let codes = codes(common)?;
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = open(url, store).map_err(|error| match error {
-            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).words(Language::English)),
+            OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
             error => failed(&explain::open(&error)),
         })?;
         for Code { number, code } in codes {
@@ -134,9 +134,9 @@ impl Ended {
     pub(super) fn into_failure(self) -> Failure {
         match self {
             Ended::Job(error) => {
-                Failure::Failed(explain::job(&error).iter().map(|text| text.words(Language::English)).collect())
+                Failure::Failed(explain::hiperface::job(&error).iter().map(|text| text.terminal()).collect())
             }
-            Ended::Interrupted => failed(&explain::encoder(&Error::Cancelled)),
+            Ended::Interrupted => failed(&explain::hiperface::encoder(&Error::Cancelled)),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
@@ -145,7 +145,7 @@ impl Ended {
 
 /// A failure with one text.
 pub(super) fn failed(text: &Text) -> Failure {
-    Failure::Failed(vec![text.words(Language::English)])
+    Failure::Failed(vec![text.terminal()])
 }
 
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.

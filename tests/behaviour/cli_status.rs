@@ -70,3 +70,28 @@ fn codes_met_on_the_way_are_named_and_the_value_is_printed() {
     assert_eq!(ran.json()["value"], json!(0));
     assert!(ran.err.contains("1Dh") && ran.err.contains("06h"), "{ran:?}");
 }
+
+#[test]
+fn the_check_gives_a_verdict_a_line() {
+    let bench = Bench::new();
+    let check = ["do", "hiperface", "check", "--link"];
+    let good = bench.run(&[&check[..], &["sim:", "--json"]].concat()).json();
+    let steps = json!([
+        {"step": "status", "verdict": "good", "findings": []},
+        {"step": "identity", "verdict": "good", "findings": ["SKM36", "GB0450179"]},
+        {"step": "position", "verdict": "good", "findings": ["turn 224, 116.807°"]},
+        {"step": "data fields", "verdict": "good", "findings": ["0: 32 bytes, writable, code 0, code required"]},
+    ]);
+    assert_eq!((&good["ok"], &good["steps"]), (&json!(true), &steps));
+    let locked = bench.run(&[&check[..], &["sim:?type=0x11&codes=0:11"]].concat());
+    let lines: Vec<&str> = locked.out.lines().collect();
+    assert_eq!(
+        lines,
+        [
+            "status       good",
+            "identity     attention  unknown type; GB0450179",
+            "position     good       918833",
+            "data fields  attention  0: 32 bytes, writable, code 0, code required, the access code 0 is not known",
+        ]
+    );
+}

@@ -4,11 +4,12 @@ use serde_json::json;
 
 use super::inspect::codes_text;
 use super::write::{change_and_show, out_of_range, parse_number, settings};
+use crate::app::explain::hiperface::{finding, step, verdict};
 use crate::cli::args::{Action, Common, Do, parse_code};
 use crate::cli::output::{Lines, Output};
 use crate::cli::runner::{Runner, unexpected};
 use crate::cli::{Done, Failure, Result};
-use crate::device::hiperface::check::{Line, Step, Verdict};
+use crate::device::hiperface::check::{Line, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
@@ -140,7 +141,10 @@ fn check(common: &Common, output: &Output, restart: bool) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let list: Vec<_> = lines
         .iter()
-        .map(|line| json!({"step": step(line.step), "verdict": verdict(line.verdict), "findings": line.findings}))
+        .map(|line| {
+            let (step, verdict) = (step(line.step).terminal(), verdict(line.verdict).terminal());
+            json!({"step": step, "verdict": verdict, "findings": findings(line)})
+        })
         .collect();
     output.show(&json!({"done": "check", "ok": good, "steps": list}), &check_text(&lines))?;
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
@@ -149,26 +153,12 @@ fn check(common: &Common, output: &Output, restart: bool) -> Result {
 fn check_text(lines: &[Line]) -> String {
     let mut text = Lines::default();
     for line in lines {
-        text.add(step(line.step), format!("{:9}  {}", verdict(line.verdict), line.findings.join("; ")).trim_end());
+        let words = format!("{:9}  {}", verdict(line.verdict).terminal(), findings(line).join("; "));
+        text.add(step(line.step).terminal(), words.trim_end());
     }
     text.text()
 }
 
-fn step(step: Step) -> &'static str {
-    match step {
-        Step::Restart => "restart",
-        Step::Status => "status",
-        Step::Identity => "identity",
-        Step::Position => "position",
-        Step::Limits => "limits",
-        Step::DataFields => "data fields",
-    }
-}
-
-fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Good => "good",
-        Verdict::Attention => "attention",
-        Verdict::Bad => "bad",
-    }
+fn findings(line: &Line) -> Vec<String> {
+    line.findings.iter().map(|found| finding(found).terminal()).collect()
 }

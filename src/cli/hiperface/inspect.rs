@@ -227,7 +227,7 @@ fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
 }
 
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
-    output.remark(&explain::job(error).iter().map(|t| t.words(crate::app::Language::English)).collect::<String>());
+    output.remark(&explain::hiperface::job(error).iter().map(|text| text.terminal()).collect::<String>());
     let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
     output.show(&json, "no position\n")
 }

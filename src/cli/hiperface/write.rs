@@ -4,8 +4,8 @@ use std::io::{IsTerminal, stderr, stdin};
 
 use serde_json::{Value as Json, json};
 
-use crate::app::{Language, explain};
-use crate::bits::{hex, hex_compact, parse_hex};
+use crate::app::explain;
+use crate::bits::{hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
 use crate::cli::output::{Lines, Output, say};
 use crate::cli::runner::{Runner, unexpected};
@@ -171,7 +171,7 @@ pub(in crate::cli) fn commit(
     match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
         HiperfaceOutput::Committed(committed) => {
             if let Some(why) = &committed.logbook_warning {
-                output.remark(&explain::logbook(why).words(Language::English));
+                output.remark(&explain::logbook(why).terminal());
             }
             Ok(committed)
         }
@@ -231,17 +231,16 @@ pub(in crate::cli) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
+/// Status and settings with their bytes, which `status:N` and `settings` take; the rest as everybody is told it.
 fn change_words(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {
             (from.map_or_else(|| "not there".to_owned(), |from| format!("{from:?}")), format!("{to:?}"))
         }
-        Op::Store { old, new, .. } => (old.as_ref().map_or_else(|| "new field".to_owned(), |old| hex(old)), hex(new)),
-        Op::ChangeCode { .. } => ("**".to_owned(), "**".to_owned()),
-        Op::SetPosition { from, to, .. } => (from.to_string(), to.to_string()),
-        Op::SetAddress { from, to } => (format!("{from:02X}h"), to.to_string()),
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
-        Op::ClearCounter { from } => (from.to_string(), "0".to_owned()),
-        Op::IncrementCounter { from } => (from.to_string(), ((from + 1) & 0x00FF_FFFF).to_string()),
+        op => {
+            let words = explain::hiperface::op(op);
+            (words.old.terminal(), words.new.terminal())
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
 
 use super::{Error, Identity, Master, identify, read_analogue, read_field, read_position, read_status, reset};
-use crate::protocol::hiperface::{CodeNumber, EncoderTypes, StatusCode};
+use crate::protocol::hiperface::{DataFieldStatus, EncoderTypes, Position, StatusCode};
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,52 @@ pub struct Line {
     /// How it ended.
     pub verdict: Verdict,
     /// What was found: values and codes.
-    pub findings: Vec<String>,
+    pub findings: Vec<Finding>,
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// A status code.
+    Code(StatusCode),
+    /// The position.
+    Position(Position),
+    /// The position word, where periods and turns are not known.
+    RawPosition(u32),
+    /// The encoder's name.
+    Name(String),
+    /// Its serial number.
+    SerialNumber(String),
+    /// An analogue value and what it should not exceed.
+    Limit {
+        /// The channel.
+        channel: u8,
+        /// Its value.
+        value: i16,
+        /// The limit of the extended label.
+        limit: i16,
+    },
+    /// A data field that can be read.
+    Field {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// A data field whose access code, which its status names, is not known.
+    FieldLocked {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// A data field that the encoder refuses.
+    FieldRefused {
+        /// Its number.
+        number: u8,
+        /// Why.
+        codes: Vec<StatusCode>,
+    },
 }
 
 /// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the line fails.
@@ -55,10 +100,11 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
     } else {
         read_status(master)?
     };
-    lines.push(Line { step: Step::Status, verdict: verdict(&codes), findings: words(&codes) });
+    lines.push(Line { step: Step::Status, verdict: verdict(&codes), findings: found(&codes) });
     let identity = identify(master, types)?;
     let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
-    let findings = vec![identity.name.clone(), identity.serial.serial_number.clone()];
+    let findings =
+        vec![Finding::Name(identity.name.clone()), Finding::SerialNumber(identity.serial.serial_number.clone())];
     lines.push(Line { step: Step::Identity, verdict: known, findings });
     lines.push(check_position(master, &identity)?);
     lines.extend(check_limits(master, &identity)?);
@@ -71,14 +117,14 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, 
     match refusal(read_position(master, identity.geometry))? {
         Ok(reading) => {
             let mut findings = vec![match reading.position {
-                Some(position) => position.to_string(),
-                None => reading.raw.to_string(),
+                Some(position) => Finding::Position(position),
+                None => Finding::RawPosition(reading.raw),
             }];
-            findings.extend(words(&reading.codes));
+            findings.extend(found(&reading.codes));
             let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
             Ok(Line { step, verdict, findings })
         }
-        Err(codes) => Ok(Line { step, verdict: Verdict::Bad, findings: words(&codes) }),
+        Err(codes) => Ok(Line { step, verdict: Verdict::Bad, findings: found(&codes) }),
     }
 }
 
@@ -92,7 +138,7 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<L
             if value > limit {
                 worst = Verdict::Attention;
             }
-            findings.push(format!("{channel:02X}h: {value} ≤ {limit}"));
+            findings.push(Finding::Limit { channel, value, limit });
         }
     }
     Ok((!findings.is_empty()).then_some(Line { step: Step::Limits, verdict: worst, findings }))
@@ -103,18 +149,13 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Er
     let mut verdict = Verdict::Good;
     for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
         match refusal(read_field(master, number))? {
-            Ok(field) if field.bytes.is_some() => findings.push(format!("{number}: {}", field.status)),
+            Ok(field) if field.bytes.is_some() => findings.push(Finding::Field { number, status: field.status }),
             Ok(field) => {
-                let code: CodeNumber = field.status.code();
-                findings.push(format!(
-                    "{number}: {}, {}",
-                    field.status,
-                    Error::CodeUnknown { field: number, number: code }
-                ));
+                findings.push(Finding::FieldLocked { number, status: field.status });
                 verdict = Verdict::Attention;
             }
             Err(codes) => {
-                findings.push(format!("{number}: {}", words(&codes).join(", ")));
+                findings.push(Finding::FieldRefused { number, codes });
                 verdict = Verdict::Bad;
             }
         }
@@ -141,6 +182,6 @@ fn verdict(codes: &[StatusCode]) -> Verdict {
     }
 }
 
-fn words(codes: &[StatusCode]) -> Vec<String> {
-    codes.iter().map(ToString::to_string).collect()
+fn found(codes: &[StatusCode]) -> Vec<Finding> {
+    codes.iter().copied().map(Finding::Code).collect()
 }

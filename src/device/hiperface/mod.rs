@@ -16,7 +16,7 @@ mod station;
 mod survey;
 pub mod write;
 
-pub use error::Error;
+pub use error::{Damage, Error};
 pub use fields::{read_all_fields, read_field, read_field_status, read_range};
 pub use identify::{Identity, identify, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;

@@ -1,16 +1,26 @@
-//! Errors in words for a person: what happened, and what to do. The one place where it is done.
+//! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
+
+mod check;
+mod damage;
+mod op;
+mod words;
 
 use std::path::Path;
 
-use super::Text;
+pub use check::{finding, step, verdict};
+pub use damage::damage;
+pub use op::{OpWords, op};
+pub use words::{
+    field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,
+    status_with_number,
+};
+
+use super::{file, link};
+use crate::app::Text;
 use crate::device::hiperface::Error;
 use crate::device::hiperface::write::Interrupted;
-use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::ProfileError;
 use crate::profile::hiperface::PlanError;
 use crate::protocol::hiperface::StatusCode;
-use crate::store::{FileError, FileProblem, StoreError};
-use crate::worker::OpenError;
 use crate::worker::hiperface::JobError;
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
@@ -26,7 +36,8 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) -> Vec<Text> {
+/// A write that was cut off: how far it came, and where the state before is.
+pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) -> Vec<Text> {
     let done = interrupted.done.ops;
     let mut texts = vec![match &interrupted.cause {
         Error::Cancelled => Text::new("write.cancelled").with("done", done).with("planned", planned),
@@ -55,14 +66,15 @@ pub fn encoder(error: &Error) -> Text {
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
-            Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries).with("why", cause)
+            let text = Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries);
+            text.with_text("why", damage(cause))
         }
         Error::NeverSilent => Text::new("encoder.never_silent"),
         Error::Rejected { command, codes } => {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
-            let words: Vec<String> = codes.iter().map(ToString::to_string).collect();
-            Text::new(id).with("command", command.row().name).with("codes", words.join(", "))
+            let codes = codes.iter().copied().map(status_with_number);
+            Text::new(id).with("command", command.row().name).with_list("codes", codes)
         }
         Error::Unclear { command, cause } => {
             Text::new("encoder.unclear").with("command", command.row().name).with_text("cause", encoder(cause))
@@ -125,88 +137,4 @@ fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
 
 fn code_unknown(field: u8, number: impl ToString) -> Text {
     Text::new("encoder.code_unknown").with("field", field).with("number", number)
-}
-
-/// A wire.
-pub fn link(error: &LinkError) -> Text {
-    let target = &error.target;
-    match &error.kind {
-        LinkErrorKind::NotFound if target.contains(':') && !cfg!(windows) => {
-            Text::new("link.host_not_found").with("target", target)
-        }
-        LinkErrorKind::NotFound => Text::new("link.not_found").with("target", target),
-        LinkErrorKind::Permission { group: Some(group) } => {
-            Text::new("link.permission_group").with("target", target).with("group", group)
-        }
-        LinkErrorKind::Permission { group: None } => Text::new("link.permission").with("target", target),
-        LinkErrorKind::Busy => Text::new("link.busy").with("target", target),
-        LinkErrorKind::NotAPort => Text::new("link.not_a_port").with("target", target),
-        LinkErrorKind::Unreachable(why) => Text::new("link.unreachable").with("target", target).with("why", why),
-        LinkErrorKind::Lost => Text::new("link.lost").with("target", target),
-        LinkErrorKind::Format(format) => Text::new("link.format").with("target", target).with("format", format),
-        LinkErrorKind::NotRecorded(request) => {
-            Text::new("link.not_recorded").with("target", target).with("request", request)
-        }
-        LinkErrorKind::Other(why) => Text::new("link.other").with("target", target).with("why", why),
-    }
-}
-
-/// A link that cannot be opened.
-pub fn open(error: &OpenError) -> Text {
-    match error {
-        OpenError::Url(why) => Text::new("link.url").with("why", why),
-        OpenError::Sim(why) => Text::new("link.url").with("why", why),
-        OpenError::Link(error) => link(error),
-        OpenError::File(error) => file(error),
-        OpenError::Recording { path, cause } => Text::new("link.recording").with("path", path).with("why", cause),
-        OpenError::Store(error) => store(error),
-    }
-}
-
-/// A file.
-pub fn file(error: &FileError) -> Text {
-    let path = error.path.display();
-    match &error.problem {
-        FileProblem::NotFound => Text::new("file.not_found").with("path", path),
-        FileProblem::NoFolder => Text::new("file.no_folder").with("path", path),
-        FileProblem::NotFolder => Text::new("file.not_a_folder").with("path", path),
-        FileProblem::IsFolder => Text::new("file.is_folder").with("path", path),
-        FileProblem::Exists => Text::new("file.exists").with("path", path),
-        FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
-        FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),
-        FileProblem::DiskFull => Text::new("file.disk_full").with("path", path),
-        FileProblem::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
-        FileProblem::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
-        FileProblem::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),
-    }
-}
-
-/// The program's folders.
-pub fn store(error: &StoreError) -> Text {
-    match error {
-        StoreError::NoHome => Text::new("store.no_home"),
-        StoreError::File(error) => file(error),
-        StoreError::EncoderTypes { path, cause } => {
-            Text::new("store.encoder_types").with("path", path.display()).with("why", cause)
-        }
-    }
-}
-
-/// A profile in a file.
-pub fn profile(path: &Path, error: &ProfileError) -> Text {
-    let path = path.display();
-    match error {
-        ProfileError::Schema { found, known } => {
-            Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
-        }
-        ProfileError::Device(found) => {
-            Text::new("profile.device").with("path", path).with("found", found).with("known", "hiperface")
-        }
-        error => Text::new("profile.invalid").with("path", path).with("why", error),
-    }
-}
-
-/// What the logbook could not take.
-pub fn logbook(why: &str) -> Text {
-    Text::new("write.logbook").with("why", why)
 }

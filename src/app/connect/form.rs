@@ -1,0 +1,309 @@
+//! What a person fills in to connect, and the link it stands for. Nothing is opened here, and what a value may be is
+//! asked of those who use it: the station and the virtual encoder.
+
+use std::net::Ipv6Addr;
+use std::num::NonZeroU16;
+use std::time::Duration;
+
+use crate::app::Text;
+use crate::device::hiperface::{Echo, PARAMETERS, Station};
+use crate::link::{LinkUrl, Query, Scheme, UrlError};
+use crate::protocol::hiperface::{BROADCAST, DeviceAddress};
+use crate::sim::hiperface::{Config, ConfigError, MODELS};
+use crate::units::{Baud, CharacterFormat, Parity};
+
+/// What is to be connected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LinkKind {
+    /// The virtual encoder in this program.
+    #[default]
+    Virtual,
+    /// A serial port.
+    Serial,
+    /// A serial device server.
+    Tcp,
+    /// A recorded trace.
+    Replay,
+}
+
+/// The entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry
+/// stands for what is usual.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkForm {
+    /// What is to be connected.
+    pub kind: LinkKind,
+    /// Serial port.
+    pub port: String,
+    /// Name or address of a device server.
+    pub host: String,
+    /// Its TCP port.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Speed.
+    pub baud: Baud,
+    /// Parity.
+    pub parity: Parity,
+    /// `40`, `0x40` or `40h`, always hexadecimal; or `broadcast`.
+    pub address: String,
+    /// Whether the adapter gives our own bytes back; unknown: find out.
+    pub echo: Echo,
+    /// The encoder's time-out is 44 bits, else 11.
+    pub long_timeout: bool,
+    /// Milliseconds that a reply may come later than the protocol's worst case.
+    pub margin: String,
+    /// Periods in a revolution, for a type that is not in the table.
+    pub periods: String,
+    /// Turns, for a type that is not in the table.
+    pub turns: String,
+    /// Which virtual encoder.
+    pub model: String,
+    /// Its speed in revolutions a minute.
+    pub rpm: String,
+    /// What goes wrong with it on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry, or a value that their entry cannot show.
+    pub rest: Vec<(String, String)>,
+}
+
+const BROADCAST_WORD: &str = "broadcast";
+
+impl Default for LinkForm {
+    fn default() -> Self {
+        let [model, ..] = MODELS;
+        LinkForm {
+            kind: LinkKind::default(),
+            port: String::new(),
+            host: String::new(),
+            tcp_port: String::new(),
+            file: String::new(),
+            baud: CharacterFormat::FACTORY.baud,
+            parity: CharacterFormat::FACTORY.parity,
+            address: address_words(DeviceAddress::FACTORY.byte()),
+            echo: Echo::Unknown,
+            long_timeout: true,
+            margin: String::new(),
+            periods: String::new(),
+            turns: String::new(),
+            model: model.name.to_owned(),
+            rpm: String::new(),
+            fault: String::new(),
+            rest: Vec::new(),
+        }
+    }
+}
+
+impl LinkForm {
+    /// The virtual encoders to choose from, the usual one first.
+    pub fn models() -> impl Iterator<Item = &'static str> {
+        MODELS.iter().map(|model| model.name)
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let mut form = LinkForm::default();
+        let target = url.target.clone();
+        match url.scheme {
+            Scheme::Sim => form.kind = LinkKind::Virtual,
+            Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
+            Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
+            Scheme::Tcp => {
+                let (host, port) = target.rsplit_once(':').unwrap_or((&target, ""));
+                (form.kind, form.host, form.tcp_port) = (LinkKind::Tcp, host.to_owned(), port.to_owned());
+            }
+        }
+        for (name, value) in url.query.pairs() {
+            if !form.take(name, value) {
+                form.rest.push((name.clone(), value.clone()));
+            }
+        }
+        form
+    }
+
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
+        let entry = match name {
+            "margin" => &mut self.margin,
+            "periods" => &mut self.periods,
+            "turns" => &mut self.turns,
+            "model" if self.kind == LinkKind::Virtual => &mut self.model,
+            "rpm" if self.kind == LinkKind::Virtual => &mut self.rpm,
+            "fault" if self.kind == LinkKind::Virtual => &mut self.fault,
+            _ => return self.take_choice(name, value),
+        };
+        value.clone_into(entry);
+        true
+    }
+
+    fn take_choice(&mut self, name: &str, value: &str) -> bool {
+        let Ok(query) = format!("{name}={value}").parse::<Query>() else { return false };
+        let Ok(station) = Station::from_query(&query, Duration::ZERO) else { return false };
+        match name {
+            "baud" => self.baud = station.format.baud,
+            "parity" => self.parity = station.format.parity,
+            "address" => self.address = address_words(station.address),
+            "echo" => self.echo = station.echo,
+            "timeout" => self.long_timeout = station.long_timeout,
+            _ => return false,
+        }
+        true
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        let (scheme, target) = self.target()?;
+        let parameters = self.parameters()?;
+        let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
+        let unfit = unfit(&target, &['?']).or_else(|| {
+            parameters.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&'])))
+        });
+        if let Some(value) = unfit {
+            return Err(Text::new("form.characters").with("value", value));
+        }
+        let words: Vec<String> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let question = if words.is_empty() { "" } else { "?" };
+        let url: LinkUrl = format!("{}:{target}{question}{}", scheme.word(), words.join("&"))
+            .parse()
+            .map_err(|error| self.refused(error))?;
+        Station::from_query(&url.query, Duration::ZERO).map_err(|error| self.refused(error))?;
+        if self.kind == LinkKind::Virtual {
+            let own = url.query.without(&line_only());
+            Config::from_pairs(&own).map_err(|error| self.refused_virtual(error))?;
+        }
+        Ok(url)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        let entered = |entry: &str, missing: &'static str| {
+            let entry = entry.trim();
+            if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
+        };
+        match self.kind {
+            LinkKind::Virtual => Ok((Scheme::Sim, String::new())),
+            LinkKind::Serial => Ok((Scheme::Serial, entered(&self.port, "form.port_missing")?)),
+            LinkKind::Replay => Ok((Scheme::Replay, entered(&self.file, "form.file_missing")?)),
+            LinkKind::Tcp => {
+                let host = entered(&self.host, "form.host_missing")?;
+                let host = match host.parse::<Ipv6Addr>() {
+                    Ok(_) => format!("[{host}]"),
+                    Err(_) if host.contains(':') && !host.starts_with('[') => {
+                        return Err(Text::new("form.host").with("value", host));
+                    }
+                    Err(_) => host,
+                };
+                let port = entered(&self.tcp_port, "form.tcp_port_missing")?;
+                match port.parse::<NonZeroU16>() {
+                    Ok(port) => Ok((Scheme::Tcp, format!("{host}:{port}"))),
+                    Err(_) => Err(Text::new("form.tcp_port").with("value", port)),
+                }
+            }
+        }
+    }
+
+    fn parameters(&self) -> Result<Vec<(String, String)>, Text> {
+        let usual = LinkForm::default();
+        let mut parameters = Vec::new();
+        let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
+        let filled = |entry: &str| Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty());
+        if self.kind == LinkKind::Virtual {
+            filled(&self.model).filter(|model| *model != usual.model).iter().for_each(|model| add("model", model));
+            // A German keyboard has a comma where the point should be.
+            filled(&self.rpm).iter().for_each(|rpm| add("rpm", &rpm.replace(',', ".")));
+            filled(&self.fault).iter().for_each(|fault| add("fault", fault));
+        }
+        if self.baud != usual.baud {
+            add("baud", &self.baud.to_string());
+        }
+        if self.parity != usual.parity {
+            add("parity", self.parity.word());
+        }
+        let address = self.address_byte()?;
+        if address != DeviceAddress::FACTORY.byte() {
+            add("address", &format!("0x{address:02X}"));
+        }
+        match self.echo {
+            Echo::Unknown => {}
+            Echo::On => add("echo", "on"),
+            Echo::Off => add("echo", "off"),
+        }
+        if !self.long_timeout {
+            add("timeout", "11");
+        }
+        filled(&self.margin).iter().for_each(|margin| add("margin", margin));
+        filled(&self.periods).iter().for_each(|periods| add("periods", periods));
+        filled(&self.turns).iter().for_each(|turns| add("turns", turns));
+        for (name, value) in &self.rest {
+            // What only a virtual encoder has is not for the others; what has an entry by now stands there.
+            let foreign = self.kind != LinkKind::Virtual && virtual_only(name);
+            if !foreign && parameters.iter().all(|(own, _)| own != name) {
+                parameters.push((name.clone(), value.clone()));
+            }
+        }
+        Ok(parameters)
+    }
+
+    fn address_byte(&self) -> Result<u8, Text> {
+        let entry = self.address.trim();
+        if entry.is_empty() {
+            return Ok(DeviceAddress::FACTORY.byte());
+        }
+        if entry.eq_ignore_ascii_case(BROADCAST_WORD) {
+            return Ok(BROADCAST);
+        }
+        let digits = entry.strip_prefix("0x").or_else(|| entry.strip_prefix("0X")).unwrap_or(entry);
+        let digits = digits.strip_suffix(['h', 'H']).unwrap_or(digits);
+        u8::from_str_radix(digits, 16).map_err(|_| Text::new("form.address").with("value", entry))
+    }
+
+    fn refused(&self, error: UrlError) -> Text {
+        let UrlError::Value { name, value, allowed } = error else { return Text::new("form.other").with("why", error) };
+        let id = match name.as_str() {
+            "address" => return Text::new("form.address").with("value", self.address.trim()),
+            "margin" => "form.margin",
+            "periods" => "form.periods",
+            "turns" if self.periods.trim().is_empty() => "form.turns_alone",
+            "turns" => "form.turns",
+            _ => return parameter(&name, &value, &allowed),
+        };
+        Text::new(id).with("value", value)
+    }
+
+    fn refused_virtual(&self, error: ConfigError) -> Text {
+        match error {
+            ConfigError::Fault(_) => Text::new("form.fault").with("value", self.fault.trim()),
+            ConfigError::Key { .. } => Text::new("form.other").with("why", error),
+            ConfigError::Value { key, value, allowed } => match key.as_str() {
+                "address" => Text::new("form.address_virtual").with("value", self.address.trim()),
+                "rpm" => Text::new("form.rpm").with("value", self.rpm.trim()),
+                "model" => {
+                    let models = Self::models().collect::<Vec<_>>().join(", ");
+                    Text::new("form.model").with("value", value).with("models", models)
+                }
+                _ => parameter(&key, &value, &allowed),
+            },
+        }
+    }
+}
+
+fn parameter(name: &str, value: &str, why: &str) -> Text {
+    Text::new("form.parameter").with("name", name).with("value", value).with("why", why)
+}
+
+fn address_words(address: u8) -> String {
+    if address == BROADCAST { BROADCAST_WORD.to_owned() } else { format!("{address:02X}") }
+}
+
+/// Parameters that describe the line and nothing of the virtual encoder.
+fn line_only() -> Vec<&'static str> {
+    PARAMETERS.into_iter().filter(|name| !Config::KEYS.contains(name)).collect()
+}
+
+fn virtual_only(name: &str) -> bool {
+    Config::KEYS.contains(&name) && !PARAMETERS.contains(&name)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+//! The serial ports that the connection form offers, in the order in which they are likely to be meant.
+
+use crate::link::{LinkUrl, PortInfo, Scheme};
+
+/// A serial port to choose.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// Path or name, as a link takes it.
+    pub path: String,
+    /// What the system says about the adapter; may be empty.
+    pub description: String,
+    /// It was used before.
+    pub used: bool,
+    /// The system lists it now. A port used before may be unplugged; a pseudo-terminal is never listed.
+    pub listed: bool,
+}
+
+/// Ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest first.
+pub fn offered_ports(ports: &[PortInfo], links: &[String]) -> Vec<Offer> {
+    let mut offers: Vec<Offer> = Vec::new();
+    for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {
+        if url.scheme == Scheme::Serial && offers.iter().all(|offer| offer.path != url.target) {
+            let known = ports.iter().find(|port| port.path == url.target);
+            let description = known.map(|port| port.description.clone()).unwrap_or_default();
+            offers.push(Offer { path: url.target, description, used: true, listed: known.is_some() });
+        }
+    }
+    let (usb, others): (Vec<&PortInfo>, Vec<&PortInfo>) =
+        ports.iter().partition(|port| !port.description.is_empty() || port.serial_number.is_some());
+    for port in usb.into_iter().chain(others) {
+        if offers.iter().all(|offer| offer.path != port.path) {
+            let (path, description) = (port.path.clone(), port.description.clone());
+            offers.push(Offer { path, description, used: false, listed: true });
+        }
+    }
+    offers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn used_ports_come_first_then_adapters_with_a_name() {
+        let port = |path: &str, description: &str| PortInfo {
+            path: path.to_owned(),
+            description: description.to_owned(),
+            serial_number: None,
+        };
+        let ports = [
+            port("/dev/ttyS0", ""),
+            port("/dev/ttyS1", ""),
+            port("/dev/ttyUSB0", "FTDI FT232R"),
+            port("/dev/ttyUSB1", "FTDI FT4232H"),
+        ];
+        let links = [
+            "sim:",
+            "serial:/dev/ttyUSB1?baud=19200",
+            "no link",
+            "serial:/tmp/enc0",
+            "serial:/dev/ttyUSB1",
+            "serial:/dev/ttyS1",
+        ]
+        .map(str::to_owned);
+        let offers = offered_ports(&ports, &links);
+        let shown: Vec<(&str, &str, bool, bool)> =
+            offers.iter().map(|o| (o.path.as_str(), o.description.as_str(), o.used, o.listed)).collect();
+        assert_eq!(
+            shown,
+            [
+                ("/dev/ttyUSB1", "FTDI FT4232H", true, true),
+                ("/tmp/enc0", "", true, false),
+                ("/dev/ttyS1", "", true, true),
+                ("/dev/ttyUSB0", "FTDI FT232R", false, true),
+                ("/dev/ttyS0", "", false, true),
+            ]
+        );
+        assert!(offered_ports(&[], &[]).is_empty());
+    }
+}

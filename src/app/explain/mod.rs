@@ -1,0 +1,101 @@
+//! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
+//! device stands in a module of its own.
+
+pub mod hiperface;
+
+use std::path::Path;
+
+use super::Text;
+use crate::link::{LinkError, LinkErrorKind};
+use crate::profile::ProfileError;
+use crate::store::{FileError, FileProblem, StoreError};
+use crate::worker::OpenError;
+
+/// A wire.
+pub fn link(error: &LinkError) -> Text {
+    let target = &error.target;
+    match &error.kind {
+        LinkErrorKind::NotFound if target.contains(':') && !cfg!(windows) => {
+            Text::new("link.host_not_found").with("target", target)
+        }
+        LinkErrorKind::NotFound => Text::new("link.not_found").with("target", target),
+        LinkErrorKind::Permission { group: Some(group) } => {
+            Text::new("link.permission_group").with("target", target).with("group", group)
+        }
+        LinkErrorKind::Permission { group: None } => Text::new("link.permission").with("target", target),
+        LinkErrorKind::Busy => Text::new("link.busy").with("target", target),
+        LinkErrorKind::NotAPort => Text::new("link.not_a_port").with("target", target),
+        LinkErrorKind::Unreachable(why) => Text::new("link.unreachable").with("target", target).with("why", why),
+        LinkErrorKind::Lost => Text::new("link.lost").with("target", target),
+        LinkErrorKind::Format(format) => Text::new("link.format").with("target", target).with("format", format),
+        LinkErrorKind::NotRecorded(request) => {
+            Text::new("link.not_recorded").with("target", target).with("request", request)
+        }
+        LinkErrorKind::Other(why) => Text::new("link.other").with("target", target).with("why", why),
+    }
+}
+
+/// A link that cannot be opened.
+pub fn open(error: &OpenError) -> Text {
+    match error {
+        OpenError::Url(why) => Text::new("link.url").with("why", why),
+        OpenError::Sim(why) => Text::new("link.url").with("why", why),
+        OpenError::Link(error) => link(error),
+        OpenError::File(error) => file(error),
+        OpenError::Recording { path, cause } => Text::new("link.recording").with("path", path).with("why", cause),
+        OpenError::Store(error) => store(error),
+    }
+}
+
+/// A file.
+pub fn file(error: &FileError) -> Text {
+    let path = error.path.display();
+    match &error.problem {
+        FileProblem::NotFound => Text::new("file.not_found").with("path", path),
+        FileProblem::NoFolder => Text::new("file.no_folder").with("path", path),
+        FileProblem::NotFolder => Text::new("file.not_a_folder").with("path", path),
+        FileProblem::IsFolder => Text::new("file.is_folder").with("path", path),
+        FileProblem::Exists => Text::new("file.exists").with("path", path),
+        FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
+        FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),
+        FileProblem::DiskFull => Text::new("file.disk_full").with("path", path),
+        FileProblem::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
+        FileProblem::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
+        FileProblem::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),
+    }
+}
+
+/// The program's folders.
+pub fn store(error: &StoreError) -> Text {
+    match error {
+        StoreError::NoHome => Text::new("store.no_home"),
+        StoreError::File(error) => file(error),
+        StoreError::EncoderTypes { path, cause } => {
+            Text::new("store.encoder_types").with("path", path.display()).with("why", cause)
+        }
+    }
+}
+
+/// A profile in a file.
+pub fn profile(path: &Path, error: &ProfileError) -> Text {
+    let path = path.display();
+    match error {
+        ProfileError::Schema { found, known } => {
+            Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
+        }
+        ProfileError::Device(found) => {
+            Text::new("profile.device").with("path", path).with("found", found).with("known", "hiperface")
+        }
+        error => Text::new("profile.invalid").with("path", path).with("why", error),
+    }
+}
+
+/// What the logbook could not take.
+pub fn logbook(why: &str) -> Text {
+    Text::new("write.logbook").with("why", why)
+}
+
+/// What is the same in every language: a name, a number, bytes.
+pub fn plain(words: impl ToString) -> Text {
+    Text::new("plain.words").with("words", words)
+}
