@@ -8,6 +8,7 @@ use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
 mod hex_editor;
+mod typed_view;
 
 fn skin() -> Skin {
     Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English)
