@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
+mod field_map;
 mod hex_editor;
 mod typed_view;
 
