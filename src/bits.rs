@@ -1,5 +1,5 @@
 //! Bytes as hexadecimal text: upper case, grouped by bytes, the way every manual prints frames; with what is secret
-//! masked.
+//! masked; and what a run of bytes is when read as a number or as text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -139,6 +139,102 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
     Ok(())
 }
 
+/// A way to read bytes as a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TypedKind {
+    /// One byte, unsigned.
+    U8,
+    /// One byte, two's complement.
+    I8,
+    /// Two bytes, unsigned.
+    U16,
+    /// Two bytes, two's complement.
+    I16,
+    /// Four bytes, unsigned.
+    U32,
+    /// Four bytes, two's complement.
+    I32,
+    /// Four bytes, IEEE 754 binary32.
+    F32,
+    /// The bits of one byte, highest first.
+    Binary,
+    /// All bytes as ASCII.
+    Text,
+}
+
+impl TypedKind {
+    /// Every way, in the order of a table.
+    pub const ALL: [TypedKind; 9] = [
+        TypedKind::U8,
+        TypedKind::I8,
+        TypedKind::U16,
+        TypedKind::I16,
+        TypedKind::U32,
+        TypedKind::I32,
+        TypedKind::F32,
+        TypedKind::Binary,
+        TypedKind::Text,
+    ];
+
+    /// The order of the bytes makes a difference.
+    pub const fn has_byte_order(self) -> bool {
+        !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
+    }
+}
+
+/// What the first bytes of a run are in one reading. Where the order of bytes makes no difference, both are the same.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TypedRow {
+    /// How they are read.
+    pub kind: TypedKind,
+    /// Lowest byte first; `None` where there are too few bytes.
+    pub little: Option<String>,
+    /// Highest byte first; `None` where there are too few bytes.
+    pub big: Option<String>,
+}
+
+/// Reads the beginning of `bytes` in every way, [`TypedKind::ALL`] in its order.
+pub fn typed(bytes: &[u8]) -> Vec<TypedRow> {
+    let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
+    TypedKind::ALL.into_iter().map(row).collect()
+}
+
+fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
+    let (one, two, four) = (bytes.first().copied(), bytes.first_chunk::<2>(), bytes.first_chunk::<4>());
+    let word = two.map(|word| if big { u16::from_be_bytes(*word) } else { u16::from_le_bytes(*word) });
+    let long = four.map(|long| if big { u32::from_be_bytes(*long) } else { u32::from_le_bytes(*long) });
+    match kind {
+        TypedKind::U8 => one.map(|byte| byte.to_string()),
+        TypedKind::I8 => one.map(|byte| byte.cast_signed().to_string()),
+        TypedKind::U16 => word.map(|word| word.to_string()),
+        TypedKind::I16 => word.map(|word| word.cast_signed().to_string()),
+        TypedKind::U32 => long.map(|long| long.to_string()),
+        TypedKind::I32 => long.map(|long| long.cast_signed().to_string()),
+        TypedKind::F32 => long.map(|long| float(f32::from_bits(long))),
+        TypedKind::Binary => one.map(binary),
+        TypedKind::Text => one.map(|_| bytes.iter().map(|byte| ascii(*byte).unwrap_or(NOT_PRINTABLE)).collect()),
+    }
+}
+
+/// Stands for a byte that is no printable character.
+pub const NOT_PRINTABLE: char = '·';
+
+/// The printable ASCII character of a byte.
+pub fn ascii(byte: u8) -> Option<char> {
+    (0x20..0x7F).contains(&byte).then_some(char::from(byte))
+}
+
+/// The bits of a byte in two groups: `0011 1111`.
+pub fn binary(byte: u8) -> String {
+    format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
+}
+
+/// The shortest text that is read as the same number, with an exponent where it would be long.
+fn float(value: f32) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,6 +265,72 @@ mod tests {
         assert!(!masked.matches(&[0x40, 0x4F, 0x02, 1, 2]));
         assert_eq!(masked.to_bytes(), None);
         assert_eq!(MaskedBytes::clear(&[1, 2]).to_bytes(), Some(vec![1, 2]));
+    }
+
+    #[test]
+    fn bytes_are_read_as_python_reads_them() {
+        type Rows = [(&'static str, &'static str); 9];
+        // struct.unpack with "<" and ">" and b, B, h, H, i, I, f.
+        let table: [(&[u8], Rows); 4] = [
+            (
+                &[0xDB, 0x0F, 0x49, 0x40],
+                [
+                    ("219", "219"),
+                    ("-37", "-37"),
+                    ("4059", "56079"),
+                    ("4059", "-9457"),
+                    ("1078530011", "3675212096"),
+                    ("1078530011", "-619755200"),
+                    ("3.1415927", "-4.033146e16"),
+                    ("1101 1011", "1101 1011"),
+                    ("··I@", "··I@"),
+                ],
+            ),
+            (
+                &[0x42, 0xF6, 0xE9, 0x79],
+                [
+                    ("66", "66"),
+                    ("66", "66"),
+                    ("63042", "17142"),
+                    ("-2494", "17142"),
+                    ("2045376066", "1123477881"),
+                    ("2045376066", "1123477881"),
+                    ("1.5184998e35", "123.456"),
+                    ("0100 0010", "0100 0010"),
+                    ("B··y", "B··y"),
+                ],
+            ),
+            (
+                &[0x80, 0x00],
+                [
+                    ("128", "128"),
+                    ("-128", "-128"),
+                    ("128", "32768"),
+                    ("128", "-32768"),
+                    ("", ""),
+                    ("", ""),
+                    ("", ""),
+                    ("1000 0000", "1000 0000"),
+                    ("··", "··"),
+                ],
+            ),
+            (&[], [("", ""); 9]),
+        ];
+        for (bytes, rows) in table {
+            for (row, (little, big)) in typed(bytes).into_iter().zip(rows) {
+                let shown = (row.little.unwrap_or_default(), row.big.unwrap_or_default());
+                assert_eq!(shown, (little.to_owned(), big.to_owned()), "{} as {:?}", hex(bytes), row.kind);
+            }
+        }
+    }
+
+    #[test]
+    fn special_floats_say_what_they_are() {
+        let big = |bytes: [u8; 4]| typed(&bytes)[6].big.clone().unwrap();
+        assert_eq!(big([0x7F, 0x80, 0, 0]), "inf");
+        assert_eq!(big([0x7F, 0xC0, 0, 0]), "NaN");
+        assert_eq!(big([0x80, 0, 0, 0]), "-0");
+        assert_eq!(big([0, 0, 0, 1]), "1e-45");
     }
 
     proptest! {

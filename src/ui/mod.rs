@@ -3,5 +3,6 @@
 
 pub mod icons;
 mod skin;
+pub mod widgets;
 
 pub use skin::{Skin, install_fonts};

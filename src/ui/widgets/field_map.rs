@@ -1,0 +1,227 @@
+//! A memory as a strip of blocks: its fields, each a run of them, and what is free.
+//!
+//! * **Size**: as wide as there is room; the blocks are as large as fits two lines, and wrap.
+//! * **Keyboard**: Tab and the left and right arrows go from field to field, Home and End to the ends; Enter or Space
+//!   selects. Resizing is offered by the caller's buttons too.
+//! * **Pointer**: a click selects; the handle at the end of the last field drags its size, in whole blocks, shown before
+//!   it is let go; Escape gives up.
+//! * **Accessible**: a button a field and one for what is free, with the labels given.
+//! * **Painting**: a field in the colour of its series; locked, unreadable and edited fields carry an icon, unreadable ones
+//!   are hatched; the selected one is outlined in the accent.
+
+mod paint;
+mod strip;
+
+use std::ops::RangeInclusive;
+
+use egui::accesskit::Role;
+use egui::{CursorIcon, EventFilter, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
+
+use crate::app::Text;
+use crate::ui::Skin;
+
+use strip::Strip;
+
+/// One field.
+#[derive(Clone, Debug, Default)]
+pub struct MapField {
+    /// Its number, shown in it.
+    pub number: u8,
+    /// Blocks it takes; none takes one to be seen.
+    pub blocks: usize,
+    /// Accessible name.
+    pub label: String,
+    /// Shown below the number; of its parts, separated by ` · `, as many as fit.
+    pub caption: String,
+    /// Which of the eight series' colours.
+    pub colour: usize,
+    /// Write protected.
+    pub locked: bool,
+    /// Its access code is not known.
+    pub unreadable: bool,
+    /// Has edits that are not written.
+    pub edited: bool,
+    /// Shown under the pointer.
+    pub tooltip: String,
+}
+
+/// The whole memory.
+#[derive(Clone, Debug, Default)]
+pub struct FieldMap<'a> {
+    /// Fields in their order in the memory.
+    pub fields: &'a [MapField],
+    /// Blocks behind the last field that belong to none.
+    pub free_blocks: usize,
+    /// Accessible name of what is free.
+    pub free_label: &'a str,
+    /// Shown under the pointer over what is free.
+    pub free_tooltip: &'a str,
+    /// Number of the selected field.
+    pub selected: Option<u8>,
+    /// Bytes in a block.
+    pub block_bytes: usize,
+    /// Sizes in blocks that the last field may be dragged to; `None` offers no handle.
+    pub resize: Option<RangeInclusive<usize>>,
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapEvent {
+    /// A field.
+    Select(u8),
+    /// What is free.
+    SelectFree,
+    /// Another size of the last field; it is not the present one.
+    ResizeLast {
+        /// In blocks.
+        blocks: usize,
+    },
+}
+
+/// Draws the map and says what was done to it. One map a `Ui`: another needs an id of its own (`push_id`).
+pub fn field_map(ui: &mut Ui, skin: &Skin, map: &FieldMap<'_>) -> Option<MapEvent> {
+    let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
+    let taken: usize = sizes.iter().sum();
+    let strip = Strip::new(skin, ui.available_width(), taken + map.free_blocks);
+    let (outer, _) = ui.allocate_exact_size(strip.size, Sense::hover());
+    let strip = strip.at(outer.min);
+    let base = ui.make_persistent_id("field_map");
+    let ids: Vec<Id> = (0..=map.fields.len()).map(|place| base.with(place)).collect();
+    walk(ui, &ids, map.free_blocks > 0);
+
+    let mut event = None;
+    let mut first = 0;
+    for ((field, size), id) in map.fields.iter().zip(&sizes).zip(&ids) {
+        let runs = strip.runs(first, first + size);
+        let selected = map.selected == Some(field.number);
+        let part = announce(ui, &runs, *id, &field.label, Some(selected), &field.tooltip);
+        paint::field(ui, skin, &strip, &runs, field, &paint::State { selected, ..part.state });
+        if part.clicked {
+            event = Some(MapEvent::Select(field.number));
+        }
+        first += size;
+    }
+    if map.free_blocks > 0 {
+        let runs = strip.runs(taken, taken + map.free_blocks);
+        let id = ids.last().copied().unwrap_or(base);
+        let part = announce(ui, &runs, id, map.free_label, None, map.free_tooltip);
+        paint::free(ui, skin, &strip, &runs, &part.state);
+        if part.clicked {
+            event = Some(MapEvent::SelectFree);
+        }
+    }
+    let last = sizes.last().copied().unwrap_or_default();
+    handle(ui, skin, &strip, base, map, taken.saturating_sub(last), last).or(event)
+}
+
+/// Arrows between the parts, before they are announced: the focus is moved here and not by what lies nearest.
+fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
+    let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
+    let focused = ui.memory(egui::Memory::focused);
+    let Some(at) = ids.iter().position(|id| Some(*id) == focused) else { return };
+    ui.memory_mut(|memory| {
+        if let Some(id) = ids.get(at) {
+            let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+            memory.set_focus_lock_filter(*id, filter);
+        }
+    });
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let last = ids.len().saturating_sub(1);
+    let mut to = at;
+    for (key, target) in [
+        (Key::ArrowLeft, at.saturating_sub(1)),
+        (Key::ArrowRight, (at + 1).min(last)),
+        (Key::Home, 0),
+        (Key::End, last),
+    ] {
+        if pressed(key) {
+            to = target;
+        }
+    }
+    if let Some(id) = ids.get(to).filter(|_| to != at) {
+        ui.memory_mut(|memory| memory.request_focus(*id));
+        ui.request_repaint();
+    }
+}
+
+struct Part {
+    clicked: bool,
+    state: paint::State,
+}
+
+/// A field or what is free: one button, though it may lie on several lines.
+fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
+    let widest = strip::widest(runs);
+    let mut part = Part { clicked: false, state: paint::State::default() };
+    for (number, rect) in runs.iter().enumerate() {
+        let response = if number == widest {
+            let response = ui.interact(*rect, id, Sense::click());
+            response.widget_info(|| {
+                let mut info = WidgetInfo::labeled(Role::Button, ui.is_enabled(), label);
+                info.selected = selected;
+                info
+            });
+            part.state.focused = response.has_focus();
+            if response.gained_focus() {
+                // The next arrow shall be ours.
+                ui.request_repaint();
+            }
+            response
+        } else {
+            ui.interact(*rect, id.with(number), Sense::CLICK)
+        };
+        part.clicked |= response.clicked();
+        part.state.hovered |= response.hovered();
+        if response.clicked() {
+            // The arrows go on from here.
+            ui.memory_mut(|memory| memory.request_focus(id));
+        }
+        tip(response, tooltip);
+    }
+    part
+}
+
+fn tip(response: Response, tooltip: &str) {
+    if !tooltip.is_empty() {
+        response.on_hover_ui(|ui| {
+            ui.label(tooltip);
+        });
+    }
+}
+
+/// The handle at the end of the last field.
+fn handle(
+    ui: &Ui,
+    skin: &Skin,
+    strip: &Strip,
+    base: Id,
+    map: &FieldMap<'_>,
+    start: usize,
+    blocks: usize,
+) -> Option<MapEvent> {
+    let sizes = map.resize.as_ref().filter(|_| blocks > 0)?;
+    let end = strip.runs(start, start + blocks).last().copied()?;
+    let width = skin.space.between;
+    let rect = Rect::from_center_size(end.right_center(), Vec2::new(width + skin.space.inside, end.height()));
+    let response = ui.interact(rect, base.with("handle"), Sense::DRAG);
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    paint::handle(ui, skin, end, response.hovered() || response.dragged());
+    let pos = response.interact_pointer_pos();
+    let given_up = ui.input(|input| input.key_pressed(Key::Escape));
+    let wanted = pos.map(|pos| {
+        let room = blocks + map.free_blocks;
+        let (least, most) = (*sizes.start(), (*sizes.end()).min(room));
+        strip.boundary(pos).saturating_sub(start).max(least.max(1)).min(most.max(1))
+    });
+    if let Some(wanted) = wanted.filter(|_| response.dragged()) {
+        let text = Text::new("widget.map_size").with("bytes", wanted * map.block_bytes);
+        paint::ghost(ui, skin, strip, &strip.runs(start, start + wanted), &skin.words(&text));
+    } else if !response.dragged() {
+        let words = skin.say("widget.map_resize");
+        tip(response.clone(), &words);
+    }
+    let released = response.drag_stopped() && !given_up;
+    wanted.filter(|wanted| released && *wanted != blocks).map(|blocks| MapEvent::ResizeLast { blocks })
+}

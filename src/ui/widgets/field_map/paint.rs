@@ -1,0 +1,183 @@
+//! The painting of a field map.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKind, Ui, Vec2};
+
+use super::MapField;
+use super::strip::{Strip, widest};
+use crate::ui::widgets::{focus_ring, series};
+use crate::ui::{Skin, icons};
+
+/// What is going on with a part of the map.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct State {
+    pub(super) selected: bool,
+    pub(super) focused: bool,
+    pub(super) hovered: bool,
+}
+
+/// The shape of a run: half a gap free at the ends of the field, round there, square where it goes on in another line.
+fn shape(skin: &Skin, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
+    let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
+    let (begins, ends) = (number == 0, number + 1 == runs.len());
+    let (mut rect, radius) = (*run, skin.radius.nw);
+    if begins {
+        rect.min.x += 1.0;
+    }
+    if ends {
+        rect.max.x -= 1.0;
+    }
+    let at = |round: bool| if round { radius } else { 0 };
+    (rect, CornerRadius { nw: at(begins), sw: at(begins), ne: at(ends), se: at(ends) })
+}
+
+/// A field.
+pub(super) fn field(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], field: &MapField, state: &State) {
+    let colour = series(skin, field.colour);
+    let painter = ui.painter();
+    for number in 0..runs.len() {
+        let (rect, corners) = shape(skin, runs, number);
+        painter.rect_filled(rect, corners, skin.palette.sunken);
+        let strength = if state.hovered { 0.34 } else { 0.22 };
+        painter.rect_filled(rect, corners, colour.gamma_multiply(strength));
+        if field.unreadable {
+            hatch(ui, skin, rect, colour.gamma_multiply(0.3));
+        }
+        let run = runs.get(number).copied().unwrap_or(rect);
+        let mut x = run.left() + strip.block.x;
+        while x < run.right() - 1.0 {
+            // Only at the edges: the field's words stand between.
+            let (top, bottom) = (rect.top(), rect.bottom());
+            let stroke = Stroke::new(1.0, colour.gamma_multiply(0.7));
+            painter.vline(x - 0.5, top..=top + skin.space.inside, stroke);
+            painter.vline(x - 0.5, bottom - skin.space.inside..=bottom, stroke);
+            x += strip.block.x;
+        }
+        let (width, edge) = if state.selected { (2.0, skin.palette.accent.into()) } else { (1.0, colour) };
+        painter.rect_stroke(rect, corners, Stroke::new(width, edge), StrokeKind::Inside);
+        if state.focused {
+            focus_ring(painter, skin, rect, corners);
+        }
+    }
+    if let Some(run) = runs.get(widest(runs)) {
+        inscribe(ui, skin, *run, field);
+    }
+}
+
+/// Number and icons above, the caption below, as far as they fit. In a narrow field the icons take the caption's place.
+fn inscribe(ui: &Ui, skin: &Skin, run: Rect, field: &MapField) {
+    let palette = skin.palette;
+    let inside = run.shrink2(Vec2::new(skin.space.between, skin.space.inside + 2.0));
+    let painter = ui.painter();
+    let flags = [
+        (field.edited, icons::PENCIL_SIMPLE, palette.staged),
+        (field.locked, icons::LOCK_SIMPLE, palette.text),
+        (field.unreadable, icons::KEY, palette.text),
+    ];
+    let shown: Vec<_> = flags.into_iter().filter(|(shown, ..)| *shown).collect();
+    let size = skin.sizes.body;
+    let pitch = size + 1.0;
+    let font = skin.strong(size);
+    let number = painter.layout_no_wrap(field.number.to_string(), font, palette.text.into());
+    let beside = number.size().x + skin.space.inside + shown.len() as f32 * pitch <= inside.width();
+    let caption = fitting(ui, skin, &field.caption, inside.width()).filter(|_| beside);
+    let (top, bottom) = (inside.top() + size / 2.0, inside.bottom() - size / 2.0 + 1.0);
+    let y = if caption.is_some() || !beside { top } else { inside.center().y };
+    let narrow = run.width() < skin.space.inside * 7.0;
+    let left = if narrow { run.center().x - number.size().x / 2.0 } else { inside.left() };
+    if number.size().x <= run.width() - 2.0 {
+        painter.galley(egui::pos2(left, y - number.size().y / 2.0), number, palette.text.into());
+    }
+    // As many as there is room for; the tooltip has all.
+    let room = if beside { shown.len() } else { (((run.width() - 2.0) / pitch) as usize).max(1) };
+    let count = shown.len().min(room);
+    let width = count as f32 * pitch;
+    let (first, y) = if beside { (inside.right() - width, y) } else { (run.center().x - width / 2.0, bottom) };
+    for (place, (_, icon, colour)) in shown.iter().take(count).enumerate() {
+        let center = egui::pos2(first + pitch * (place as f32 + 0.5), y);
+        painter.text(center, Align2::CENTER_CENTER, icon, FontId::proportional(size), Color32::from(*colour));
+    }
+    if let Some(caption) = caption {
+        let at = egui::pos2(inside.left(), bottom - caption.size().y / 2.0);
+        painter.galley(at, caption, palette.text.into());
+    }
+}
+
+/// As much of a caption as fits: its parts, separated by ` · `, fall away from the end.
+fn fitting(ui: &Ui, skin: &Skin, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
+    let mut rest = caption;
+    while !rest.is_empty() {
+        let font = FontId::proportional(skin.sizes.caption);
+        let galley = ui.painter().layout_no_wrap(rest.to_owned(), font, skin.palette.text.into());
+        if galley.size().x <= room {
+            return Some(galley);
+        }
+        rest = rest.rsplit_once(" · ").map_or("", |(head, _)| head);
+    }
+    None
+}
+
+/// Diagonal lines.
+fn hatch(ui: &Ui, skin: &Skin, rect: Rect, colour: Color32) {
+    let painter = ui.painter().with_clip_rect(rect.shrink(1.0).intersect(ui.clip_rect()));
+    let mut x = rect.left() - rect.height();
+    while x < rect.right() {
+        let line = [egui::pos2(x, rect.bottom()), egui::pos2(x + rect.height(), rect.top())];
+        painter.line_segment(line, Stroke::new(1.0, colour));
+        x += skin.space.between;
+    }
+}
+
+/// What is free: an outline a block.
+pub(super) fn free(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], state: &State) {
+    let painter = ui.painter();
+    let edge = match state.hovered {
+        true => skin.palette.accent.into(),
+        false => Color32::from(skin.palette.muted).gamma_multiply(0.5),
+    };
+    for number in 0..runs.len() {
+        let (rect, corners) = shape(skin, runs, number);
+        let run = runs.get(number).copied().unwrap_or(rect);
+        let mut x = run.left();
+        while x < run.right() - 1.0 {
+            let block = Rect::from_min_size(egui::pos2(x, run.top()), strip.block).shrink2(Vec2::new(2.0, 0.0));
+            painter.rect_stroke(block, skin.space.inside, Stroke::new(1.0, edge), StrokeKind::Inside);
+            x += strip.block.x;
+        }
+        if state.focused {
+            focus_ring(painter, skin, rect, corners);
+        }
+    }
+}
+
+/// Two short lines at the end of the last field.
+pub(super) fn handle(ui: &Ui, skin: &Skin, run: Rect, active: bool) {
+    let colour = if active { skin.palette.accent } else { skin.palette.text };
+    let (x, y) = (run.right() - skin.space.between, run.center().y);
+    let half = if active { skin.space.between + 2.0 } else { skin.space.between };
+    for x in [x - 0.5, x + 2.5] {
+        ui.painter().vline(x, y - half..=y + half, Stroke::new(1.0, colour));
+    }
+}
+
+/// What the last field would be.
+pub(super) fn ghost(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], words: &str) {
+    let accent = Color32::from(skin.palette.accent);
+    let painter = ui.painter();
+    for number in 0..runs.len() {
+        let (rect, corners) = shape(skin, runs, number);
+        painter.rect_filled(rect, corners, accent.gamma_multiply(0.16));
+        let rect = rect.shrink(0.5);
+        let path = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
+        painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), skin.space.inside, skin.space.inside));
+    }
+    let Some(last) = runs.last() else { return };
+    // A label on the accent, inside the end of the ghost and never outside the map.
+    let font = FontId::monospace(skin.sizes.caption);
+    let galley = painter.layout_no_wrap(words.to_owned(), font, skin.palette.on_accent.into());
+    let size = galley.size() + Vec2::new(skin.space.between, skin.space.inside);
+    let right = last.right() - skin.space.between;
+    let left = (right - size.x).max(strip.origin.x);
+    let label = Rect::from_min_size(egui::pos2(left, last.center().y - size.y / 2.0), size);
+    painter.rect_filled(label, skin.space.inside, accent);
+    painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+}

@@ -1,0 +1,77 @@
+//! Where the blocks of a field map are.
+
+use egui::{Pos2, Rect, Vec2};
+
+use crate::ui::Skin;
+
+/// Blocks from left to right and from line to line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strip {
+    /// Upper left corner of what was given to the map.
+    pub(super) origin: Pos2,
+    /// What the map takes.
+    pub(super) size: Vec2,
+    /// One block.
+    pub(super) block: Vec2,
+    /// Above and below: room for the ring of the keyboard.
+    margin: f32,
+    gap: f32,
+    columns: usize,
+}
+
+impl Strip {
+    /// Widths of a block in steps of the grid, largest first.
+    const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
+
+    /// The largest blocks with which `count` of them fit two lines; the smallest where none do.
+    pub(super) fn new(skin: &Skin, room: f32, count: usize) -> Self {
+        let (margin, gap) = (skin.space.inside, skin.space.between);
+        let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
+        let widths = Self::STEPS.map(|step| step * skin.space.inside);
+        let fits = widths.into_iter().find(|width| columns_of(*width) * 2 >= count);
+        let width = fits.unwrap_or(Self::STEPS.last().copied().unwrap_or(4.0) * skin.space.inside);
+        let columns = columns_of(width);
+        let block = Vec2::new(width, skin.space.inside * 11.0);
+        let lines = count.div_ceil(columns);
+        let used = columns.min(count);
+        let height = lines as f32 * block.y + lines.saturating_sub(1) as f32 * gap;
+        let size = Vec2::new(used as f32 * width, height + margin * 2.0);
+        Strip { origin: Pos2::ZERO, size, block, margin, gap, columns }
+    }
+
+    /// The same with its upper left corner there.
+    pub(super) fn at(self, origin: Pos2) -> Self {
+        Strip { origin, ..self }
+    }
+
+    /// The rectangles of the blocks from `first` to before `end`, one a line.
+    pub(super) fn runs(&self, first: usize, end: usize) -> Vec<Rect> {
+        let mut runs = Vec::new();
+        let mut at = first;
+        while at < end {
+            let (line, column) = (at / self.columns, at % self.columns);
+            let count = (self.columns - column).min(end - at);
+            let left = column as f32 * self.block.x;
+            let top = self.margin + line as f32 * (self.block.y + self.gap);
+            let size = Vec2::new(count as f32 * self.block.x, self.block.y);
+            runs.push(Rect::from_min_size(self.origin + Vec2::new(left, top), size));
+            at += count;
+        }
+        runs
+    }
+
+    /// The boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
+    pub(super) fn boundary(&self, pos: Pos2) -> usize {
+        let inside = pos - self.origin - Vec2::new(0.0, self.margin);
+        // What is above or left of the strip becomes zero.
+        let line = ((inside.y + self.gap / 2.0) / (self.block.y + self.gap)).floor() as usize;
+        let column = ((inside.x / self.block.x).round() as usize).min(self.columns);
+        line * self.columns + column
+    }
+}
+
+/// The widest of a field's runs, the first of them where several are.
+pub(super) fn widest(runs: &[Rect]) -> usize {
+    let widths = runs.iter().enumerate().rev();
+    widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)
+}

@@ -1,0 +1,257 @@
+//! Bytes to look at and to overwrite: sixteen a line, as hex and as text.
+//!
+//! * **Size**: as wide as its columns, as high as its lines, at most [`HexModel::lines`] of them before it scrolls; below
+//!   it one line that says where the cursor is, or why something was not done.
+//! * **Keyboard**: arrows, Home, End, Page, with Ctrl to the ends, with Shift selecting; digits overwrite nibble by nibble,
+//!   in the text column characters; Tab goes from hex to text and on; Delete writes 00, Backspace takes the device's bytes
+//!   back; Ctrl+A, C, V, Z, Shift+Z, Y.
+//! * **Pointer**: a press sets the cursor, dragging or Shift selects, a double click selects an aligned word of four.
+//! * **Accessible**: a text input with the label given; its value is the address and the bytes selected: `0x0A: 3F`.
+//! * **Painting**: changed bytes in the colour of what is staged and underlined; the selection in the accent; marks as
+//!   brackets below their bytes.
+
+mod grid;
+mod keys;
+mod paint;
+mod tip;
+mod view;
+
+use std::ops::Range;
+
+use egui::accesskit::Role;
+use egui::text::LayoutJob;
+use egui::{Color32, EventFilter, FontId, Id, Response, ScrollArea, Sense, TextFormat, Ui, Vec2, WidgetInfo};
+
+use super::focus_ring;
+use crate::app::Text;
+use crate::ui::{Skin, icons};
+
+use grid::Grid;
+pub use view::HexView;
+
+/// The bytes to show.
+#[derive(Clone, Copy, Debug)]
+pub struct HexModel<'a> {
+    /// As read from the device; what lies beyond its end counts as changed.
+    pub device: &'a [u8],
+    /// With the edits; these are shown.
+    pub wanted: &'a [u8],
+    /// Ranges that mean something.
+    pub marks: &'a [HexMark<'a>],
+    /// Why nothing can be edited; `None` where it can.
+    pub read_only: Option<&'a Text>,
+    /// Most lines shown at once.
+    pub lines: usize,
+}
+
+/// A range that means something: it is bracketed, and its tooltip says what it is.
+#[derive(Clone, Debug)]
+pub struct HexMark<'a> {
+    /// Addresses.
+    pub range: Range<usize>,
+    /// What it is.
+    pub words: &'a str,
+}
+
+/// What the user wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HexEdit {
+    /// Other bytes from an address on; they fit.
+    Put {
+        /// Of the first byte.
+        address: usize,
+        /// At least one.
+        bytes: Vec<u8>,
+    },
+    /// The last step undone.
+    Undo,
+    /// The last undone step done again.
+    Redo,
+    /// The device's bytes back; at least one of them is changed.
+    Revert {
+        /// Addresses.
+        range: Range<usize>,
+    },
+}
+
+impl<'a> HexModel<'a> {
+    /// Bytes that can be edited, without marks.
+    pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
+        HexModel { device, wanted, marks: &[], read_only: None, lines: 16 }
+    }
+
+    fn is_changed(&self, at: usize) -> bool {
+        self.wanted.get(at) != self.device.get(at)
+    }
+
+    fn changes(&self) -> usize {
+        (0..self.wanted.len()).filter(|at| self.is_changed(*at)).count()
+    }
+}
+
+/// An address as it is shown: upper-case hex with as many digits as the last one needs, two at least.
+fn address_text(at: usize, digits: usize) -> String {
+    format!("0x{at:0digits$X}")
+}
+
+/// Draws the editor and says what was done to it, in order; the caller changes the bytes.
+pub fn hex_editor(ui: &mut Ui, skin: &Skin, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
+    let id = ui.make_persistent_id(("hex_editor", label));
+    view.fit(model.wanted.len());
+    let edits = match ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
+        true => keys::listen(ui, model, view),
+        false => {
+            view.pending = None;
+            Vec::new()
+        }
+    };
+    let grid = Grid::new(ui, skin, model.wanted.len());
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::ZERO;
+        // A half-visible line of bytes is still one to read.
+        ui.spacing_mut().scroll.fade.strength = 0.0;
+        let narrow = ui.available_width() < grid.width + skin.space.groups * 2.0;
+        let frame = skin.sunken().show(ui, |ui| {
+            let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
+            area.show(ui, |ui| body(ui, skin, id, &grid, model, view)).inner
+        });
+        let response = frame.inner;
+        if response.has_focus() {
+            focus_ring(ui.painter(), skin, frame.response.rect, skin.radius);
+        }
+        tell(ui, &response, label, &grid, model, view);
+        ui.add_space(skin.space.inside);
+        status(ui, skin, &grid, model, view);
+    });
+    edits
+}
+
+/// The header and the lines.
+fn body(ui: &mut Ui, skin: &Skin, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
+    let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + skin.space.inside), Sense::hover());
+    paint::header(ui, skin, grid, header, model, view);
+    let shown = grid.lines().clamp(1, model.lines.max(1));
+    let height = grid.height_of(shown);
+    let area = ScrollArea::vertical().id_salt(id.with("lines")).max_height(height).min_scrolled_height(height);
+    let lines = area.show(ui, |ui| {
+        let size = Vec2::new(grid.width, grid.height_of(grid.lines().max(1)));
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        point(ui, &response, grid, model, view);
+        if std::mem::take(&mut view.reveal) && !model.wanted.is_empty() {
+            let cell = grid.cell(rect.min, view.column, view.cursor());
+            ui.scroll_to_rect_animation(cell, None, egui::style::ScrollAnimation::none());
+        }
+        let hovered = response.hover_pos().and_then(|pos| grid.hit(rect.min, pos));
+        paint::lines(ui, skin, grid, rect.min, model, view, &response, hovered);
+        if let Some((column, at)) = hovered {
+            // The tooltip stands beside the byte.
+            let cell = grid.cell(rect.min, column, at);
+            Response { rect: cell, interact_rect: cell, ..response.clone() }
+                .on_hover_ui(|ui| tip::byte(ui, skin, grid, model, at));
+        }
+        response
+    });
+    view.page = shown;
+    lines.inner
+}
+
+/// The pointer.
+fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
+    if response.gained_focus() {
+        // The next arrow shall move the cursor, not the focus.
+        ui.request_repaint();
+    }
+    if response.has_focus() {
+        let filter =
+            EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: view.pending.is_some() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    }
+    if response.hovered() {
+        ui.set_cursor_icon(egui::CursorIcon::Text);
+    }
+    if response.clicked() {
+        response.request_focus();
+    }
+    let (pressed, down, shift) =
+        ui.input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down(), input.modifiers.shift));
+    let Some(pos) = response.interact_pointer_pos() else { return };
+    // Outside, it scrolls by a line at a time.
+    let pos = response.interact_rect.expand(grid.row).clamp(pos);
+    if model.wanted.is_empty() {
+        return;
+    }
+    let (column, at) = grid.nearest(response.rect.min, pos, view.column, pressed);
+    if pressed {
+        response.request_focus();
+        view.column = column;
+        view.problem = None;
+        view.go(at, shift);
+    } else if down && at != view.cursor() {
+        view.go(at, true);
+    }
+    if response.double_clicked() {
+        let word = at - at % 4;
+        view.select(word..(word + 4).min(model.wanted.len()));
+    }
+}
+
+/// What a screen reader and a test find.
+fn tell(ui: &Ui, response: &Response, label: &str, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
+    let selected = view.selection();
+    let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
+        let first = address_text(selected.start, grid.digits);
+        format!("{first}: {}", crate::bits::hex(bytes))
+    });
+    let read_only = model.read_only.is_some();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::MultilineTextInput, ui.is_enabled(), label);
+        info.current_text_value = Some(value.clone().unwrap_or_default());
+        info
+    });
+    ui.accesskit_node_builder(response.id, |node| {
+        if read_only {
+            node.set_read_only();
+        }
+    });
+}
+
+/// Where the cursor is, or why something was not done.
+fn status(ui: &mut Ui, skin: &Skin, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(grid.row);
+        ui.spacing_mut().item_spacing.x = skin.space.groups;
+        if let Some(problem) = &view.problem {
+            let words = format!("{} {}", icons::WARNING_CIRCLE, skin.words(problem));
+            ui.add(egui::Label::new(sentence(skin, &words, skin.palette.bad.into())).wrap());
+            return;
+        }
+        let selected = view.selection();
+        let first = address_text(selected.start, grid.digits);
+        let place = match selected.len() {
+            0 => Text::new("widget.hex_empty"),
+            1 => Text::new("widget.hex_at").with("address", first).with("decimal", selected.start),
+            count => Text::new("widget.hex_selected")
+                .with("first", first)
+                .with("last", address_text(selected.end.saturating_sub(1), grid.digits))
+                .with("count", count),
+        };
+        ui.label(sentence(skin, &skin.words(&place), skin.palette.muted.into()));
+        let changes = model.changes();
+        if changes > 0 {
+            let words = skin.words(&Text::new("widget.hex_changed").with("count", changes));
+            ui.label(skin.caption(format!("{} {words}", icons::PENCIL_SIMPLE)).color(skin.palette.staged));
+        }
+    });
+}
+
+/// A caption with its addresses in the font for bytes: the other one would make a multiplication sign of `0x`.
+fn sentence(skin: &Skin, words: &str, colour: Color32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    for word in words.split_inclusive(' ') {
+        let size = skin.sizes.caption;
+        let font = if word.starts_with("0x") { FontId::monospace(size) } else { FontId::proportional(size) };
+        job.append(word, 0.0, TextFormat { valign: egui::Align::Center, ..TextFormat::simple(font, colour) });
+    }
+    job
+}

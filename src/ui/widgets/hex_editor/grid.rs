@@ -1,0 +1,90 @@
+//! Where the cells of a hex editor are.
+
+use egui::{FontId, Pos2, Rect, Ui, Vec2};
+
+use super::view::Column;
+use crate::ui::Skin;
+
+/// Bytes a line.
+pub(super) const WIDTH: usize = 16;
+
+/// Distances in points; the origin is the upper left corner of the first line.
+#[derive(Clone, Debug)]
+pub(super) struct Grid {
+    pub(super) font: FontId,
+    pub(super) glyph: f32,
+    pub(super) row: f32,
+    pub(super) width: f32,
+    /// Digits of an address.
+    pub(super) digits: usize,
+    /// Extra space after eight bytes, and beside the separator.
+    pub(super) gap: f32,
+    pub(super) text_left: f32,
+    hex_left: f32,
+    byte: f32,
+    letter: f32,
+    len: usize,
+}
+
+/// The next multiple of four points.
+fn on_grid(length: f32) -> f32 {
+    (length / 4.0).ceil() * 4.0
+}
+
+impl Grid {
+    pub(super) fn new(ui: &Ui, skin: &Skin, len: usize) -> Self {
+        let font = FontId::monospace(skin.sizes.body);
+        let (glyph, row) = ui.fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), fonts.row_height(&font)));
+        let digits = format!("{:X}", len.saturating_sub(1)).len().max(2);
+        let gap = skin.space.between;
+        let (byte, letter) = (on_grid(glyph * 2.0 + gap - 1.0), glyph.ceil());
+        let hex_left = on_grid(glyph * digits as f32) + gap + skin.space.inside;
+        let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
+        let width = text_left + letter * WIDTH as f32 + skin.space.inside;
+        let row = on_grid(row + 2.0);
+        Grid { font, glyph, row, width, digits, gap, text_left, hex_left, byte, letter, len }
+    }
+
+    /// Lines there are.
+    pub(super) fn lines(&self) -> usize {
+        self.len.div_ceil(WIDTH)
+    }
+
+    /// Height of so many lines.
+    pub(super) fn height_of(&self, lines: usize) -> f32 {
+        self.row * lines as f32
+    }
+
+    /// The cell of a byte in a column.
+    pub(super) fn cell(&self, origin: Pos2, column: Column, at: usize) -> Rect {
+        let (line, place) = (at / WIDTH, at % WIDTH);
+        let (left, width) = match column {
+            Column::Hex if place < WIDTH / 2 => (self.hex_left + self.byte * place as f32, self.byte),
+            Column::Hex => (self.hex_left + self.gap + self.byte * place as f32, self.byte),
+            Column::Text => (self.text_left + self.letter * place as f32, self.letter),
+        };
+        Rect::from_min_size(origin + Vec2::new(left, self.row * line as f32), Vec2::new(width, self.row))
+    }
+
+    /// The byte under the pointer.
+    pub(super) fn hit(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
+        let (column, at) = self.nearest(origin, pos, Column::Hex, true);
+        (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
+    }
+
+    /// The byte nearest to the pointer, in the column under it or in one that is given.
+    pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
+        let right = pos.x >= origin.x + self.text_left - self.gap;
+        let column = match (free, right) {
+            (true, true) => Column::Text,
+            (true, false) => Column::Hex,
+            (false, _) => column,
+        };
+        let last = self.len.saturating_sub(1);
+        // A negative number becomes zero.
+        let line = (((pos.y - origin.y) / self.row).floor() as usize).min(last / WIDTH);
+        let distance = |place: &usize| (self.cell(origin, column, *place).center().x - pos.x).abs();
+        let place = (0..WIDTH).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default();
+        (column, (line * WIDTH + place).min(last))
+    }
+}

@@ -1,0 +1,226 @@
+//! What the keyboard does in a hex editor. What is understood is taken out of the input, so that nobody else acts on it.
+
+use egui::{Event, FocusDirection, Key, Modifiers, Ui};
+
+use super::grid::WIDTH;
+use super::view::{Column, HexView};
+use super::{HexEdit, HexModel, address_text};
+use crate::app::Text;
+use crate::bits::{self, HexError};
+
+#[derive(Default)]
+struct Reaction {
+    edits: Vec<HexEdit>,
+    copied: Option<String>,
+    leave: Option<FocusDirection>,
+}
+
+/// Hears the keys of this frame. Before the widget itself is announced: only then can Tab still leave it.
+pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
+    let mut reaction = Reaction::default();
+    ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));
+    if let Some(text) = reaction.copied {
+        ui.copy_text(text);
+    }
+    if let Some(direction) = reaction.leave {
+        ui.memory_mut(|memory| memory.move_focus(direction));
+    }
+    reaction.edits
+}
+
+fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
+    match event {
+        Event::Key { pressed: true, .. } | Event::Text(_) | Event::Paste(_) | Event::Copy => view.problem = None,
+        _ => return false,
+    }
+    if let Event::Key { key: Key::Tab, modifiers, .. } = event {
+        return tab(*modifiers, view, reaction);
+    }
+    if model.wanted.is_empty() {
+        return false;
+    }
+    match event {
+        Event::Key { key, modifiers, .. } => {
+            walk(*key, *modifiers, model, view) || act(*key, *modifiers, model, view, reaction)
+        }
+        Event::Copy => {
+            reaction.copied = model.wanted.get(view.selection()).map(|bytes| copy(bytes, view.column));
+            true
+        }
+        Event::Text(text) => {
+            change(model, view, reaction, |view, reaction| write(text, model, view, reaction));
+            true
+        }
+        Event::Paste(text) => {
+            change(model, view, reaction, |view, reaction| paste(text, model, view, reaction));
+            true
+        }
+        _ => false,
+    }
+}
+
+/// Hex, then text, then what follows the editor; and back.
+fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut Reaction) -> bool {
+    if modifiers.command || modifiers.alt {
+        return false;
+    }
+    view.pending = None;
+    match (view.column, modifiers.shift) {
+        (Column::Hex, false) => view.column = Column::Text,
+        (Column::Text, true) => view.column = Column::Hex,
+        (Column::Text, false) => reaction.leave = Some(FocusDirection::Next),
+        (Column::Hex, true) => reaction.leave = Some(FocusDirection::Previous),
+    }
+    true
+}
+
+/// Keys that move the cursor.
+fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView) -> bool {
+    if modifiers.alt {
+        return false;
+    }
+    let (at, last) = (view.cursor(), model.wanted.len().saturating_sub(1));
+    let page = WIDTH * view.page.max(1);
+    let up = |by: usize| if at >= by { at - by } else { at % WIDTH };
+    // Below the last line: the same place in the last line that has it.
+    let down = |by: usize| if at + by <= last { at + by } else { at + (last - at) / WIDTH * WIDTH };
+    let to = match key {
+        Key::ArrowLeft => at.saturating_sub(1),
+        Key::ArrowRight => at + 1,
+        Key::ArrowUp => up(WIDTH),
+        Key::ArrowDown => down(WIDTH),
+        Key::PageUp => up(page),
+        Key::PageDown => down(page),
+        Key::Home if modifiers.command => 0,
+        Key::End if modifiers.command => last,
+        Key::Home => at - at % WIDTH,
+        Key::End => at - at % WIDTH + WIDTH - 1,
+        _ => return false,
+    };
+    view.go(to, modifiers.shift);
+    true
+}
+
+/// Keys that do something.
+fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
+    let history = |view: &mut HexView, reaction: &mut Reaction, edit: HexEdit| {
+        change(model, view, reaction, |view, reaction| {
+            view.pending = None;
+            reaction.edits.push(edit);
+        });
+    };
+    match (key, modifiers.command, modifiers.shift) {
+        (Key::A, true, false) => {
+            let reveal = view.reveal;
+            view.select(0..model.wanted.len());
+            view.reveal = reveal;
+        }
+        (Key::Z, true, false) => history(view, reaction, HexEdit::Undo),
+        (Key::Z, true, true) | (Key::Y, true, false) => history(view, reaction, HexEdit::Redo),
+        (Key::Escape | Key::Backspace, false, _) if view.pending.is_some() => view.pending = None,
+        (Key::Backspace, false, _) => change(model, view, reaction, |view, reaction| {
+            let range = view.selection();
+            if range.clone().any(|at| model.is_changed(at)) {
+                reaction.edits.push(HexEdit::Revert { range });
+            }
+        }),
+        (Key::Delete, false, _) => change(model, view, reaction, |view, reaction| {
+            view.pending = None;
+            let range = view.selection();
+            reaction.edits.push(HexEdit::Put { address: range.start, bytes: vec![0; range.len()] });
+        }),
+        _ => return false,
+    }
+    true
+}
+
+/// Does what changes something, or says why it cannot be.
+fn change(
+    model: &HexModel<'_>,
+    view: &mut HexView,
+    reaction: &mut Reaction,
+    how: impl FnOnce(&mut HexView, &mut Reaction),
+) {
+    match model.read_only {
+        Some(reason) => view.problem = Some(reason.clone()),
+        None => how(view, reaction),
+    }
+}
+
+fn copy(bytes: &[u8], column: Column) -> String {
+    match column {
+        Column::Hex => bits::hex(bytes),
+        Column::Text => bytes.iter().map(|byte| bits::ascii(*byte).unwrap_or(bits::NOT_PRINTABLE)).collect(),
+    }
+}
+
+/// Characters typed.
+fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) {
+    if view.column == Column::Text {
+        match ascii_bytes(text) {
+            Ok(bytes) => put(bytes, model, view, reaction, false),
+            Err(problem) => view.problem = Some(problem),
+        }
+        return;
+    }
+    for character in text.chars().filter(|character| !character.is_whitespace()) {
+        let Some(digit) = character.to_digit(16).and_then(|digit| u8::try_from(digit).ok()) else {
+            view.pending = None;
+            view.problem = Some(Text::new("widget.hex_no_digit").with("character", character));
+            return;
+        };
+        match view.pending.take() {
+            Some(high) => put(vec![high << 4 | digit], model, view, reaction, false),
+            None => {
+                view.go(view.selection().start, false);
+                view.pending = Some(digit);
+            }
+        }
+    }
+}
+
+fn paste(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) {
+    view.pending = None;
+    let bytes = match view.column {
+        Column::Text => ascii_bytes(text),
+        Column::Hex => bits::parse_hex(text).map_err(|error| match error {
+            HexError::Digit(character) => Text::new("widget.hex_no_digit").with("character", character.escape_debug()),
+            HexError::Odd(group) => Text::new("widget.hex_odd").with("group", group),
+        }),
+    };
+    match bytes {
+        Ok(bytes) => put(bytes, model, view, reaction, true),
+        Err(problem) => view.problem = Some(problem),
+    }
+}
+
+fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
+    let byte = |character: char| {
+        let ascii = u8::try_from(character).ok().filter(u8::is_ascii);
+        ascii.ok_or_else(|| Text::new("widget.hex_no_ascii").with("character", character))
+    };
+    text.chars().map(byte).collect()
+}
+
+/// Puts bytes where the selection begins; afterwards they are selected, or the cursor stands behind them.
+fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction, select: bool) {
+    let address = view.selection().start;
+    let room = model.wanted.len().saturating_sub(address);
+    if bytes.is_empty() {
+        view.problem = Some(Text::new("widget.hex_nothing"));
+        return;
+    }
+    if bytes.len() > room {
+        let digits = format!("{:X}", model.wanted.len().saturating_sub(1)).len().max(2);
+        let problem = Text::new("widget.hex_too_long").with("count", bytes.len()).with("room", room);
+        view.problem = Some(problem.with("address", address_text(address, digits)));
+        return;
+    }
+    let end = address + bytes.len();
+    if select {
+        view.select(address..end)
+    } else {
+        view.go(end, false)
+    }
+    reaction.edits.push(HexEdit::Put { address, bytes });
+}

@@ -1,0 +1,85 @@
+//! Where the cursor of a hex editor is and what is selected. It knows no bytes, only how many there are.
+
+use std::ops::Range;
+
+use crate::app::Text;
+
+/// What an editor remembers between two frames.
+#[derive(Clone, Debug, Default)]
+pub struct HexView {
+    anchor: usize,
+    cursor: usize,
+    /// Bytes there are.
+    len: usize,
+    /// The high nibble of the byte at the cursor, typed already.
+    pub(super) pending: Option<u8>,
+    pub(super) column: Column,
+    pub(super) problem: Option<Text>,
+    /// The cursor moved and has to be seen.
+    pub(super) reveal: bool,
+    /// Lines of a page.
+    pub(super) page: usize,
+}
+
+/// Which of the two columns has the keyboard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Column {
+    #[default]
+    Hex,
+    Text,
+}
+
+impl HexView {
+    /// Address of the cursor.
+    pub fn cursor(&self) -> usize {
+        self.cursor
+    }
+
+    /// Addresses selected: at least the cursor's, unless there is no byte at all.
+    pub fn selection(&self) -> Range<usize> {
+        let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
+        first..(last + 1).min(self.len.max(first))
+    }
+
+    /// Selects a range and brings its end into sight; an empty range sets the cursor.
+    pub fn select(&mut self, range: Range<usize>) {
+        self.pending = None;
+        self.anchor = range.start;
+        self.cursor = range.end.saturating_sub(1).max(range.start);
+        self.len = self.len.max(range.end);
+        self.reveal = true;
+    }
+
+    /// The bytes to read as numbers: the selection, or everything from the cursor on where only one byte is selected.
+    pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
+        let selected = self.selection();
+        let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };
+        bytes.get(range).unwrap_or_default()
+    }
+
+    /// Why the last thing was not done.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+
+    /// Other bytes, perhaps fewer.
+    pub(super) fn fit(&mut self, len: usize) {
+        self.len = len;
+        let last = len.saturating_sub(1);
+        if self.cursor > last || self.anchor > last {
+            self.pending = None;
+        }
+        self.cursor = self.cursor.min(last);
+        self.anchor = self.anchor.min(last);
+    }
+
+    /// Moves the cursor, with the selection or without.
+    pub(super) fn go(&mut self, to: usize, selecting: bool) {
+        self.pending = None;
+        self.cursor = to.min(self.len.saturating_sub(1));
+        if !selecting {
+            self.anchor = self.cursor;
+        }
+        self.reveal = true;
+    }
+}

@@ -1,0 +1,29 @@
+//! Widgets that egui does not have. Each draws what it is given, keeps nothing but its own selection, and says what the
+//! user wants; none knows a device. They share how the keyboard's place and a series' colour look.
+
+mod field_map;
+mod hex_editor;
+mod typed_view;
+
+use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
+
+use super::Skin;
+
+pub use field_map::{FieldMap, MapEvent, MapField, field_map};
+pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
+pub use typed_view::typed_view;
+
+/// The ring around what has the keyboard: two points of the accent, one point off the widget.
+fn focus_ring(painter: &Painter, skin: &Skin, rect: Rect, corners: impl Into<CornerRadius>) {
+    let corners = corners.into() + CornerRadius::same(1);
+    painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, skin.palette.accent), StrokeKind::Outside);
+}
+
+/// The colour of a series; they begin again after the eighth.
+fn series(skin: &Skin, number: usize) -> Color32 {
+    let colours = &skin.palette.series;
+    colours.iter().cycle().nth(number % colours.len()).copied().map_or(skin.palette.muted.into(), Color32::from)
+}
+
+#[cfg(test)]
+mod tests;

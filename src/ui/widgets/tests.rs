@@ -1,0 +1,56 @@
+//! The widgets driven as a user would: by their accessible labels, with keys and pointer.
+
+use egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::app::{Language, Look, Theme};
+use crate::ui::{Skin, install_fonts};
+
+mod field_map;
+mod hex_editor;
+mod typed_view;
+
+fn skin() -> Skin {
+    Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English)
+}
+
+/// A widget with its state between two buttons, in a window.
+fn window<State>(state: State, draw: impl Fn(&mut egui::Ui, &mut State) + 'static) -> Harness<'static, State> {
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(900.0, 500.0))
+        .with_context_setup(|ctx| {
+            install_fonts(ctx);
+            skin().dress(ctx);
+        })
+        // A double click is two within a third of a second.
+        .with_step_dt(0.02)
+        .build_ui_state(
+            move |ui, state| {
+                let _ = ui.button("before");
+                draw(ui, state);
+                let _ = ui.button("behind");
+            },
+            state,
+        );
+    harness.run();
+    harness
+}
+
+/// Presses keys one after the other.
+fn press<State>(harness: &mut Harness<'_, State>, keys: &[(Modifiers, Key)]) {
+    for (modifiers, key) in keys {
+        harness.key_press_modifiers(*modifiers, *key);
+        harness.run();
+    }
+}
+
+/// Puts the keyboard on a widget.
+fn focus<State>(harness: &mut Harness<'_, State>, label: &str) {
+    harness.get_by_label(label).focus();
+    harness.run();
+}
+
+const NONE: Modifiers = Modifiers::NONE;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const CTRL: Modifiers = Modifiers::COMMAND;
