@@ -51,6 +51,11 @@ impl MaskedBytes {
         self.0.iter().copied().collect()
     }
 
+    /// The bytes, with `stand_in` for each masked one.
+    pub fn filled(&self, stand_in: u8) -> Vec<u8> {
+        self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
+    }
+
     /// The first `count` bytes and the rest.
     pub fn split_at(&self, count: usize) -> (MaskedBytes, MaskedBytes) {
         let (head, tail) = self.0.split_at(count.min(self.0.len()));

@@ -101,6 +101,11 @@ impl FromStr for LinkUrl {
 }
 
 impl LinkUrl {
+    /// The virtual device as delivered.
+    pub fn sim() -> Self {
+        LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
+    }
+
     fn check_target(&self) -> Result<(), UrlError> {
         let missing = |what| Err(UrlError::Target { scheme: self.scheme.word(), what });
         match self.scheme {
@@ -149,6 +154,14 @@ impl Query {
     /// The value of a parameter.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+    }
+
+    /// Gives a parameter a value, in its place where it is there already.
+    pub fn set(&mut self, name: &str, value: &str) {
+        match self.0.iter_mut().find(|(own, _)| own == name) {
+            Some((_, own)) => value.clone_into(own),
+            None => self.0.push((name.to_owned(), value.to_owned())),
+        }
     }
 
     /// All parameters in the order written.

@@ -61,6 +61,17 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
+/// Writes a file of the program's own as [`write_atomically`] does, in a folder that is made where it is missing.
+///
+/// # Errors
+/// Where the folder cannot be made, or as [`write_atomically`].
+pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    write_atomically(path, content)
+}
+
 /// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, as some editors leave it, is no part of it.
 ///
 /// # Errors

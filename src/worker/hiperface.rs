@@ -8,6 +8,7 @@ mod prepare;
 use std::fmt;
 use std::sync::Arc;
 
+pub use commit::device_key;
 pub use job::{
     Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark, SavedProfile, Value,
     WEAR_LIMIT,

@@ -1,6 +1,7 @@
 //! Who is there, and what does it report.
 
 use super::{Error, Master, read_range};
+use crate::profile::hiperface::HiperfaceProfile;
 use crate::protocol::hiperface::{
     CodeNumber, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply, Request,
     SerialLabel, StatusCode, TypeLabel,
@@ -31,6 +32,34 @@ impl Identity {
     /// The extended label, read.
     pub fn extended(&self) -> Option<ExtendedLabel> {
         self.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok())
+    }
+}
+
+/// The encoder as a profile remembers it: memory that is free is not recorded.
+pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
+    let own = &profile.identity;
+    let label = TypeLabel {
+        settings: profile.interface.settings,
+        encoder_type: own.encoder_type,
+        eeprom_units: u8::try_from(own.eeprom_bytes / 16).unwrap_or(u8::MAX),
+        options: own.options,
+    };
+    let serial = SerialLabel {
+        serial_number: own.serial_number.clone(),
+        firmware_version: own.firmware_version.clone(),
+        firmware_date: own.firmware_date.clone(),
+    };
+    let extended = own.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok());
+    let row = types.find(own.encoder_type);
+    Identity {
+        address: profile.interface.address,
+        label,
+        serial,
+        memory: None,
+        name: own.encoder_name.clone(),
+        geometry: extended.and_then(|label| label.geometry).or_else(|| row.and_then(|row| row.geometry)),
+        kit: row.filter(|_| own.encoder_type != TypeLabel::EXTENDED).map(|row| row.kit),
+        extended_label: own.extended_label.clone(),
     }
 }
 

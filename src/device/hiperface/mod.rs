@@ -18,7 +18,7 @@ pub mod write;
 
 pub use error::{Damage, Error};
 pub use fields::{read_all_fields, read_field, read_field_status, read_range};
-pub use identify::{Identity, identify, read_address, read_extended_label, read_settings, read_status};
+pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;
 pub use position::{
     PositionReading, Sample, ensure_standstill, read_analogue, read_analogue_limit, read_counter, read_position,

@@ -9,7 +9,7 @@ pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 pub const MAX_TRANSFER: usize = 128;
 
 /// Which of the encoder's four access codes: 0…3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CodeNumber(u8);
 
 impl CodeNumber {
@@ -158,6 +158,13 @@ impl DataFieldStatus {
     #[must_use]
     pub const fn with_write_enable(self, writable: bool) -> Self {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
+    }
+
+    /// The same field, guarded by another access code, which reading asks for or not.
+    #[must_use]
+    pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
+        let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
+        DataFieldStatus(rest | code.0 << 4 | if required { Self::CODE_REQUIRED } else { 0 })
     }
 
     /// The same field with another size.

@@ -29,6 +29,32 @@ pub struct LabelParameter {
     pub value: i16,
 }
 
+/// What some bytes of the label are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LabelPart {
+    /// 00h.
+    Checksum,
+    /// 01h.
+    Flags,
+    /// 02h…05h: periods in a revolution, or the length of a period in nanometres.
+    Resolution(u32),
+    /// 06h…09h: revolutions, or the coded range in periods.
+    Range(u32),
+    /// 0Ah…1Bh.
+    Designation,
+    /// Which limits of a set are valid: bits 0 to 14, and bit 15 where another set follows.
+    Selector(u16),
+    /// A limit; one that its selector leaves out is not used.
+    Limit {
+        /// Its number.
+        number: u8,
+        /// The word.
+        value: i16,
+        /// Its selector bit is set.
+        valid: bool,
+    },
+}
+
 /// Why a data field is not an extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
@@ -84,6 +110,41 @@ impl ExtendedLabel {
             }
         }
         limits
+    }
+
+    /// The label taken apart, byte by byte: address, number of bytes, and what they are.
+    ///
+    /// # Errors
+    /// [`LabelError::Short`] when the description is not complete.
+    pub fn parts(bytes: &[u8]) -> Result<Vec<(usize, usize, LabelPart)>, LabelError> {
+        let (description, mut sets) =
+            bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
+        let [_, _, a3, a2, a1, a0, b3, b2, b1, b0, ..] = description;
+        let mut parts = vec![
+            (0x00, 1, LabelPart::Checksum),
+            (0x01, 1, LabelPart::Flags),
+            (0x02, 4, LabelPart::Resolution(u32::from_be_bytes([*a3, *a2, *a1, *a0]))),
+            (0x06, 4, LabelPart::Range(u32::from_be_bytes([*b3, *b2, *b1, *b0]))),
+            (0x0A, 18, LabelPart::Designation),
+        ];
+        let mut address = Self::MIN_BYTES;
+        for set in 0..3u8 {
+            let Some(([high, low], limits)) = sets.split_first_chunk::<2>() else { break };
+            let selector = u16::from_be_bytes([*high, *low]);
+            parts.push((address, 2, LabelPart::Selector(selector)));
+            let (words, _) = limits.as_chunks::<2>();
+            for (slot, word) in (0..15u8).zip(words) {
+                let valid = selector & 1 << slot != 0;
+                let limit = LabelPart::Limit { number: set * 15 + slot, value: i16::from_be_bytes(*word), valid };
+                parts.push((address + 2 + 2 * usize::from(slot), 2, limit));
+            }
+            match sets.get(Self::SET_BYTES..) {
+                Some(rest) if selector & 0x8000 != 0 => sets = rest,
+                _ => break,
+            }
+            address += Self::SET_BYTES;
+        }
+        Ok(parts)
     }
 
     fn geometry(linear: bool, first: u32, second: u32) -> Option<Geometry> {
@@ -189,5 +250,22 @@ mod tests {
         assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
         bytes[2..6].copy_from_slice(&[0; 4]);
         assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
+    }
+
+    #[test]
+    fn the_parts_stand_at_the_addresses_of_the_manual() {
+        let parts = ExtendedLabel::parts(&label()).unwrap();
+        assert_eq!(
+            parts[..5].iter().map(|(at, count, _)| (*at, *count)).collect::<Vec<_>>(),
+            [(0, 1), (1, 1), (2, 4), (6, 4), (10, 18)]
+        );
+        assert_eq!(parts[2].2, LabelPart::Resolution(16));
+        assert_eq!(parts[3].2, LabelPart::Range(4096));
+        assert_eq!(parts[5], (0x1C, 2, LabelPart::Selector(3)));
+        assert_eq!(parts[6], (0x1E, 2, LabelPart::Limit { number: 0, value: 0x48, valid: true }));
+        assert_eq!(parts[7], (0x20, 2, LabelPart::Limit { number: 1, value: 0x73, valid: true }));
+        assert_eq!(parts[8], (0x22, 2, LabelPart::Limit { number: 2, value: 0, valid: false }));
+        assert_eq!(parts.len(), 6 + 15, "one set: 28 + 2 + 30 bytes");
+        assert_eq!(ExtendedLabel::parts(&[0; 27]), Err(LabelError::Short { got: 27 }));
     }
 }

@@ -51,6 +51,18 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
+    /// The same interface with a time-out of 44/baud, or of 11/baud.
+    #[must_use]
+    pub const fn with_long_timeout(self, long: bool) -> Self {
+        LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
+    }
+
+    /// The same interface for a bus of several encoders, or for one.
+    #[must_use]
+    pub const fn with_bus(self, bus: bool) -> Self {
+        LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
+    }
+
     /// Speed; `None` for the reserved code 111.
     pub fn baud(self) -> Option<Baud> {
         BAUDS.get(usize::from(self.0 & 7)).copied()

@@ -32,7 +32,7 @@ pub use data_field::{
 };
 pub use describe::describe;
 pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
-pub use extended_label::{ExtendedLabel, LabelError, LabelParameter};
+pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};
 pub use line_settings::{BAUDS, LineSettings};
 pub use position::{Geometry, Position, STEPS_PER_PERIOD, nearest_in_phase};

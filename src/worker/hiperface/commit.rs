@@ -58,7 +58,7 @@ pub(super) fn commit(
 }
 
 /// How the logbook knows an encoder.
-pub(super) fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
+pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey {
         kind: "hiperface".to_owned(),
         device_type: format!("{:02X}h", identity.label.encoder_type),

@@ -119,6 +119,12 @@ pub enum Change {
         /// The user says that the encoder is a kit, where the type does not tell.
         kit: bool,
     },
+    /// Add steps to the position, round the end of the measuring range; at standstill. It undoes a set position wherever
+    /// the shaft is by now.
+    ShiftPosition {
+        /// How many.
+        steps: i64,
+    },
     /// Give the encoder another address.
     SetAddress(DeviceAddress),
     /// Store other interface settings.

@@ -38,6 +38,15 @@ pub(super) fn prepare(
         Change::SetPosition { wanted, exact, synchronise, kit } => {
             set_position(&mut master, &mut prepared, wanted, exact, synchronise, kit)?;
         }
+        Change::ShiftPosition { steps } => {
+            let now = ensure_standstill(&mut master, prepared.identity.geometry)?;
+            let range = prepared.identity.geometry.and_then(Geometry::range).unwrap_or(1 << 32);
+            let to = (i64::from(now) + steps).rem_euclid(i64::try_from(range).unwrap_or(i64::MAX));
+            let to = u32::try_from(to).unwrap_or(now);
+            let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
+            let op = (to != now).then_some(Op::SetPosition { from: now, to, synchronise: false });
+            prepared.plan = plan_scalar(fields, Scalar::Position(now), op);
+        }
         other => prepared.plan = single(&mut master, other)?,
     }
     prepared.cycles_seen = cycles_seen(desk, &prepared.identity);
@@ -156,7 +165,7 @@ fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobE
             let from = read_counter(master)?;
             plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
         }
-        Change::Restore { .. } | Change::SetPosition { .. } => {
+        Change::Restore { .. } | Change::SetPosition { .. } | Change::ShiftPosition { .. } => {
             return Err(Error::Unexpected("not a single change".to_owned()).into());
         }
     };
