@@ -1,13 +1,29 @@
-//! What the program knows and can do, without drawing: the words for a person, the form to connect with, the user's
-//! edits beside an encoder's memory, what is remembered.
+//! What the program knows and can do, without drawing: all state of the window and what can be done with it, the words
+//! for a person, the look as data.
 
+mod action;
 pub mod connect;
 pub mod explain;
 pub mod hiperface;
+mod keep;
+mod line;
 mod look;
+mod notices;
+mod opening;
+mod services;
 mod settings;
+mod studio;
+mod tasks;
 mod texts;
+mod trace;
 
+pub use action::{Action, Done, FileQuestion, Question};
+pub use line::{Line, Running};
 pub use look::{Look, Palette, Rgb, Spaces, TextSizes};
+pub use notices::{Log, Notice, Severity};
+pub use services::{JobEnd, JobRecord, Opener, Services, World};
 pub use settings::{Settings, Theme};
-pub use texts::{Language, Text, Texts};
+pub use studio::{SessionId, Studio, Tab};
+pub use tasks::{Mailbox, Tasks, Wake};
+pub use texts::{Language, Text, Texts, decimal};
+pub use trace::{TraceLine, TraceLog};

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Language;
+use super::studio::Tab;
 
 /// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,11 +28,22 @@ pub struct Settings {
     links: Vec<String>,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
+    /// The open tab.
+    pub tab: Tab,
+    /// Size of the window in points.
+    pub size: Option<(u32, u32)>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { theme: Theme::Dark, language: Language::English, links: Vec::new(), layout: None }
+        Settings {
+            theme: Theme::Dark,
+            language: Language::English,
+            links: Vec::new(),
+            layout: None,
+            tab: Tab::Hiperface,
+            size: None,
+        }
     }
 }
 

@@ -140,6 +140,11 @@ impl Text {
     }
 }
 
+/// A number of so many decimals with the language's decimal sign.
+pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
+    Argument::Number(format!("{value:.decimals$}")).said(Place::Window(language))
+}
+
 impl Texts {
     /// The table's source.
     pub const SOURCE: &'static str = include_str!("../../assets/texts.ron");
@@ -176,6 +181,14 @@ mod tests {
             assert_eq!(places(&row.en), places(&row.de), "{id}");
             assert!(places(&row.terminal).iter().all(|place| places(&row.en).contains(place)), "{id}");
         }
+    }
+
+    #[test]
+    fn no_row_hides_another() {
+        let names =
+            Texts::SOURCE.lines().filter_map(|line| line.strip_prefix("    \"")?.split_once("\": (")).map(|row| row.0);
+        let names: Vec<&str> = names.collect();
+        assert_eq!(names.len(), Texts::built_in().ids().count(), "a name stands twice");
     }
 
     #[test]

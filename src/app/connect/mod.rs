@@ -1,7 +1,154 @@
-//! Connecting: what a person fills in, and what is offered to him. It opens nothing.
+//! The connection dialog: a link as a form, the ports of this machine, and the search for an encoder whose settings nobody
+//! remembers.
 
+mod act;
 mod form;
 mod ports;
 
 pub use form::{LinkForm, LinkKind};
 pub use ports::{Offer, offered_ports};
+
+use super::line::Line;
+use super::services::Services;
+use super::{Text, explain};
+use crate::app::action::{Done, OpenFailed, Opened};
+use crate::device::hiperface::find::{FindOptions, Findings, Found};
+use crate::link::LinkUrl;
+use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
+use crate::worker::{Event, Progress};
+
+/// What can be done in the dialog.
+pub enum Action {
+    /// Open it.
+    Open,
+    /// Close it; a search ends.
+    Close,
+    /// Look for serial ports again.
+    ListPorts,
+    /// The form was edited.
+    Edit(Box<LinkForm>),
+    /// Fill the form in from a link.
+    Use(String),
+    /// Connect as the form says.
+    Connect,
+    /// Look for encoders on the line of the form.
+    Search(FindOptions),
+    /// End the search.
+    StopSearch,
+    /// Connect to an encoder that was found.
+    Choose(usize),
+}
+
+/// The dialog.
+pub struct Connect {
+    /// The link as a form.
+    pub form: LinkForm,
+    /// The ports of this machine; `None` while they are being looked for.
+    pub ports: Option<Result<Vec<Offer>, Text>>,
+    /// Why the form cannot be used.
+    pub problem: Option<Text>,
+    /// The search.
+    pub search: Option<Search>,
+}
+
+/// A search for encoders.
+pub struct Search {
+    /// Its number in the studio.
+    pub(super) number: u32,
+    /// The link it searches on.
+    pub(super) url: LinkUrl,
+    pub(super) options: FindOptions,
+    pub(super) line: Option<Line<Hiperface>>,
+    /// All that answered so far.
+    pub found: Vec<Found>,
+    /// How it ended; `None` while it goes on.
+    pub end: Option<Text>,
+}
+
+impl Connect {
+    pub(super) fn new(form: LinkForm) -> Self {
+        Connect { form, ports: None, problem: None, search: None }
+    }
+}
+
+impl Search {
+    /// How far it is.
+    pub fn progress(&self) -> Option<&Progress> {
+        self.line.as_ref()?.running()?.progress.as_ref()
+    }
+
+    /// It goes on.
+    pub fn is_running(&self) -> bool {
+        self.end.is_none()
+    }
+
+    /// The link of an encoder that was found.
+    pub(super) fn link_to(&self, found: &Found) -> LinkUrl {
+        let mut url = self.url.clone();
+        url.query.set("baud", &found.format.baud.to_string());
+        url.query.set("parity", found.format.parity.word());
+        url.query.set("address", &format!("0x{:02X}", found.address));
+        url
+    }
+
+    pub(super) fn opened(&mut self, result: Result<Box<Opened>, Box<OpenFailed>>, services: &Services) {
+        match result {
+            Ok(opened) => {
+                let mut line = Line::new(*opened);
+                let job = HiperfaceJob::Find(self.options.clone());
+                if line.submit(job, Text::new("job.find"), false, services.now()).is_err() {
+                    self.end = Some(Text::new("session.ended"));
+                }
+                self.line = Some(line);
+            }
+            Err(failed) => self.end = Some(explain::open_failed(&failed)),
+        }
+    }
+
+    pub(super) fn pump(&mut self) {
+        while let Some(event) = self.line.as_mut().and_then(Line::next) {
+            match event {
+                Event::Remark(Remark::Found(found)) => self.found.push(found),
+                Event::Finished(_, output) => self.finish(*output),
+                Event::Failed(_, error) | Event::Cancelled(_, error) => {
+                    self.end = explain::hiperface::job(&error).into_iter().next();
+                }
+                Event::Lost(error) => self.end = Some(explain::link(&error)),
+                Event::Started(_) | Event::Progress(..) | Event::Remark(Remark::Codes(_)) | Event::PollFailed(_) => {}
+            }
+        }
+    }
+
+    fn finish(&mut self, output: HiperfaceOutput) {
+        self.end = Some(match output {
+            HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
+                let id = match (found.is_empty(), complete) {
+                    (true, true) => "find.nothing",
+                    (false, true) => "find.done",
+                    (_, false) => "find.cut_short",
+                };
+                let text = Text::new(id).with("count", found.len());
+                self.found = found;
+                text
+            }
+            HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => {
+                Text::new("find.foreign_traffic").with("bytes", bytes)
+            }
+            _ => Text::new("session.ended"),
+        });
+    }
+
+    pub(super) fn stop(&mut self) {
+        match &mut self.line {
+            Some(line) => line.stop(),
+            // The link is still being opened, which may take for ever.
+            None => self.end = Some(Text::new("find.cut_short").with("count", 0)),
+        }
+    }
+}
+
+/// The serial ports, as a task's result.
+pub(super) fn list_ports(services: &Services) {
+    let ports = services.world.ports.clone();
+    services.tasks.run("ports", move || super::Action::Done(Done::Ports(ports())));
+}

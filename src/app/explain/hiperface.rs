@@ -1,14 +1,18 @@
 //! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
 
+mod change;
 mod check;
 mod damage;
+mod label;
 mod op;
 mod words;
 
 use std::path::Path;
 
+pub use change::{change, staged};
 pub use check::{finding, step, verdict};
 pub use damage::damage;
+pub use label::{LabelRow, label};
 pub use op::{OpWords, op};
 pub use words::{
     field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,

@@ -6,6 +6,7 @@ pub mod hiperface;
 use std::path::Path;
 
 use super::Text;
+use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::ProfileError;
 use crate::store::{FileError, FileProblem, StoreError};
@@ -44,6 +45,14 @@ pub fn open(error: &OpenError) -> Text {
         OpenError::File(error) => file(error),
         OpenError::Recording { path, cause } => Text::new("link.recording").with("path", path).with("why", cause),
         OpenError::Store(error) => store(error),
+    }
+}
+
+/// A link that could not be opened, or had no thread to run on.
+pub fn open_failed(failed: &OpenFailed) -> Text {
+    match failed {
+        OpenFailed::Link(error) => open(error),
+        OpenFailed::Thread(why) => Text::new("session.no_thread").with("why", why),
     }
 }
 

@@ -1,5 +1,19 @@
-//! HIPERFACE: the memory of an encoder beside what the user has made of it.
+//! HIPERFACE: an encoder on the desk, its memory beside what the user has made of it, and the review of a write.
 
+mod act;
+mod action;
+mod curve;
+mod drafts;
+mod encoder;
+pub mod forms;
+mod meaning;
+mod news;
+pub mod review;
+pub mod rules;
 mod staged;
 
+pub use action::{Action, Done};
+pub use curve::{Curve, Point, Unit};
+pub use encoder::{Encoder, Phase, Source};
+pub use review::{Review, ReviewState};
 pub use staged::{Staged, StagedError};

@@ -2,11 +2,12 @@
 //! to an encoder; a plan is made of the difference.
 //!
 //! Edits survive a fresh reading of the encoder: a byte that the user changed stays as he wants it, whatever the encoder
-//! has now; every other byte follows the encoder.
+//! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
+//! known any more, wait until it can.
 
 use std::collections::BTreeMap;
 
-use crate::profile::hiperface::{FieldImage, FieldRange, runs};
+use crate::profile::hiperface::{FieldImage, FieldRange};
 
 /// Data fields with the user's edits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -52,10 +53,14 @@ impl Staged {
     /// Takes what was read from the encoder; edits stay, unless the byte they are for is gone or is as wanted now.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.device = device;
-        let mut edits = std::mem::take(&mut self.edits);
-        edits.retain(|(field, address), wanted| self.on_device(*field, *address).is_some_and(|byte| byte != *wanted));
-        self.edits = edits;
+        self.forget_the_impossible();
         // What was undone belongs to another memory.
+        self.redo.clear();
+    }
+
+    /// The edits were written: what led to them cannot be undone any more.
+    pub fn forget_steps(&mut self) {
+        self.undo.clear();
         self.redo.clear();
     }
 
@@ -103,16 +108,27 @@ impl Staged {
 
     /// Runs of edited bytes.
     pub fn changes(&self) -> Vec<FieldRange> {
-        let wanted = self.wanted();
-        self.device
-            .iter()
-            .zip(&wanted)
-            .flat_map(|(device, wanted)| {
-                let (old, new) = (device.bytes.as_deref(), wanted.bytes.as_deref());
-                let runs = runs(old.unwrap_or_default(), new.unwrap_or_default());
-                runs.into_iter().map(|run| FieldRange::new(device.number, run.start, run.len()))
-            })
-            .collect()
+        let mut runs: Vec<FieldRange> = Vec::new();
+        for (field, address) in self.edits.keys() {
+            match runs.last_mut() {
+                Some(FieldRange { field: own, start, count: Some(count) })
+                    if own == field && *start + *count == *address =>
+                {
+                    *count += 1;
+                }
+                _ => runs.push(FieldRange::new(*field, *address, 1)),
+            }
+        }
+        runs
+    }
+
+    /// The edited runs with their bytes: what is to be written.
+    pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
+        let bytes = |range: &FieldRange| {
+            let addresses = (range.start..).take(range.count.unwrap_or(0));
+            addresses.filter_map(|address| self.byte(range.field, address)).collect()
+        };
+        self.changes().into_iter().map(|range| (range, bytes(&range))).collect()
     }
 
     /// Puts bytes into a field, as one step that can be undone.
@@ -141,6 +157,16 @@ impl Staged {
     /// Takes the edits of one range back.
     pub fn revert_range(&mut self, range: FieldRange) {
         self.step(|staged| staged.edits.retain(|(field, address), _| !range.contains(*field, *address)));
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
     }
 
     /// Undoes the last step. False when there is none.
@@ -178,13 +204,15 @@ impl Staged {
     }
 
     fn set(&mut self, field: u8, address: usize, byte: u8) {
-        match self.on_device(field, address) {
-            Some(own) if own != byte => {
-                self.edits.insert((field, address), byte);
-            }
-            _ => {
-                self.edits.remove(&(field, address));
-            }
+        let is_edit = match self.field(field).map(|image| (&image.bytes, image.status)) {
+            Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
+            Some((None, status)) => address < status.size().bytes(),
+            None => false,
+        };
+        if is_edit {
+            self.edits.insert((field, address), byte);
+        } else {
+            self.edits.remove(&(field, address));
         }
     }
 
@@ -281,6 +309,23 @@ mod tests {
         assert!(staged.undo());
         assert!(!staged.is_edited(0, 0));
         assert_eq!(staged.byte(0, 1), Some(2));
+    }
+
+    #[test]
+    fn edits_wait_for_a_field_that_cannot_be_read() {
+        let mut staged = staged();
+        staged.put(0, 0, &[1, 2]).unwrap();
+        let mut locked = fields(&[0; 16]);
+        locked[0].bytes = None;
+        staged.refresh(locked);
+        assert!(staged.is_dirty());
+        assert_eq!(
+            staged.changed_runs(),
+            [(FieldRange::new(0, 0, 2), vec![1, 2])],
+            "a plan says which code is missing"
+        );
+        staged.refresh(fields(&[1; 16]));
+        assert_eq!(staged.edits().collect::<Vec<_>>(), [(0, 1, 2)]);
     }
 
     #[test]

@@ -1,0 +1,163 @@
+//! What a person, a view or a finished task asks of the studio.
+
+use std::path::PathBuf;
+
+use super::connect;
+use super::hiperface;
+use super::studio::{SessionId, Tab};
+use super::{Language, Text, Theme};
+use crate::link::{LinkError, PortInfo};
+use crate::profile::{Document, ProfileError};
+use crate::protocol::hiperface::EncoderTypes;
+use crate::store::{FileError, StoreError};
+use crate::worker::hiperface::Hiperface;
+use crate::worker::{OpenError, Worker};
+
+/// Something to be done.
+pub enum Action {
+    /// Show a tab.
+    ShowTab(Tab),
+    /// Dark or light.
+    SetTheme(Theme),
+    /// Another language.
+    SetLanguage(Language),
+    /// The arrangement of the panels has changed.
+    KeepLayout(String),
+    /// The window has another size, in points.
+    KeepSize(u32, u32),
+    /// Show another session.
+    Select(SessionId),
+    /// End a session; asks when it holds edits.
+    CloseSession(SessionId),
+    /// End everything that runs, in all sessions.
+    Stop,
+    /// What Esc does: stop what runs, else close what is open.
+    Escape,
+    /// Close the window; asks when something would be lost.
+    Close,
+    /// The answer to the open question: go on.
+    Confirm,
+    /// The notice that stands in the window has been read.
+    Dismiss,
+    /// The connection dialog.
+    Connect(connect::Action),
+    /// Ask for a profile to open.
+    AskOpen,
+    /// Open a profile.
+    Open(PathBuf),
+    /// No file was chosen.
+    FileNotChosen,
+    /// The system has no dialog for files: the path is to be typed.
+    TypePath(FileQuestion),
+    /// Something in the HIPERFACE tab, about the session that is shown.
+    Hiperface(hiperface::Action),
+    /// A task has come back.
+    Done(Done),
+    /// The system has no thread left for a task.
+    NoThread(String),
+}
+
+/// What tasks come back with.
+pub enum Done {
+    /// A link was opened, or not.
+    Opened {
+        /// For whom.
+        session: SessionId,
+        /// The session on its thread.
+        result: Result<Box<Opened>, Box<OpenFailed>>,
+    },
+    /// A link was opened for a search.
+    OpenedForSearch {
+        /// For which.
+        number: u32,
+        /// The session on its thread.
+        result: Result<Box<Opened>, Box<OpenFailed>>,
+    },
+    /// The serial ports of this machine.
+    Ports(Result<Vec<PortInfo>, LinkError>),
+    /// A profile was read.
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is in it.
+        result: Result<Box<Document>, ReadError>,
+        /// The table of encoder types.
+        types: Result<EncoderTypes, StoreError>,
+    },
+    /// A file was written.
+    Written {
+        /// Whose content it is.
+        session: SessionId,
+        /// The file.
+        path: PathBuf,
+        /// What was to be in it.
+        document: Box<Document>,
+        /// How it went.
+        result: Result<(), FileError>,
+    },
+    /// The disk has had time enough to keep what is to be kept before the window closes.
+    ClosingTakesLong,
+    /// The settings were kept.
+    SettingsKept(Result<(), FileError>),
+    /// About one session in the HIPERFACE tab.
+    Hiperface(SessionId, hiperface::Done),
+}
+
+/// A session on its thread, with the ring that its trace goes into.
+pub struct Opened {
+    /// The session.
+    pub(super) worker: Worker<Hiperface>,
+    /// Its trace.
+    pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
+    /// The device lives in this process.
+    pub(super) is_virtual: bool,
+    /// When its clock began.
+    pub(super) began: jiff::Zoned,
+}
+
+/// Why there is no session.
+#[derive(Debug)]
+pub enum OpenFailed {
+    /// The link.
+    Link(OpenError),
+    /// No thread for it.
+    Thread(String),
+}
+
+/// Why a profile cannot be read.
+#[derive(Debug)]
+pub enum ReadError {
+    /// The file.
+    File(FileError),
+    /// Its content.
+    Profile(ProfileError),
+}
+
+/// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileQuestion {
+    /// Which profile to open.
+    Open,
+    /// Where to save; with a name to begin with.
+    Save {
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+}
+
+/// A question that has to be answered before something is done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// What would be lost or interrupted.
+    pub text: Text,
+    /// The word for going on.
+    pub confirm: Text,
+    pub(super) then: Then,
+}
+
+/// What a confirmed question leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Then {
+    CloseWindow,
+    CloseSession(SessionId),
+}

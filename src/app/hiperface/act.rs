@@ -1,0 +1,315 @@
+//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+
+use super::Done;
+use super::action::Action;
+use super::encoder::{Encoder, Phase, Source};
+use super::review::{Review, ReviewState};
+use super::rules;
+use crate::app::action::{self, FileQuestion};
+use crate::app::services::{JobEnd, Services};
+use crate::app::{Severity, Text, explain};
+use crate::bits::hex;
+use crate::device::hiperface::SaveOptions;
+use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
+use crate::profile::{Body, Consent, Document};
+use crate::store::write_atomically;
+use crate::worker::hiperface::{Change, Commit, Hiperface, HiperfaceJob};
+use crate::worker::{SubmitError, Worker};
+
+impl Encoder {
+    /// Does what is asked.
+    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Read => self.read_again(services),
+            Action::ReadStatus => self.submit(HiperfaceJob::Status, services),
+            Action::ReadPosition => {
+                let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+                self.submit(HiperfaceJob::Position(geometry), services);
+            }
+            Action::Poll(interval) => {
+                if let Some(line) = &mut self.line {
+                    line.poll(interval);
+                }
+            }
+            Action::ClearCurve => self.curve.clear(),
+            Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
+            Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
+            Action::Check { restart } => self.submit(HiperfaceJob::Check { restart }, services),
+            Action::Reset => self.submit(HiperfaceJob::Reset, services),
+            Action::ConfigureForNow(settings) => self.submit(HiperfaceJob::ConfigureForNow(settings), services),
+            Action::UseCode { number, code } => {
+                if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
+                    self.know_code(number, code);
+                }
+            }
+            Action::Put { field, address, bytes } => self.put(field, address, &bytes, services),
+            Action::Undo => {
+                self.staged.undo();
+            }
+            Action::Redo => {
+                self.staged.redo();
+            }
+            Action::RevertAll => self.staged.revert(),
+            Action::Revert(range) => self.staged.revert_range(range),
+            Action::Review => self.review_edits(services),
+            Action::Plan(change) => self.plan(change, services),
+            Action::PlanAgain(options) => self.plan_again(options, services),
+            Action::ForceWear(force) => {
+                if let Some(review) = &mut self.review {
+                    review.force_wear = force;
+                }
+            }
+            Action::Write => self.write(services),
+            Action::CloseReview => self.close_review(),
+            Action::AskSave => services.file_question = Some(FileQuestion::Save { suggested: self.suggested_file() }),
+            Action::Save(path) => self.save(path, services),
+            Action::ListBackups => self.list_backups(services),
+            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Starts a job, or says why not.
+    pub(super) fn submit(&mut self, job: HiperfaceJob, services: &mut Services) {
+        self.try_submit(job, services);
+    }
+
+    /// Starts a job, or says why not and gives false.
+    fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
+        let what = what(&job);
+        let writes = matches!(job, HiperfaceJob::Commit(_));
+        let name = self.name();
+        let Some(line) = &mut self.line else {
+            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
+            return false;
+        };
+        let asked = match &job {
+            HiperfaceJob::Read(item) => Some(*item),
+            _ => None,
+        };
+        match line.submit(job, what.clone(), writes, services.now()) {
+            Ok(id) => {
+                self.asked = asked;
+                services.job_begins(self.id, id, &name, what);
+                return true;
+            }
+            Err(SubmitError::Busy | SubmitError::Unread) => {
+                services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
+            }
+            Err(SubmitError::Ended) => {
+                self.lose(Text::new("session.ended"), services);
+            }
+        }
+        false
+    }
+
+    fn read_again(&mut self, services: &mut Services) {
+        match &self.source {
+            Source::Link(_) => self.submit(HiperfaceJob::Survey, services),
+            Source::File { path, .. } => {
+                let (path, store) = (path.clone(), services.world.store.clone());
+                services.tasks.run("read", move || crate::app::studio::read_document(path, &store));
+            }
+        }
+    }
+
+    fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
+        let allowed = match (&self.phase, self.field(field)) {
+            _ if self.is_writing() => Err(Text::new("session.busy")),
+            // A profile is a text: what it says about protection does not protect it.
+            (Phase::Offline, _) | (_, None) => Ok(()),
+            (_, Some(image)) => rules::edit(image),
+        };
+        let allowed = allowed.and_then(|()| {
+            let put = self.staged.put(field, address, bytes);
+            put.map_err(|error| explain::hiperface::staged(&error, bytes.len(), address))
+        });
+        if let Err(text) = allowed {
+            services.tell(Severity::Error, vec![text], Some(&self.name()));
+        }
+    }
+
+    fn review_edits(&mut self, services: &mut Services) {
+        if !self.staged.is_dirty() {
+            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.name()));
+            return;
+        }
+        let edits: Vec<(FieldRange, Vec<u8>)> = self.staged.changed_runs();
+        self.plan(Change::Store(edits), services);
+    }
+
+    pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
+        if !self.is_ready() {
+            let text = if self.is_busy() { "session.busy" } else { "session.not_connected" };
+            services.tell(Severity::Warning, vec![Text::new(text)], Some(&self.name()));
+            return;
+        }
+        self.review = Some(Review::new(explain::hiperface::change(&change), change.clone()));
+        if !self.try_submit(HiperfaceJob::Prepare(change), services) {
+            self.review = None;
+        }
+    }
+
+    fn plan_again(&mut self, options: RestoreOptions, services: &mut Services) {
+        if self.is_busy() {
+            return;
+        }
+        let Some(review) = &mut self.review else { return };
+        review.set_options(options);
+        review.state = ReviewState::Planning;
+        let change = review.change.clone();
+        if !self.try_submit(HiperfaceJob::Prepare(change), services) {
+            self.review = None;
+        }
+    }
+
+    pub(in crate::app) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
+        let options = RestoreOptions::default();
+        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
+    }
+
+    /// The consent: the plan as it stands in the review, and no other.
+    fn write(&mut self, services: &mut Services) {
+        if !self.is_ready() {
+            return;
+        }
+        let Some(review) = &mut self.review else { return };
+        let ReviewState::Ready(prepared) = &review.state else { return };
+        let prepared = prepared.clone();
+        let commit = Commit {
+            prepared: (*prepared).clone(),
+            consent: Consent::to(prepared.plan.id()),
+            force_wear: review.force_wear,
+        };
+        review.state = ReviewState::Writing(prepared.clone());
+        if !self.try_submit(HiperfaceJob::Commit(Box::new(commit)), services)
+            && let Some(review) = &mut self.review
+        {
+            review.state = ReviewState::Ready(prepared);
+        }
+    }
+
+    /// Closes the review; what is being written goes on, and its review stays.
+    pub(in crate::app) fn close_review(&mut self) {
+        let Some(review) = &self.review else { return };
+        if review.is_writing() {
+            return;
+        }
+        if matches!(review.state, ReviewState::Planning)
+            && let Some(line) = &mut self.line
+        {
+            line.stop();
+        }
+        self.review = None;
+    }
+
+    fn suggested_file(&self) -> PathBuf {
+        if let Source::File { path, .. } = &self.source {
+            return path.clone();
+        }
+        let words = self.identity.as_ref().map(|identity| {
+            let name = format!("{}-{}", identity.name, identity.serial.serial_number);
+            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect::<String>()
+        });
+        PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
+    }
+
+    /// A connected encoder is read again for it; a profile is written as it is edited.
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        match &self.source {
+            Source::Link(_) => {
+                if self.try_submit(HiperfaceJob::Save(SaveOptions::default()), services) {
+                    self.save_to = Some(path);
+                }
+            }
+            Source::File { document, .. } => {
+                let mut document = (**document).clone();
+                let Body::Hiperface(profile) = &mut document.body;
+                profile.fields = self.staged.wanted();
+                self.write_document(path, document, services);
+            }
+        }
+    }
+
+    /// Writes a profile on a thread.
+    pub(super) fn write_document(&mut self, path: PathBuf, document: Document, services: &Services) {
+        let id = self.id;
+        services.tasks.run("save", move || {
+            let result = write_atomically(&path, document.emit().as_bytes());
+            crate::app::Action::Done(action::Done::Written { session: id, path, document: Box::new(document), result })
+        });
+    }
+
+    fn read_backup(&mut self, path: PathBuf, services: &Services) {
+        let id = self.id;
+        services.tasks.run("backup", move || {
+            let done = match crate::app::studio::read_profile(&path) {
+                Ok(document) => {
+                    let Body::Hiperface(profile) = document.body;
+                    Done::Backup(Box::new(profile))
+                }
+                Err(error) => Done::NoBackup(path, error),
+            };
+            crate::app::Action::Done(action::Done::Hiperface(id, done))
+        });
+    }
+
+    /// The connection is gone; what is known and edited stays.
+    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+        // It stands where the session is shown.
+        services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
+        // What passed at last says most about why it was the last.
+        self.take_samples_and_frames();
+        drop(self.let_go(JobEnd::Failed(why.clone()), services));
+        self.phase = Phase::Lost(why);
+    }
+
+    /// Gives its thread away, to be closed where nobody waits for it; what runs ends as `end` says, and a plan is none
+    /// any more.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) -> Option<Worker<Hiperface>> {
+        (self.asked, self.save_to) = (None, None);
+        let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
+        if self.review.as_ref().is_some_and(is_plan) {
+            self.review = None;
+        }
+        let line = self.line.take()?;
+        if let Some(running) = line.running() {
+            services.job_ends(self.id, running.id, end);
+        }
+        Some(line.into_worker())
+    }
+}
+
+/// A profile of now.
+pub(super) fn document_of(profile: HiperfaceProfile) -> Document {
+    let now = Timestamp::now();
+    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
+    Document::new(seconds.to_string(), Body::Hiperface(profile))
+}
+
+/// A job in words.
+fn what(job: &HiperfaceJob) -> Text {
+    match job {
+        HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
+        HiperfaceJob::Status => Text::new("job.status"),
+        HiperfaceJob::Position(_) => Text::new("job.position"),
+        HiperfaceJob::Read(item) => Text::new("job.read").with("item", item),
+        HiperfaceJob::Save(_) => Text::new("job.save"),
+        HiperfaceJob::Check { .. } => Text::new("job.check"),
+        HiperfaceJob::Reset => Text::new("job.reset"),
+        HiperfaceJob::Find(_) => Text::new("job.find"),
+        HiperfaceJob::ConfigureForNow(settings) => {
+            Text::new("job.configure_for_now").with("settings", hex(&[settings.byte()]))
+        }
+        HiperfaceJob::UseCode { number, .. } => Text::new("job.use_code").with("number", number),
+        HiperfaceJob::Prepare(change) => {
+            Text::new("job.prepare").with_text("change", explain::hiperface::change(change))
+        }
+        HiperfaceJob::Commit(_) => Text::new("job.write"),
+    }
+}

@@ -1,0 +1,114 @@
+//! What can be asked of the encoder that is shown.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::app::studio::SessionId;
+use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
+use crate::store::{Backup, Entry, FileError};
+use crate::worker::hiperface::Change;
+
+/// Something in the HIPERFACE tab.
+pub enum Action {
+    /// Open the link again, after it was lost or could not be opened.
+    Reconnect,
+    /// Read everything again; edits stay.
+    Read,
+    /// Read the error queue.
+    ReadStatus,
+    /// Read the position once.
+    ReadPosition,
+    /// Read the position all the time, or no more.
+    Poll(Option<Duration>),
+    /// Forget the curve of the position.
+    ClearCurve,
+    /// Read an analogue channel.
+    ReadAnalogue(u8),
+    /// Read the counter.
+    ReadCounter,
+    /// The device check; with a restart first.
+    Check {
+        /// Send 53h first.
+        restart: bool,
+    },
+    /// Restart the encoder.
+    Reset,
+    /// Other interface settings until the next restart.
+    ConfigureForNow(LineSettings),
+    /// The user knows an access code.
+    UseCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its value.
+        code: AccessCode,
+    },
+    /// Put bytes into a field.
+    Put {
+        /// The field.
+        field: u8,
+        /// First byte.
+        address: usize,
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// Take the last edit back.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Take all edits back.
+    RevertAll,
+    /// Take the edits of a range back.
+    Revert(FieldRange),
+    /// Show what writing the edits would do.
+    Review,
+    /// Show what a change would do.
+    Plan(Change),
+    /// Make the plan again with other options, where the change is a restore.
+    PlanAgain(RestoreOptions),
+    /// Write although the encoder counts as worn.
+    ForceWear(bool),
+    /// Write what is shown.
+    Write,
+    /// Close the review.
+    CloseReview,
+    /// Ask where to save the profile.
+    AskSave,
+    /// Save the profile.
+    Save(PathBuf),
+    /// List the backups and the writes of this encoder.
+    ListBackups,
+    /// Show what restoring a backup would do.
+    Restore(PathBuf),
+    /// Show what writing this profile into a connected encoder would do.
+    WriteInto(SessionId),
+}
+
+/// What tasks for an encoder come back with.
+pub enum Done {
+    /// Edits of an earlier time.
+    Draft {
+        /// Whose they are.
+        key: String,
+        /// The edits.
+        result: Result<Option<String>, FileError>,
+    },
+    /// A draft was kept or removed.
+    DraftKept {
+        /// Whose it is.
+        key: String,
+        /// How it went.
+        result: Result<(), FileError>,
+    },
+    /// Backups and writes of this encoder.
+    Backups {
+        /// Backups, the newest first.
+        backups: Result<Vec<Backup>, FileError>,
+        /// Writes, the newest first, or why the logbook does not tell.
+        writes: Result<Vec<Entry>, String>,
+    },
+    /// A backup was read.
+    Backup(Box<HiperfaceProfile>),
+    /// A backup cannot be read.
+    NoBackup(PathBuf, crate::app::action::ReadError),
+}

@@ -1,0 +1,144 @@
+//! The review of a write: what it would do, the consent, how far it is, and what came of it.
+
+use crate::app::Text;
+use crate::app::explain;
+use crate::profile::hiperface::{HiperfacePlan, Op, RestoreOptions};
+use crate::protocol::hiperface::CodeNumber;
+use crate::worker::hiperface::{Change, Committed, Prepared, WEAR_LIMIT};
+
+/// A write on its way.
+pub struct Review {
+    /// What the user wants.
+    pub what: Text,
+    /// How far it is.
+    pub state: ReviewState,
+    /// Write although the encoder counts as worn.
+    pub force_wear: bool,
+    pub(super) change: Change,
+}
+
+/// How far a write is.
+pub enum ReviewState {
+    /// The encoder is read and the plan made.
+    Planning,
+    /// The plan is shown.
+    Ready(Box<Prepared>),
+    /// It is being carried out.
+    Writing(Box<Prepared>),
+    /// It was carried out and read back.
+    Done(Box<Prepared>, Committed),
+    /// It cannot be done, or ended early: what happened, and what to do.
+    Failed {
+        /// In words.
+        texts: Vec<Text>,
+        /// Something was written before it ended.
+        begun: bool,
+    },
+}
+
+impl Review {
+    pub(super) fn new(what: Text, change: Change) -> Self {
+        Review { what, state: ReviewState::Planning, force_wear: false, change }
+    }
+
+    /// The options of a restore, where this is one.
+    pub fn options(&self) -> Option<RestoreOptions> {
+        match &self.change {
+            Change::Restore { options, .. } => Some(*options),
+            _ => None,
+        }
+    }
+
+    pub(super) fn set_options(&mut self, wanted: RestoreOptions) {
+        if let Change::Restore { options, .. } = &mut self.change {
+            *options = wanted;
+        }
+    }
+
+    /// The plan as it was shown, from then to its end.
+    pub fn prepared(&self) -> Option<&Prepared> {
+        match &self.state {
+            ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
+                Some(prepared)
+            }
+            ReviewState::Planning | ReviewState::Failed { .. } => None,
+        }
+    }
+
+    /// It is being carried out.
+    pub fn is_writing(&self) -> bool {
+        matches!(self.state, ReviewState::Writing(_))
+    }
+}
+
+/// What a plan needs from the person in front of the encoder, and what to know before it is carried out.
+pub fn needs(plan: &HiperfacePlan) -> Vec<Text> {
+    let mut needs = Vec::new();
+    let mut codes: Vec<CodeNumber> = Vec::new();
+    for op in &plan.ops {
+        let need = match op {
+            Op::SetPosition { synchronise: true, .. } => Some(Text::new("review.needs_synchronise")),
+            Op::SetPosition { .. } => Some(Text::new("review.needs_standstill")),
+            Op::SetAddress { .. } => Some(Text::new("review.needs_alone")),
+            Op::Configure { .. } => Some(Text::new("review.needs_restart")),
+            Op::Define { from: Some(_), to, .. } if !to.exists() => Some(Text::new("review.needs_loss")),
+            _ => None,
+        };
+        needs.extend(need.filter(|need| !needs.contains(need)));
+        if let Op::Store { status, .. } = op
+            && !codes.contains(&status.code())
+        {
+            codes.push(status.code());
+        }
+        if let Op::ChangeCode { .. } = op {
+            needs.push(Text::new("review.needs_code_kept"));
+        }
+    }
+    if !codes.is_empty() {
+        let numbers: Vec<String> = codes.iter().map(ToString::to_string).collect();
+        needs.push(Text::new("review.needs_code").with("codes", numbers.join(", ")));
+    }
+    needs
+}
+
+/// What should make somebody stop and look, in a plan.
+pub fn warnings(prepared: &Prepared) -> Vec<Text> {
+    let mut warnings = Vec::new();
+    if let Some(wanted) = prepared.wanted_position {
+        let set = prepared.plan.ops.iter().find_map(|op| match op {
+            Op::SetPosition { to, .. } => Some(*to),
+            _ => None,
+        });
+        warnings.push(Text::new("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
+    }
+    if !prepared.missing.is_empty() {
+        warnings.push(Text::new("review.missing").with("items", prepared.missing.join(", ")));
+    }
+    if !prepared.mounting_left.is_empty() {
+        let ranges: Vec<String> = prepared.mounting_left.iter().map(ToString::to_string).collect();
+        warnings.push(Text::new("review.mounting_left").with("items", ranges.join(", ")));
+    }
+    if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
+        warnings.push(Text::new("review.counter"));
+    }
+    warnings
+}
+
+/// What a plan costs, beside what this computer has seen the encoder take.
+pub fn cost(prepared: &Prepared) -> Text {
+    let cycles = prepared.plan.write_cycles();
+    match prepared.cycles_seen {
+        Some(seen) => Text::new("review.cost").with("cycles", cycles).with("seen", seen),
+        None => Text::new("review.cost_unknown").with("cycles", cycles),
+    }
+}
+
+/// One line of the plan.
+pub fn lines(plan: &HiperfacePlan) -> Vec<explain::hiperface::OpWords> {
+    plan.ops.iter().map(explain::hiperface::op).collect()
+}
+
+/// The encoder counts as worn when this plan is carried out.
+pub fn is_worn(prepared: &Prepared) -> bool {
+    prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
+}

@@ -1,0 +1,115 @@
+//! A session on its thread, seen from the window: the job that runs, what has passed over the line, live samples. It
+//! knows no device.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use super::Text;
+use super::action::Opened;
+use crate::link::TraceEntry;
+use crate::worker::hiperface::Hiperface;
+use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker};
+
+/// A job that runs.
+#[derive(Clone, Debug)]
+pub struct Running {
+    /// Its number in this session.
+    pub id: JobId,
+    /// What it is.
+    pub what: Text,
+    /// Since when.
+    pub since: Zoned,
+    /// How far it is.
+    pub progress: Option<Progress>,
+    /// It changes the device's memory.
+    pub writes: bool,
+    /// It has been asked to end.
+    pub stopping: bool,
+}
+
+/// A session on its thread.
+pub struct Line<D: Device> {
+    worker: Worker<D>,
+    trace: Ring<TraceEntry>,
+    running: Option<Running>,
+    polling: Option<Duration>,
+    /// The device lives in this process.
+    pub is_virtual: bool,
+}
+
+impl Line<Hiperface> {
+    /// Takes over what was opened.
+    pub(super) fn new(opened: Opened) -> Self {
+        let Opened { worker, trace, is_virtual, .. } = opened;
+        Line { worker, trace, running: None, polling: None, is_virtual }
+    }
+}
+
+impl<D: Device> Line<D> {
+    /// Starts a job.
+    ///
+    /// # Errors
+    /// Another one runs, or the session has ended.
+    pub(super) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
+        let id = self.worker.submit(job)?;
+        self.running = Some(Running { id, what, since: now, progress: None, writes, stopping: false });
+        Ok(id)
+    }
+
+    /// The job that runs.
+    pub fn running(&self) -> Option<&Running> {
+        self.running.as_ref()
+    }
+
+    /// How often samples are taken; `None`: not at all.
+    pub fn polling(&self) -> Option<Duration> {
+        self.polling
+    }
+
+    /// Takes samples from now on, or no more.
+    pub(super) fn poll(&mut self, interval: Option<Duration>) {
+        self.polling = interval;
+        self.worker.poll(interval);
+    }
+
+    /// Ends what runs, live samples included.
+    pub(super) fn stop(&mut self) {
+        self.worker.stop();
+        self.polling = None;
+        if let Some(running) = &mut self.running {
+            running.stopping = true;
+        }
+    }
+
+    /// The next event; what it says about the job that runs is noted here.
+    pub(super) fn next(&mut self) -> Option<Event<D>> {
+        let event = self.worker.events().try_recv().ok()?;
+        match &event {
+            Event::Progress(id, progress) => {
+                if let Some(running) = self.running.as_mut().filter(|running| running.id == *id) {
+                    running.progress = Some(progress.clone());
+                }
+            }
+            Event::Finished(..) | Event::Failed(..) | Event::Cancelled(..) => self.running = None,
+            Event::PollFailed(_) => self.polling = None,
+            Event::Started(_) | Event::Remark(_) | Event::Lost(_) => {}
+        }
+        Some(event)
+    }
+
+    /// Samples since the last time, and how many were dropped.
+    pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
+        self.worker.samples().drain()
+    }
+
+    /// Frames since the last time, and how many were dropped.
+    pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
+        self.trace.drain()
+    }
+
+    /// Gives the thread back, to be closed where nobody waits for it.
+    pub(super) fn into_worker(self) -> Worker<D> {
+        self.worker
+    }
+}

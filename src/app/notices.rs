@@ -1,0 +1,90 @@
+//! What happened, in words for a person: the latest stands in the window until it is read, all stand in the log.
+
+use std::collections::VecDeque;
+
+use jiff::Zoned;
+
+use super::Text;
+
+/// How much a notice matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Something was done.
+    Note,
+    /// It was done and verified.
+    Good,
+    /// Somebody should look.
+    Warning,
+    /// Something was not done.
+    Error,
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug)]
+pub struct Notice {
+    /// When.
+    pub at: Zoned,
+    /// How much it matters.
+    pub severity: Severity,
+    /// What happened, and what to do.
+    pub texts: Vec<Text>,
+    /// Whose it is: the name of a session.
+    pub about: Option<String>,
+}
+
+/// The log of the window: the newest last, the oldest go.
+#[derive(Debug, Default)]
+pub struct Log {
+    notices: VecDeque<Notice>,
+    /// The latest one that still stands in the window.
+    standing: Option<Notice>,
+}
+
+impl Log {
+    const CAPACITY: usize = 2_000;
+
+    /// Adds a notice; it stands in the window until another comes or it is dismissed.
+    pub fn add(&mut self, notice: Notice) {
+        // A note is read in passing; it does not push away what somebody has to read.
+        if notice.severity > Severity::Note || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good) {
+            self.standing = Some(notice.clone());
+        }
+        self.keep(notice);
+    }
+
+    /// Adds a notice that stands elsewhere in the window.
+    pub fn keep(&mut self, notice: Notice) {
+        if notice.severity >= Severity::Warning {
+            tracing::warn!("{}", terminal(&notice));
+        } else {
+            tracing::info!("{}", terminal(&notice));
+        }
+        self.notices.push_back(notice);
+        if self.notices.len() > Self::CAPACITY {
+            self.notices.pop_front();
+        }
+    }
+
+    /// All notices, the oldest first.
+    pub fn notices(&self) -> impl DoubleEndedIterator<Item = &Notice> + ExactSizeIterator {
+        self.notices.iter()
+    }
+
+    /// The one that stands in the window.
+    pub fn standing(&self) -> Option<&Notice> {
+        self.standing.as_ref()
+    }
+
+    /// It has been read.
+    pub fn dismiss(&mut self) {
+        self.standing = None;
+    }
+}
+
+fn terminal(notice: &Notice) -> String {
+    let words: Vec<String> = notice.texts.iter().map(Text::terminal).collect();
+    match &notice.about {
+        Some(about) => format!("{about}: {}", words.join(" ")),
+        None => words.join(" "),
+    }
+}

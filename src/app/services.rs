@@ -1,0 +1,149 @@
+//! What every session needs of the studio: the world outside, threads for what would block, the log, the list of jobs.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use jiff::Zoned;
+
+use super::action::FileQuestion;
+use super::notices::{Log, Notice, Severity};
+use super::studio::SessionId;
+use super::tasks::{Tasks, Wake};
+use super::{Text, explain};
+use crate::link::{LinkError, LinkUrl, PortInfo};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
+use crate::store::{Store, StoreError};
+use crate::worker::hiperface::{self, Hiperface};
+use crate::worker::{JobId, OpenError, Session};
+
+/// Opens links to HIPERFACE encoders.
+pub type Opener = Arc<dyn Fn(&LinkUrl, Store) -> Result<Session<Hiperface>, OpenError> + Send + Sync>;
+
+/// The world outside, as the studio reaches it; a test has one of its own.
+#[derive(Clone)]
+pub struct World {
+    /// Backups, logbook, drafts, settings.
+    pub store: Store,
+    /// Opens links.
+    pub open: Opener,
+    /// Lists the serial ports.
+    pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
+    /// Access codes that the user gave at the start; sessions begin with them.
+    pub codes: Vec<(CodeNumber, AccessCode)>,
+    /// The time of day.
+    pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
+}
+
+impl World {
+    /// This machine.
+    pub fn real(store: Store) -> Self {
+        World {
+            store,
+            open: Arc::new(hiperface::open),
+            ports: Arc::new(crate::link::ports),
+            codes: Vec::new(),
+            now: Arc::new(Zoned::now),
+        }
+    }
+}
+
+/// How a job ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JobEnd {
+    /// It is not over.
+    Running,
+    /// As it should.
+    Done,
+    /// It failed: why.
+    Failed(Text),
+    /// The user ended it.
+    Cancelled,
+}
+
+/// A job, for the list.
+#[derive(Clone, Debug)]
+pub struct JobRecord {
+    /// Since when.
+    pub since: Zoned,
+    /// Until when.
+    pub until: Option<Zoned>,
+    /// Whose it is.
+    pub about: String,
+    /// What it is.
+    pub what: Text,
+    /// How it ended.
+    pub end: JobEnd,
+    key: (SessionId, JobId),
+}
+
+/// What sessions share.
+pub struct Services {
+    /// The world outside.
+    pub(super) world: World,
+    /// Threads.
+    pub(super) tasks: Tasks,
+    /// The log.
+    pub log: Log,
+    /// Jobs, the newest last.
+    jobs: VecDeque<JobRecord>,
+    /// A file that the user is asked for.
+    pub(super) file_question: Option<FileQuestion>,
+}
+
+impl Services {
+    const JOBS: usize = 500;
+
+    pub(super) fn new(world: World, wake: Wake) -> Self {
+        let (log, jobs) = (Log::default(), VecDeque::new());
+        Services { world, tasks: Tasks::new(wake), log, jobs, file_question: None }
+    }
+
+    /// The time of day.
+    pub(super) fn now(&self) -> Zoned {
+        (self.world.now)()
+    }
+
+    /// Adds to the log, and stands in the window.
+    pub(super) fn tell(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+        self.log.add(self.notice(severity, texts, about));
+    }
+
+    /// Adds to the log only: the window shows it elsewhere.
+    pub(super) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+        self.log.keep(self.notice(severity, texts, about));
+    }
+
+    fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
+        Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned) }
+    }
+
+    /// The table of encoder types as it was read; the built-in one where the user's own cannot be, which is told.
+    pub(super) fn encoder_types(&mut self, read: Result<EncoderTypes, StoreError>) -> EncoderTypes {
+        read.unwrap_or_else(|error| {
+            self.tell(Severity::Warning, vec![explain::store(&error)], None);
+            EncoderTypes::built_in()
+        })
+    }
+
+    /// Jobs, the newest last.
+    pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
+        self.jobs.iter()
+    }
+
+    pub(super) fn job_begins(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
+        let about = about.to_owned();
+        let since = self.now();
+        self.jobs.push_back(JobRecord { since, until: None, about, what, end: JobEnd::Running, key: (session, id) });
+        if self.jobs.len() > Self::JOBS {
+            self.jobs.pop_front();
+        }
+    }
+
+    pub(super) fn job_ends(&mut self, session: SessionId, id: JobId, end: JobEnd) {
+        let now = self.now();
+        if let Some(job) = self.jobs.iter_mut().rev().find(|job| job.key == (session, id)) {
+            job.end = end;
+            job.until = Some(now);
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! All that the window knows, and what it can do. It is complete without a window: a test sends actions and reads state.
+
+use std::path::{Path, PathBuf};
+
+use super::action::{Action, Done, FileQuestion, Question, ReadError, Then};
+use super::connect::{self, Connect};
+use super::hiperface::{self, Encoder, Source};
+use super::keep::Keeper;
+use super::services::{JobEnd, Services, World};
+use super::tasks::{Mailbox, Wake};
+use super::{Settings, Severity, Text, explain};
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::protocol::hiperface::EncoderTypes;
+use crate::store::{Store, StoreError, read_text};
+
+/// A session's number, from the start of the program on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SessionId(pub(super) u32);
+
+/// A tab of the window: a kind of device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Tab {
+    /// HIPERFACE motor-feedback encoders.
+    #[default]
+    Hiperface,
+}
+
+/// All state of the window.
+pub struct Studio {
+    /// What is remembered from one start to the next.
+    pub settings: Settings,
+    /// The connection dialog, when it is open.
+    pub connect: Option<Connect>,
+    /// A question that has to be answered.
+    pub question: Option<Question>,
+    /// The log, the jobs.
+    pub services: Services,
+    pub(super) encoders: Vec<Encoder>,
+    pub(super) shown: Option<SessionId>,
+    next_id: u32,
+    keeper: Keeper,
+    closing: bool,
+    patience_is_over: bool,
+    path_question: Option<FileQuestion>,
+}
+
+impl Studio {
+    /// A studio with what it remembers; `wake` is called when there is something to look at.
+    pub fn new(world: World, wake: Wake) -> Self {
+        let mut services = Services::new(world, wake);
+        let (settings, keeper) = Keeper::load(&mut services);
+        Studio {
+            settings,
+            connect: None,
+            question: None,
+            services,
+            encoders: Vec::new(),
+            shown: None,
+            next_id: 0,
+            keeper,
+            closing: false,
+            patience_is_over: false,
+            path_question: None,
+        }
+    }
+
+    /// What the window begins with: a link, a profile, or else the virtual encoder.
+    pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
+        if link.is_none() && profile.is_none() {
+            self.open_link(LinkUrl::sim());
+        }
+        if let Some(link) = link {
+            self.open_link(link);
+        }
+        if let Some(profile) = profile {
+            self.act(Action::Open(profile));
+        }
+    }
+
+    /// Does what is asked.
+    pub fn act(&mut self, action: Action) {
+        match action {
+            Action::ShowTab(tab) => self.settings.tab = tab,
+            Action::SetTheme(theme) => self.settings.theme = theme,
+            Action::SetLanguage(language) => self.settings.language = language,
+            Action::KeepLayout(layout) => self.settings.layout = Some(layout),
+            Action::KeepSize(width, height) => self.settings.size = Some((width, height)),
+            Action::Select(id) => self.shown = Some(id),
+            Action::CloseSession(id) => self.close_session(id),
+            Action::Stop => self.stop(),
+            Action::Escape => self.escape(),
+            Action::Close => self.close(),
+            Action::Confirm => self.confirm(),
+            Action::Dismiss => self.services.log.dismiss(),
+            Action::Connect(action) => self.act_connect(action),
+            Action::AskOpen => self.services.file_question = Some(FileQuestion::Open),
+            Action::Open(path) => {
+                let store = self.services.world.store.clone();
+                self.services.tasks.run("open", move || read_document(path, &store));
+            }
+            Action::FileNotChosen => {}
+            Action::TypePath(question) => self.path_question = Some(question),
+            Action::Hiperface(action) => self.act_hiperface(action),
+            Action::Done(done) => self.done(done),
+            Action::NoThread(why) => {
+                let text = Text::new("session.no_thread").with("why", why);
+                self.services.tell(Severity::Error, vec![text], None);
+            }
+        }
+        self.keep();
+    }
+
+    /// Looks what has happened since the last time: called for every picture.
+    pub fn poll(&mut self) {
+        while let Some(action) = self.services.tasks.next() {
+            self.act(action);
+        }
+        for encoder in &mut self.encoders {
+            encoder.pump(&mut self.services);
+        }
+        if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
+            search.pump();
+        }
+        self.keep();
+    }
+
+    fn keep(&mut self) {
+        self.keeper.keep(&self.settings, &self.services);
+        for encoder in &mut self.encoders {
+            encoder.keep_draft(&self.services);
+        }
+    }
+
+    /// Puts actions into the studio from other threads.
+    pub fn mailbox(&self) -> Mailbox {
+        self.services.tasks.mailbox()
+    }
+
+    /// The file that the user is to be asked for, once.
+    pub fn take_file_question(&mut self) -> Option<FileQuestion> {
+        self.services.file_question.take()
+    }
+
+    /// The file whose path the user is to type, once.
+    pub fn take_path_question(&mut self) -> Option<FileQuestion> {
+        self.path_question.take()
+    }
+
+    /// All encoders, in the order in which they came.
+    pub fn encoders(&self) -> &[Encoder] {
+        &self.encoders
+    }
+
+    /// The encoder that is shown.
+    pub fn encoder(&self) -> Option<&Encoder> {
+        let id = self.shown?;
+        self.encoders.iter().find(|encoder| encoder.id == id)
+    }
+
+    /// Something runs or is read all the time, in any session: there is something to stop.
+    pub fn can_stop(&self) -> bool {
+        let active =
+            |encoder: &Encoder| encoder.is_busy() || encoder.line().is_some_and(|line| line.polling().is_some());
+        self.encoders.iter().any(active) || self.search().is_some_and(connect::Search::is_running)
+    }
+
+    /// Live values come in: the picture has to be drawn again and again.
+    pub fn is_live(&self) -> bool {
+        self.encoders.iter().any(|encoder| encoder.line().is_some_and(|line| line.polling().is_some()))
+    }
+
+    /// The window may close now: nothing runs any more, and what is to be kept is on disk or the disk does not answer.
+    pub fn may_close(&self) -> bool {
+        let kept = self.keeper.is_idle() && self.encoders.iter().all(Encoder::is_draft_kept);
+        self.closing && !self.encoders.iter().any(Encoder::is_busy) && (kept || self.patience_is_over)
+    }
+
+    fn search(&self) -> Option<&connect::Search> {
+        self.connect.as_ref()?.search.as_ref()
+    }
+
+    pub(super) fn encoder_mut(&mut self, id: SessionId) -> Option<&mut Encoder> {
+        self.encoders.iter_mut().find(|encoder| encoder.id == id)
+    }
+
+    pub(super) fn new_id(&mut self) -> SessionId {
+        self.next_id += 1;
+        SessionId(self.next_id)
+    }
+
+    pub(super) fn new_search(&mut self) -> u32 {
+        self.next_id += 1;
+        self.next_id
+    }
+
+    fn act_hiperface(&mut self, action: hiperface::Action) {
+        let Some(id) = self.shown else { return };
+        match action {
+            hiperface::Action::Reconnect => {
+                if let Some(Source::Link(url)) = self.encoder().map(|encoder| encoder.source.clone()) {
+                    self.reconnect(id, url);
+                }
+            }
+            hiperface::Action::WriteInto(target) => {
+                let Some(Source::File { document, .. }) = self.encoder().map(|encoder| encoder.source.clone()) else {
+                    return;
+                };
+                let wanted = self.encoder().map(|encoder| encoder.staged.wanted()).unwrap_or_default();
+                let crate::profile::Body::Hiperface(mut profile) = document.body;
+                profile.fields = wanted;
+                self.shown = Some(target);
+                self.with_encoder(target, |encoder, services| encoder.plan_restore(profile, services));
+            }
+            action => self.with_encoder(id, |encoder, services| encoder.act(action, services)),
+        }
+    }
+
+    pub(super) fn with_encoder(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+        if let Some(encoder) = self.encoders.iter_mut().find(|encoder| encoder.id == id) {
+            act(encoder, &mut self.services);
+        }
+    }
+
+    fn done(&mut self, done: Done) {
+        match done {
+            Done::Opened { session, result } => self.opened(session, result),
+            Done::OpenedForSearch { number, result } => {
+                let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
+                // One that was ended while it opened has no use for it: dropping ends its thread.
+                if let Some(search) = search.filter(|search| search.number == number && search.is_running()) {
+                    search.opened(result, &self.services);
+                }
+            }
+            Done::Ports(ports) => {
+                let links = self.settings.links();
+                if let Some(connect) = &mut self.connect {
+                    let ports = ports.map(|ports| connect::offered_ports(&ports, links));
+                    connect.ports = Some(ports.map_err(|error| explain::link(&error)));
+                }
+            }
+            Done::Read { path, result, types } => self.read(path, result, types),
+            Done::ClosingTakesLong => self.patience_is_over = true,
+            Done::Written { session, path, document, result } => {
+                self.with_encoder(session, |encoder, services| encoder.written(path, *document, result, services));
+            }
+            Done::SettingsKept(result) => {
+                if let Some(text) = self.keeper.kept(result) {
+                    self.services.tell(Severity::Warning, vec![text], None);
+                }
+            }
+            Done::Hiperface(id, done) => self.with_encoder(id, |encoder, services| encoder.done(done, services)),
+        }
+    }
+
+    fn read(
+        &mut self,
+        path: PathBuf,
+        result: Result<Box<Document>, ReadError>,
+        types: Result<EncoderTypes, StoreError>,
+    ) {
+        match result {
+            Ok(document) => {
+                let known = self
+                    .encoders
+                    .iter()
+                    .find(|encoder| matches!(&encoder.source, Source::File { path: own, .. } if *own == path))
+                    .map(|encoder| encoder.id);
+                let id = known.unwrap_or_else(|| self.new_id());
+                self.shown = Some(id);
+                if known.is_some() {
+                    self.with_encoder(id, |encoder, _| encoder.take_document(path, *document));
+                } else {
+                    let types = self.services.encoder_types(types);
+                    let encoder = Encoder::in_file(id, path, *document, &types, &self.services);
+                    self.encoders.push(encoder);
+                }
+            }
+            Err(error) => self.services.tell(Severity::Error, vec![read_error(&path, &error)], None),
+        }
+    }
+
+    fn stop(&mut self) {
+        for encoder in &mut self.encoders {
+            encoder.stop();
+        }
+        if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
+            search.stop();
+        }
+    }
+
+    fn escape(&mut self) {
+        if self.question.take().is_some() {
+            return;
+        }
+        let searching = self.search().is_some_and(connect::Search::is_running);
+        if searching || self.encoders.iter().any(Encoder::is_busy) {
+            self.stop();
+            return;
+        }
+        if self.connect.take().is_some() {
+            return;
+        }
+        if let Some(id) = self.shown
+            && self.encoder().is_some_and(|encoder| encoder.review.is_some())
+        {
+            self.with_encoder(id, |encoder, _| encoder.close_review());
+            return;
+        }
+        self.stop();
+    }
+
+    fn close_session(&mut self, id: SessionId) {
+        let Some(encoder) = self.encoder_mut(id) else { return };
+        if encoder.is_busy() || encoder.staged.is_dirty() {
+            let text = if encoder.is_busy() { "question.session_busy" } else { "question.session_edits" };
+            let text = Text::new(text).with("name", encoder.name());
+            let confirm = Text::new("question.close_session");
+            self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
+        } else {
+            self.remove(id);
+        }
+    }
+
+    fn remove(&mut self, id: SessionId) {
+        // Dropping its worker ends its thread.
+        self.with_encoder(id, |encoder, services| {
+            encoder.leave_draft(services);
+            drop(encoder.let_go(JobEnd::Cancelled, services));
+        });
+        self.encoders.retain(|encoder| encoder.id != id);
+        if self.shown == Some(id) {
+            self.shown = self.encoders.last().map(|encoder| encoder.id);
+        }
+    }
+
+    fn close(&mut self) {
+        let busy = self.encoders.iter().any(Encoder::is_busy);
+        let edits = self.encoders.iter().filter(|encoder| encoder.staged.is_dirty()).count();
+        if busy || edits > 0 {
+            let text = if busy { Text::new("question.busy") } else { Text::new("question.edits").with("count", edits) };
+            let confirm = Text::new("question.close_window");
+            self.question = Some(Question { text, confirm, then: Then::CloseWindow });
+        } else {
+            self.begin_to_close();
+        }
+    }
+
+    fn begin_to_close(&mut self) {
+        self.closing = true;
+        self.services.tasks.run("close", || {
+            std::thread::sleep(DISK);
+            Action::Done(Done::ClosingTakesLong)
+        });
+    }
+
+    fn confirm(&mut self) {
+        match self.question.take().map(|question| question.then) {
+            Some(Then::CloseWindow) => {
+                self.stop();
+                self.begin_to_close();
+            }
+            Some(Then::CloseSession(id)) => self.remove(id),
+            None => {}
+        }
+    }
+}
+
+/// How long closing waits for the disk.
+const DISK: std::time::Duration = std::time::Duration::from_secs(3);
+/// Reads a profile, as a task.
+pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
+    let result = read_profile(&path).map(Box::new);
+    Action::Done(Done::Read { path, result, types: store.encoder_types() })
+}
+
+pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
+    let text = read_text(path).map_err(ReadError::File)?;
+    Document::parse(&text).map_err(ReadError::Profile)
+}
+
+pub(super) fn read_error(path: &Path, error: &ReadError) -> Text {
+    match error {
+        ReadError::File(error) => explain::file(error),
+        ReadError::Profile(error) => explain::profile(path, error),
+    }
+}

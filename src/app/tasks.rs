@@ -1,0 +1,68 @@
+//! What would make the window wait: files, links that open, dialogs of the system. Each runs on a thread of its own and
+//! comes back as an action.
+
+use std::sync::Arc;
+use std::thread;
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+
+use super::Action;
+
+/// Wakes the window: something is to be looked at.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Threads that come back as actions.
+pub struct Tasks {
+    sender: Sender<Action>,
+    receiver: Receiver<Action>,
+    wake: Wake,
+}
+
+/// Puts actions into the studio from anywhere.
+#[derive(Clone)]
+pub struct Mailbox {
+    sender: Sender<Action>,
+    wake: Wake,
+}
+
+impl Tasks {
+    /// Nothing to do yet.
+    pub(super) fn new(wake: Wake) -> Self {
+        // Unbounded: each thread sends once, and there are as many as a person's clicks.
+        let (sender, receiver) = unbounded();
+        Tasks { sender, receiver, wake }
+    }
+
+    /// Runs something on a thread; what it gives comes back as an action.
+    pub(super) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
+        let mailbox = self.mailbox();
+        let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
+        if let Err(error) = spawned {
+            self.mailbox().send(Action::NoThread(error.to_string()));
+        }
+    }
+
+    /// For a thread that is started elsewhere.
+    pub fn mailbox(&self) -> Mailbox {
+        Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
+    }
+
+    /// How sessions wake the window.
+    pub(super) fn wake(&self) -> Wake {
+        self.wake.clone()
+    }
+
+    /// The next thing that is done.
+    pub(super) fn next(&self) -> Option<Action> {
+        self.receiver.try_recv().ok()
+    }
+}
+
+impl Mailbox {
+    /// Hands an action over and wakes the window.
+    pub fn send(&self, action: Action) {
+        // The studio is gone: nobody waits for it any more.
+        let _ = self.sender.send(action);
+        (self.wake)();
+    }
+}

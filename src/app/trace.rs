@@ -1,0 +1,71 @@
+//! What has passed over a line, with its meaning, for the trace panel. Frames are read when they come, not when they are
+//! drawn.
+
+use std::collections::VecDeque;
+
+use jiff::Zoned;
+
+use crate::link::{Direction, TraceEntry};
+use crate::units::Moment;
+
+/// A frame with its meaning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TraceLine {
+    /// When its first byte was sent or received, on the session's clock.
+    pub at: Moment,
+    /// Which way it went.
+    pub direction: Direction,
+    /// Its bytes; `**` is a masked one.
+    pub bytes: String,
+    /// What it says.
+    pub meaning: String,
+}
+
+/// The newest frames of a line.
+#[derive(Debug, Default)]
+pub struct TraceLog {
+    lines: VecDeque<TraceLine>,
+    dropped: u64,
+    began: Option<Zoned>,
+}
+
+impl TraceLog {
+    const CAPACITY: usize = 5_000;
+
+    /// Adds frames; `explain` says what each means. `dropped` came too fast to be shown.
+    pub(super) fn add(
+        &mut self,
+        entries: Vec<TraceEntry>,
+        dropped: u64,
+        mut explain: impl FnMut(&TraceEntry) -> String,
+    ) {
+        self.dropped += dropped;
+        for entry in entries {
+            let meaning = explain(&entry);
+            let bytes = entry.bytes.to_string();
+            self.lines.push_back(TraceLine { at: entry.at, direction: entry.direction, bytes, meaning });
+        }
+        let surplus = self.lines.len().saturating_sub(Self::CAPACITY);
+        self.lines.drain(..surplus);
+    }
+
+    /// Frames, the oldest first.
+    pub fn lines(&self) -> &VecDeque<TraceLine> {
+        &self.lines
+    }
+
+    /// Frames that came too fast to be shown.
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// The time of day of a frame.
+    pub fn time_of(&self, line: &TraceLine) -> Option<Zoned> {
+        self.began.as_ref()?.checked_add(line.at.since_start()).ok()
+    }
+
+    /// A session begins, whose clock began then.
+    pub(super) fn begin(&mut self, began: Zoned) {
+        *self = TraceLog { began: Some(began), ..TraceLog::default() };
+    }
+}
