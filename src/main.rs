@@ -1,7 +1,16 @@
-//! The program: arguments → a command.
+//! The program: arguments → a command, or the window.
 
 use std::process::ExitCode;
 
+use encoder_studio::cli::{self, Asked};
+use encoder_studio::ui;
+
 fn main() -> ExitCode {
-    encoder_studio::cli::run()
+    match cli::run() {
+        Asked::Command(code) => code,
+        Asked::Window(start) => match ui::run(start) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(why) => cli::no_window(&why),
+        },
+    }
 }

@@ -210,3 +210,160 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
     let unused: Vec<&String> = known.difference(&used).collect();
     assert!(unused.is_empty(), "rows of assets/texts.ron that nothing uses: {unused:?}");
 }
+
+#[test]
+fn only_the_window_draws() {
+    for source in sources().iter().filter(|source| source.room != "ui") {
+        for (line, code) in source.code() {
+            assert!(!code.contains("egui") && !code.contains("eframe"), "{}:{line} names egui", source.path);
+        }
+    }
+}
+
+/// What a person reads comes from the table of texts. A literal of a view may be a text's name there, or stand where
+/// nobody reads it; a word is three letters or more that are not all capitals.
+#[test]
+fn no_view_holds_a_literal_text() {
+    /// Behind these stand names for egui, for a place in a text, for the system or the compiler.
+    const NAMES: [&str; 20] = [
+        "Id::unique(",
+        "id_salt(",
+        "make_persistent_id(",
+        "make_persistent_id((",
+        "modal(ctx, skin,",
+        "add_filter(filter, &[",
+        "Panel::top(",
+        "Panel::bottom(",
+        "Panel::left(",
+        "Panel::right(",
+        "Plot::new(",
+        ".with(",
+        "Grid::new(",
+        ".with_text(",
+        ".with_number(",
+        ".name(",
+        "env!(",
+        "include_str!(",
+        "target_os =",
+        "reason =",
+    ];
+    /// The program's name, and examples of what to type.
+    const ALLOWED: [&str; 4] = ["encoder-studio", "drop:0.01", "/dev/ttyUSB0", "capture.trace"];
+    /// No views: what the terminal and the log file are told, and the names of fonts.
+    const NO_VIEWS: [&str; 3] = ["src/ui/run.rs", "src/ui/log_file.rs", "src/ui/skin.rs"];
+    let known: BTreeSet<&str> = encoder_studio::app::Texts::built_in().ids().collect();
+    let mut texts = Vec::new();
+    let is_view = |source: &&Source| source.room == "ui" && !source.is_test();
+    for source in sources().iter().filter(is_view).filter(|source| !NO_VIEWS.contains(&source.path.as_str())) {
+        for literal in literals(&source.text) {
+            let name = NAMES.iter().any(|before| literal.before.ends_with(before));
+            let word = has_word(&literal.text) && !known.contains(literal.text.as_str());
+            if word && !name && !ALLOWED.contains(&literal.text.as_str()) {
+                texts.push(format!("{}:{} {:?}", source.path, literal.line, literal.text));
+            }
+        }
+    }
+    assert!(texts.is_empty(), "literal texts:\n{}", texts.join("\n"));
+}
+
+#[test]
+fn every_text_that_is_asked_for_is_in_the_table() {
+    let known: BTreeSet<&str> = encoder_studio::app::Texts::built_in().ids().collect();
+    for source in sources().iter().filter(|source| floor(&source.room) >= 5 && !source.is_test()) {
+        for literal in literals(&source.text) {
+            let asked = ["Text::new(", "skin.say("].iter().any(|before| literal.before.ends_with(before))
+                && !literal.before.ends_with("RichText::new(");
+            let place = format!("{}:{}", source.path, literal.line);
+            assert!(!asked || known.contains(literal.text.as_str()), "{place}: no text {:?}", literal.text);
+        }
+    }
+}
+
+/// Three letters or more in a row that are not all capitals, outside the places of a format string.
+fn has_word(text: &str) -> bool {
+    let mut bare = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('{') {
+        bare.push_str(before);
+        bare.push(' ');
+        rest = after.split_once('}').map_or("", |(_, behind)| behind);
+    }
+    bare.push_str(rest);
+    let words = bare.split(|c: char| !c.is_alphabetic());
+    words.into_iter().any(|word| word.chars().count() >= 3 && word.chars().any(char::is_lowercase))
+}
+
+/// A string literal with what stands before it.
+struct Literal {
+    line: usize,
+    before: String,
+    text: String,
+}
+
+/// The string literals of a source: not those in its comments, nor those of the tests at its end.
+fn literals(source: &str) -> Vec<Literal> {
+    let source = source.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let characters: Vec<char> = source.chars().collect();
+    let mut found = Vec::new();
+    let (mut at, mut line) = (0, 1);
+    while at < characters.len() {
+        match (characters[at], characters.get(at + 1)) {
+            ('/', Some('/')) => {
+                while at < characters.len() && characters[at] != '\n' {
+                    at += 1;
+                }
+            }
+            // A character in quotes may be a quotation mark; a lifetime has no second quote.
+            ('\'', Some('\\')) => at += 3,
+            ('\'', Some(_)) if characters.get(at + 2) == Some(&'\'') => at += 3,
+            ('"', _) => {
+                let (first, own) = (at + 1, line);
+                at = first;
+                while characters[at] != '"' {
+                    line += usize::from(characters[at] == '\n');
+                    at += if characters[at] == '\\' { 2 } else { 1 };
+                }
+                let before: String = characters[first.saturating_sub(60)..first - 1].iter().collect();
+                let text: String = characters[first..at].iter().collect();
+                let before = before.trim_end().to_owned();
+                found.push(Literal { line: own, before, text: unescaped(&text) });
+                at += 1;
+            }
+            (character, _) => {
+                line += usize::from(character == '\n');
+                at += 1;
+            }
+        }
+    }
+    found
+}
+
+/// Without its escapes, none of which stands for a letter.
+fn unescaped(text: &str) -> String {
+    let mut characters = text.chars();
+    let mut bare = String::new();
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => match characters.next() {
+                Some('u') => drop(characters.by_ref().find(|c| *c == '}')),
+                _ => bare.push(' '),
+            },
+            other => bare.push(other),
+        }
+    }
+    bare
+}
+
+#[test]
+fn a_literal_text_would_be_seen() {
+    let source =
+        "fn a<'x>() { // \"no text\"\n  say(\"page.memory\"); b('\"', \"one \\\"two\\\"\");\n  c(\"{value:.3} mm\"); }";
+    let found: Vec<(usize, String)> = literals(source).into_iter().map(|own| (own.line, own.text)).collect();
+    let expected = [(2, "page.memory"), (2, "one  two "), (3, "{value:.3} mm")];
+    assert_eq!(found, expected.map(|(line, text)| (line, text.to_owned())));
+    for (text, word) in
+        [("Save", true), ("{value} steps", true), ("HIPERFACE", false), ("{value} mm", false), ("kHz", true)]
+    {
+        assert_eq!(has_word(text), word, "{text}");
+    }
+}

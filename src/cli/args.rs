@@ -8,14 +8,18 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
-/// Configure position encoders at a desk: read, compare, write, verify, save and restore.
+/// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
+/// window.
 #[derive(Parser)]
-#[command(name = "encoder-studio", version, subcommand_required = true, arg_required_else_help = true)]
+#[command(name = "encoder-studio", version)]
 pub(super) struct Arguments {
     #[command(flatten)]
     pub(super) common: Common,
+    /// A profile to open in the window.
+    #[arg(long, value_name = "FILE")]
+    pub(super) profile: Option<PathBuf>,
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(super) command: Option<Command>,
 }
 
 #[derive(Args)]

@@ -8,12 +8,16 @@ mod ports;
 mod runner;
 mod simulate;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, DeviceKind};
+use args::{Arguments, Command, Common, DeviceKind};
 use output::Output;
+
+use crate::link::LinkUrl;
+use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,17 +41,71 @@ enum Failure {
 
 type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// Runs the command that the arguments of this process name.
-pub fn run() -> ExitCode {
+/// What the arguments of this process ask for.
+pub enum Asked {
+    /// A command, which has ended like this.
+    Command(ExitCode),
+    /// The window.
+    Window(Window),
+}
+
+/// What the window is to begin with.
+#[derive(Debug, Default)]
+pub struct Window {
+    /// A link to open.
+    pub link: Option<LinkUrl>,
+    /// A profile to open.
+    pub profile: Option<PathBuf>,
+    /// Access codes that the user knows.
+    pub codes: Vec<(CodeNumber, AccessCode)>,
+}
+
+/// Runs the command that the arguments of this process name; without one the window is asked for.
+pub fn run() -> Asked {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
             output::say_usage(&error);
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            return Asked::Command(ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)));
         }
     };
-    output::log_to_stderr();
-    match dispatch(arguments) {
+    let Arguments { common, profile, command } = arguments;
+    match command {
+        Some(_) if profile.is_some() => {
+            Asked::Command(end(Err(usage("--profile is for the window, without a command"))))
+        }
+        Some(command) => {
+            output::log_to_stderr();
+            Asked::Command(end(dispatch(&common, command)))
+        }
+        None => window(common, profile),
+    }
+}
+
+/// Says why there is no window, and how the process ends.
+pub fn no_window(why: &str) -> ExitCode {
+    end(Err(Failure::Failed(vec![why.to_owned()])))
+}
+
+fn window(common: Common, profile: Option<PathBuf>) -> Asked {
+    if common.json || common.trace.is_some() {
+        return Asked::Command(end(Err(usage("--json and --trace need a command; encoder-studio help lists them"))));
+    }
+    match runner::codes(&common) {
+        Ok(codes) => {
+            let codes = codes.into_iter().map(|code| (code.number, code.code)).collect();
+            Asked::Window(Window { link: common.link, profile, codes })
+        }
+        Err(failure) => Asked::Command(end(Err(failure))),
+    }
+}
+
+fn usage(message: &str) -> Failure {
+    Failure::Usage(message.to_owned())
+}
+
+fn end(result: Result) -> ExitCode {
+    match result {
         Ok(Done::Well) | Err(Failure::NobodyReads) => ExitCode::SUCCESS,
         Ok(Done::Differs) => ExitCode::from(3),
         Err(Failure::Failed(lines)) => {
@@ -63,34 +121,33 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn dispatch(arguments: Arguments) -> Result {
-    let Arguments { common, command } = arguments;
+fn dispatch(common: &Common, command: Command) -> Result {
     let output = Output::new(common.json);
     match command {
         Command::Ports => ports::ports(&output),
         Command::Find(find) => match find.device {
-            DeviceKind::Hiperface => hiperface::find(&common, &output, &find),
+            DeviceKind::Hiperface => hiperface::find(common, &output, &find),
         },
         Command::Identify(on) => match on.device {
-            DeviceKind::Hiperface => hiperface::identify(&common, &output),
+            DeviceKind::Hiperface => hiperface::identify(common, &output),
         },
         Command::Status(on) => match on.device {
-            DeviceKind::Hiperface => hiperface::status(&common, &output),
+            DeviceKind::Hiperface => hiperface::status(common, &output),
         },
         Command::Position(position) => match position.device {
-            DeviceKind::Hiperface => hiperface::position(&common, &output, &position),
+            DeviceKind::Hiperface => hiperface::position(common, &output, &position),
         },
         Command::Read(read) => match read.device {
-            DeviceKind::Hiperface => hiperface::read(&common, &output, &read.item),
+            DeviceKind::Hiperface => hiperface::read(common, &output, &read.item),
         },
         Command::Save(save) => match save.device {
-            DeviceKind::Hiperface => hiperface::save(&common, &output, &save),
+            DeviceKind::Hiperface => hiperface::save(common, &output, &save),
         },
         Command::Write(write) => match write.device {
-            DeviceKind::Hiperface => hiperface::write(&common, &output, &write),
+            DeviceKind::Hiperface => hiperface::write(common, &output, &write),
         },
         Command::Do(act) => match act.device {
-            DeviceKind::Hiperface => hiperface::act(&common, &output, &act),
+            DeviceKind::Hiperface => hiperface::act(common, &output, &act),
         },
         Command::Decode(decode) => match decode.protocol {
             DeviceKind::Hiperface => hiperface::decode(&output, &decode.hex),
@@ -99,8 +156,8 @@ fn dispatch(arguments: Arguments) -> Result {
             DeviceKind::Hiperface => simulate::simulate(&simulate),
         },
         // The kind of device is in the file.
-        Command::Diff(diff) => hiperface::diff(&common, &output, &diff),
-        Command::Verify(verify) => hiperface::verify(&common, &output, &verify.file),
-        Command::Restore(restore) => hiperface::restore(&common, &output, &restore),
+        Command::Diff(diff) => hiperface::diff(common, &output, &diff),
+        Command::Verify(verify) => hiperface::verify(common, &output, &verify.file),
+        Command::Restore(restore) => hiperface::restore(common, &output, &restore),
     }
 }

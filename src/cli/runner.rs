@@ -162,7 +162,7 @@ pub(super) fn name_codes(codes: &[StatusCode]) {
 }
 
 /// Codes of the environment, then those of the command line.
-fn codes(common: &Common) -> Result<Vec<Code>> {
+pub(super) fn codes(common: &Common) -> Result<Vec<Code>> {
     let mut codes = Vec::new();
     if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
         for code in text.split(',').filter(|code| !code.trim().is_empty()) {

@@ -50,6 +50,11 @@ impl Skin {
         text.words(self.language)
     }
 
+    /// A number with the language's decimal sign.
+    pub fn number(&self, value: f64, decimals: usize) -> String {
+        crate::app::decimal(value, decimals, self.language)
+    }
+
     /// A label: what a value beside it is.
     pub fn label(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).color(self.palette.muted)
@@ -118,7 +123,8 @@ impl Skin {
             style.spacing.combo_width = 96.0;
             style.spacing.menu_margin = Margin::same(8);
             style.spacing.window_margin = Margin::same(16);
-            style.spacing.scroll = egui::style::ScrollStyle::solid();
+            style.spacing.scroll = egui::style::ScrollStyle::thin();
+            style.wrap_mode = Some(egui::TextWrapMode::Extend);
             style.interaction.selectable_labels = false;
             style.animation_time = 0.1;
             self.colour(&mut style.visuals);

@@ -1,0 +1,206 @@
+//! The small things that every view is made of: cards, rows of label and value, buttons with icons, badges, empty states.
+//! Each says to a screen reader what it says to the eye, without its icon.
+
+use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
+
+use super::Skin;
+
+/// Width of the column of labels.
+pub(super) const LABELS: f32 = 132.0;
+
+/// A card with a heading; what stands at the right of the heading comes from `aside`.
+pub(super) fn card<R>(
+    ui: &mut Ui,
+    skin: &Skin,
+    title: &str,
+    aside: impl FnOnce(&mut Ui),
+    content: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    skin.card()
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.horizontal(|ui| {
+                ui.label(skin.heading(title));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
+            });
+            ui.add_space(skin.space.inside);
+            content(ui)
+        })
+        .inner
+}
+
+/// A label and a value that can be selected, on one line.
+pub(super) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
+    ui.scope(|ui| {
+        // Values are read, not touched: they stand closer than what has to be hit with a pointer.
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        ui.horizontal_top(|ui| {
+            label_ui(ui, skin, label);
+            ui.add(egui::Label::new(value.into()).selectable(true).wrap());
+        });
+    });
+}
+
+/// A label and something else, on one line.
+pub(super) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        label_ui(ui, skin, label);
+        content(ui)
+    })
+    .inner
+}
+
+fn label_ui(ui: &mut Ui, skin: &Skin, label: &str) {
+    let width = LABELS.min(ui.available_width() * 0.4);
+    ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(skin.label(label)).truncate());
+    });
+}
+
+/// Words over several lines, beginning at the left.
+pub(super) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
+    ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
+}
+
+/// A dialog over the window: what lies below waits.
+pub(super) fn modal<R>(
+    ctx: &egui::Context,
+    skin: &Skin,
+    name: &str,
+    width: f32,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let frame = skin.card().inner_margin(skin.space.groups);
+    egui::Modal::new(egui::Id::unique(name))
+        .frame(frame)
+        .show(ctx, |ui| {
+            ui.set_width(width);
+            content(ui)
+        })
+        .inner
+}
+
+/// A button with an icon and a word.
+pub(super) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
+    enabled_button(ui, true, icon, word)
+}
+
+/// A button that may not be pressed now.
+pub(super) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
+    let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
+    name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
+}
+
+/// A button that says why it may not be pressed.
+pub(super) fn allowed_button(
+    ui: &mut Ui,
+    skin: &Skin,
+    allowed: &Result<(), crate::app::Text>,
+    icon: &str,
+    word: &str,
+) -> Response {
+    let response = enabled_button(ui, allowed.is_ok(), icon, word);
+    match allowed {
+        Ok(()) => response,
+        Err(why) => response.on_disabled_hover_text(skin.words(why)),
+    }
+}
+
+/// The one button of a screen that the eye ends at.
+pub(super) fn primary(ui: &mut Ui, skin: &Skin, enabled: bool, icon: &str, word: &str) -> Response {
+    let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
+    let ink = if enabled { skin.palette.on_accent } else { skin.palette.muted };
+    let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
+    if enabled {
+        button = button.fill(skin.palette.accent).stroke(Stroke::NONE);
+    }
+    name(ui.add_enabled(enabled, button), enabled, word)
+}
+
+/// An icon alone; its word is the tooltip.
+pub(super) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
+    let response = ui.add_enabled(enabled, Button::new(icon).min_size(vec2(28.0, 28.0)));
+    name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
+}
+
+/// Gives a widget the name by which a screen reader and a test find it.
+pub(super) fn name(response: Response, enabled: bool, word: &str) -> Response {
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
+    response
+}
+
+/// A short word in a frame of its colour.
+pub(super) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui::Color32>) {
+    let colour = colour.into();
+    let font = egui::FontId::proportional(skin.sizes.caption);
+    let words = ui.painter().layout_no_wrap(word.to_owned(), font, colour);
+    let (rect, response) = ui.allocate_exact_size(words.size() + vec2(12.0, 6.0), Sense::hover());
+    ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.0, colour), egui::StrokeKind::Inside);
+    ui.painter().galley(rect.min + vec2(6.0, 3.0), words, colour);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
+}
+
+/// What would be here, and the one action that fills it.
+pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str, &str, bool)>) -> bool {
+    let mut pressed = false;
+    ui.vertical_centered(|ui| {
+        ui.add_space(skin.space.groups);
+        ui.label(skin.label(words));
+        if let Some((icon, word, enabled)) = action {
+            ui.add_space(skin.space.inside);
+            pressed = enabled_button(ui, enabled, icon, word).clicked();
+        }
+        ui.add_space(skin.space.groups);
+    });
+    pressed
+}
+
+/// A one-line entry with a name for screen readers.
+pub(super) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
+    let edit =
+        egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(egui::Margin::symmetric(8, 6));
+    let response = ui.add(edit);
+    let value = text.clone();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, &value, &value, hint);
+        info.label = Some(label.to_owned());
+        info
+    });
+    response
+}
+
+/// A choice from a list, with a name for screen readers.
+pub(super) fn choice<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut T,
+    options: impl IntoIterator<Item = (T, String)>,
+) -> bool {
+    let options: Vec<(T, String)> = options.into_iter().collect();
+    let shown = options.iter().find(|(own, _)| own == value).map(|(_, word)| word.clone()).unwrap_or_default();
+    let before = *value;
+    let response = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).show_ui(ui, |ui| {
+        for (own, word) in options {
+            ui.selectable_value(value, own, word);
+        }
+    });
+    response.response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(egui::Role::ComboBox, true, label);
+        info.current_text_value = Some(shown.clone());
+        info
+    });
+    *value != before
+}
+
+/// A dot: filled for a connection, hollow for none.
+pub(super) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
+    let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
+    let colour = colour.into();
+    if filled {
+        ui.painter().circle_filled(rect.center(), 4.0, colour);
+    } else {
+        ui.painter().circle_stroke(rect.center(), 4.0, Stroke::new(1.5, colour));
+    }
+}

@@ -1,0 +1,297 @@
+//! Connecting: a link as a form, what was used before, the ports of this machine, and the search for an encoder whose
+//! settings nobody remembers.
+
+use std::time::Duration;
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
+use crate::app::explain::hiperface as words;
+use crate::app::{Action, Studio, Text};
+use crate::device::hiperface::Echo;
+use crate::device::hiperface::find::FindOptions;
+use crate::protocol::hiperface::BAUDS;
+use crate::ui::controls::{
+    LABELS, button, choice, enabled_button, entry, icon_button, modal, name, paragraph, primary, text_entry,
+};
+use crate::ui::{Skin, icons};
+use crate::units::Parity;
+
+/// What the dialog remembers of the search's options.
+#[derive(Default)]
+pub(in crate::ui) struct ConnectView {
+    one_encoder: bool,
+    power_cycle: bool,
+    more: bool,
+}
+
+/// How long to wait for the encoder's supply to be switched off and on.
+const POWER_CYCLE: Duration = Duration::from_secs(30);
+/// Links offered that were used before.
+const LINKS: usize = 5;
+const WIDTH: f32 = 600.0;
+
+/// Draws the dialog, when it is open.
+pub(in crate::ui) fn connect_ui(
+    ctx: &egui::Context,
+    skin: &Skin,
+    studio: &Studio,
+    view: &mut ConnectView,
+    actions: &mut Vec<Action>,
+) {
+    let Some(dialog) = &studio.connect else { return };
+    let height = ctx.content_rect().height() - 190.0;
+    let mut form = dialog.form.clone();
+    modal(ctx, skin, "connect", WIDTH, |ui| {
+        ui.label(skin.heading(skin.say("connect.title")));
+        ui.add_space(skin.space.inside);
+        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+            used_before(ui, skin, studio, actions);
+            kinds(ui, skin, &mut form);
+            ui.add_space(skin.space.between);
+            match form.kind {
+                LinkKind::Virtual => simulated(ui, skin, &mut form),
+                LinkKind::Serial => serial(ui, skin, dialog, &mut form, actions),
+                LinkKind::Tcp => network(ui, skin, &mut form),
+                LinkKind::Replay => recording(ui, skin, &mut form),
+            }
+            if form.kind != LinkKind::Replay {
+                line(ui, skin, &mut form);
+                more(ui, skin, &mut form, &mut view.more);
+            }
+            link_text(ui, skin, &form);
+            if matches!(form.kind, LinkKind::Serial | LinkKind::Tcp | LinkKind::Virtual) {
+                ui.add_space(skin.space.between);
+                search(ui, skin, dialog, view, actions);
+            }
+        });
+        if let Some(problem) = &dialog.problem {
+            paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
+        }
+        ui.add_space(skin.space.between);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let searching = dialog.search.as_ref().is_some_and(Search::is_running);
+            let word = skin.say("connect.connect");
+            if primary(ui, skin, !searching, icons::PLUGS_CONNECTED, &word).clicked() {
+                actions.push(Action::Connect(Connect::Connect));
+            }
+            if button(ui, "", &skin.say("connect.cancel")).clicked() {
+                actions.push(Action::Connect(Connect::Close));
+            }
+        });
+    });
+    if form != dialog.form {
+        // Before whatever else was clicked: that is to see it.
+        actions.insert(0, Action::Connect(Connect::Edit(Box::new(form))));
+    }
+}
+
+fn used_before(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    let links = studio.settings.links();
+    if links.is_empty() {
+        return;
+    }
+    ui.label(skin.caption(skin.say("connect.used")));
+    for link in links.iter().take(LINKS) {
+        let response = ui.add(egui::Button::new(skin.mono(link)).frame_when_inactive(false).truncate());
+        if response.clicked() {
+            actions.push(Action::Connect(Connect::Use(link.clone())));
+        }
+    }
+    ui.add_space(skin.space.between);
+}
+
+fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    ui.horizontal(|ui| {
+        let kinds = [
+            (LinkKind::Virtual, "connect.virtual"),
+            (LinkKind::Serial, "connect.serial"),
+            (LinkKind::Tcp, "connect.tcp"),
+            (LinkKind::Replay, "connect.replay"),
+        ];
+        for (kind, id) in kinds {
+            let word = skin.say(id);
+            let response = ui.add(egui::Button::selectable(form.kind == kind, &word));
+            if name(response, true, &word).clicked() {
+                form.kind = kind;
+            }
+        }
+    });
+}
+
+fn simulated(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("connect.model"), |ui| {
+        let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
+        let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
+        if choice(ui, &skin.say("connect.model"), &mut at, models)
+            && let Some(model) = LinkForm::models().nth(at)
+        {
+            model.clone_into(&mut form.model);
+        }
+    });
+    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
+    entry(ui, skin, &skin.say("connect.fault"), |ui| {
+        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
+    });
+}
+
+fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, form: &mut LinkForm, actions: &mut Vec<Action>) {
+    entry(ui, skin, &skin.say("connect.port"), |ui| {
+        text_entry(ui, &mut form.port, 300.0, &skin.say("connect.port"), "/dev/ttyUSB0");
+        if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &skin.say("connect.list_ports")).clicked() {
+            actions.push(Action::Connect(Connect::ListPorts));
+        }
+    });
+    match &dialog.ports {
+        None => {
+            ui.label(skin.caption(skin.say("connect.listing")));
+        }
+        Some(Err(why)) => {
+            paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+        }
+        Some(Ok(offers)) if offers.is_empty() => {
+            paragraph(ui, skin.caption(skin.say("connect.no_ports")));
+        }
+        Some(Ok(offers)) => {
+            for offer in offers {
+                ui.horizontal(|ui| {
+                    ui.add_space(LABELS);
+                    let button = egui::Button::selectable(form.port == offer.path, skin.mono(&offer.path));
+                    if ui.add(button).clicked() {
+                        form.port.clone_from(&offer.path);
+                    }
+                    ui.label(skin.label(&offer.description));
+                    if !offer.listed {
+                        ui.label(skin.caption(skin.say("connect.not_listed")));
+                    }
+                });
+            }
+        }
+    }
+}
+
+fn network(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("connect.host"), |ui| {
+        text_entry(ui, &mut form.host, 220.0, &skin.say("connect.host"), "192.168.0.7");
+        text_entry(ui, &mut form.tcp_port, 72.0, &skin.say("connect.tcp_port"), "4001");
+    });
+    ui.label(skin.caption(skin.say("connect.tcp_words")));
+}
+
+fn recording(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("connect.file"), |ui| {
+        text_entry(ui, &mut form.file, 360.0, &skin.say("connect.file"), "capture.trace");
+    });
+}
+
+fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+        let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
+        choice(ui, &skin.say("settings_card.baud"), &mut form.baud, bauds);
+        let parities = [Parity::Even, Parity::Odd, Parity::None];
+        let parities = parities.map(|parity| (parity, skin.words(&words::parity(parity))));
+        ui.label(skin.label(skin.say("settings_card.parity")));
+        choice(ui, &skin.say("settings_card.parity"), &mut form.parity, parities);
+    });
+    entry(ui, skin, &skin.say("connect.address"), |ui| {
+        text_entry(ui, &mut form.address, 96.0, &skin.say("connect.address"), "40");
+    });
+}
+
+/// What is rarely needed.
+fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
+    let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
+    let word = skin.say("connect.more");
+    let response = ui.add(egui::Button::new(format!("{icon}  {word}")).frame(false));
+    if name(response, true, &word).clicked() {
+        *open = !*open;
+    }
+    if !*open {
+        return;
+    }
+    entry(ui, skin, &skin.say("connect.echo"), |ui| {
+        let echoes =
+            [(Echo::Unknown, "connect.echo_auto"), (Echo::On, "connect.echo_on"), (Echo::Off, "connect.echo_off")];
+        let echoes = echoes.map(|(echo, id)| (echo, skin.say(id)));
+        choice(ui, &skin.say("connect.echo"), &mut form.echo, echoes);
+    });
+    entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {
+        let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
+        let times = times.map(|(long, id)| (long, skin.say(id)));
+        choice(ui, &skin.say("settings_card.timeout"), &mut form.long_timeout, times);
+    });
+    entry(ui, skin, &skin.say("connect.margin"), |ui| {
+        text_entry(ui, &mut form.margin, 72.0, &skin.say("connect.margin"), "50");
+        ui.label(skin.label("ms"));
+    });
+    entry(ui, skin, &skin.say("connect.periods"), |ui| {
+        text_entry(ui, &mut form.periods, 72.0, &skin.say("connect.periods"), "128");
+        ui.label(skin.label(skin.say("connect.turns")));
+        text_entry(ui, &mut form.turns, 72.0, &skin.say("connect.turns"), "4096");
+    });
+}
+
+/// The link as the command line takes it.
+fn link_text(ui: &mut Ui, skin: &Skin, form: &LinkForm) {
+    let Ok(url) = form.url() else { return };
+    let link = url.to_string();
+    entry(ui, skin, &skin.say("connect.link"), |ui| {
+        if icon_button(ui, true, icons::COPY, &skin.say("shell.copy_link")).clicked() {
+            ui.copy_text(link.clone());
+        }
+        ui.add(egui::Label::new(skin.mono(&link).color(skin.palette.muted)).truncate());
+    });
+}
+
+fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, actions: &mut Vec<Action>) {
+    let running = dialog.search.as_ref().is_some_and(Search::is_running);
+    skin.card().show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.label(skin.heading(skin.say("find.title")));
+        paragraph(ui, skin.label(skin.say("find.words")));
+        ui.add_enabled_ui(!running, |ui| {
+            ui.checkbox(&mut view.one_encoder, skin.say("find.one_encoder"));
+            ui.add_enabled_ui(view.one_encoder, |ui| {
+                ui.checkbox(&mut view.power_cycle, skin.say("find.power_cycle"));
+            });
+        });
+        ui.horizontal(|ui| {
+            if running {
+                if button(ui, icons::STOP, &skin.say("find.stop")).clicked() {
+                    actions.push(Action::Connect(Connect::StopSearch));
+                }
+                ui.add(egui::Spinner::new().size(14.0));
+            } else if enabled_button(ui, true, icons::MAGNIFYING_GLASS, &skin.say("find.start")).clicked() {
+                let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
+                let options = FindOptions { one_encoder: view.one_encoder, power_cycle };
+                actions.push(Action::Connect(Connect::Search(options)));
+            }
+            if let Some(progress) = dialog.search.as_ref().and_then(Search::progress) {
+                let part = progress.done as f32 / progress.total.max(1) as f32;
+                ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
+                ui.label(skin.mono(&progress.what).color(skin.palette.muted));
+            }
+        });
+        if let Some(search) = &dialog.search {
+            found(ui, skin, search, actions);
+        }
+    });
+}
+
+fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
+    for (at, found) in search.found.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let word = Text::new("find.choose").with("address", format!("{:02X}h", found.address));
+            if button(ui, icons::PLUGS_CONNECTED, &skin.words(&word)).clicked() {
+                actions.push(Action::Connect(Connect::Choose(at)));
+            }
+            let talking = Text::new("find.talking").with("format", found.format);
+            let stored = Text::new("find.stored").with_text("settings", words::line_settings(found.label.settings));
+            ui.label(skin.words(&talking));
+            ui.label(skin.label(skin.words(&stored)));
+        });
+    }
+    if let Some(end) = &search.end {
+        paragraph(ui, skin.words(end));
+    }
+}

@@ -1,0 +1,110 @@
+//! Asking for a file: with the dialog of the system, on a thread of its own; where there is none, with a path to type.
+
+use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::app::hiperface::Action as Hiperface;
+use crate::app::{Action, FileQuestion, Mailbox};
+use crate::ui::controls::{button, modal, primary, text_entry};
+use crate::ui::{Skin, icons};
+
+/// The path that is being typed.
+pub(in crate::ui) struct FileView {
+    question: FileQuestion,
+    path: String,
+    fresh: bool,
+}
+
+/// No person closes a dialog that fast: there was none.
+const TOO_FAST: Duration = Duration::from_millis(250);
+
+/// Asks the question. The answer comes as an action; where the system has no dialogs, [`file_ui`] asks.
+pub(in crate::ui) fn ask(question: FileQuestion, filter: String, mailbox: Mailbox) {
+    if !has_dialogs() {
+        mailbox.send(Action::TypePath(question));
+        return;
+    }
+    let fallback = (question.clone(), mailbox.clone());
+    let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
+        let began = Instant::now();
+        let dialog = rfd::FileDialog::new().add_filter(filter, &["ron"]);
+        let chosen = match &question {
+            FileQuestion::Open => dialog.pick_file(),
+            FileQuestion::Save { suggested } => {
+                let dialog = match suggested.file_name() {
+                    Some(name) => dialog.set_file_name(name.to_string_lossy()),
+                    None => dialog,
+                };
+                match suggested.parent().filter(|folder| folder.is_dir()) {
+                    Some(folder) => dialog.set_directory(folder),
+                    None => dialog,
+                }
+                .save_file()
+            }
+        };
+        mailbox.send(match chosen {
+            Some(path) => answer(&question, path),
+            None if began.elapsed() < TOO_FAST => Action::TypePath(question),
+            None => Action::FileNotChosen,
+        });
+    });
+    if spawned.is_err() {
+        let (question, mailbox) = fallback;
+        mailbox.send(Action::TypePath(question));
+    }
+}
+
+/// On Linux the dialogs come from a portal on the session's bus.
+fn has_dialogs() -> bool {
+    !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
+}
+
+fn answer(question: &FileQuestion, path: PathBuf) -> Action {
+    match question {
+        FileQuestion::Open => Action::Open(path),
+        FileQuestion::Save { .. } => Action::Hiperface(Hiperface::Save(path)),
+    }
+}
+
+impl FileView {
+    /// Asks for a path to be typed, beginning in `folder`.
+    pub(in crate::ui) fn new(question: FileQuestion, folder: &std::path::Path) -> Self {
+        let path = match &question {
+            FileQuestion::Open => folder.join(""),
+            FileQuestion::Save { suggested } => folder.join(suggested),
+        };
+        FileView { question, path: path.display().to_string(), fresh: true }
+    }
+}
+
+/// Draws the dialog in which a path is typed. True: it is done with.
+pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileView, actions: &mut Vec<Action>) -> bool {
+    let (title, confirm, icon) = match view.question {
+        FileQuestion::Open => ("file.open_title", "file.open", icons::FOLDER_OPEN),
+        FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
+    };
+    let mut done = false;
+    modal(ctx, skin, "file", 520.0, |ui| {
+        ui.label(skin.heading(skin.say(title)));
+        ui.add_space(skin.space.between);
+        let response = text_entry(ui, &mut view.path, ui.available_width(), &skin.say("file.path"), "");
+        if std::mem::take(&mut view.fresh) {
+            response.request_focus();
+        }
+        let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        ui.label(skin.caption(skin.say("file.hint")));
+        ui.add_space(skin.space.groups);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let named = !view.path.trim().is_empty();
+            if primary(ui, skin, named, icon, &skin.say(confirm)).clicked() || (enter && named) {
+                actions.push(answer(&view.question, PathBuf::from(view.path.trim())));
+                done = true;
+            }
+            if button(ui, "", &skin.say("file.cancel")).clicked() {
+                done = true;
+            }
+        });
+    });
+    done
+}

@@ -1,0 +1,11 @@
+//! Dialogs over the window: connecting, a question, a path to type, what this program is, help.
+
+mod about;
+mod connect;
+mod file;
+mod question;
+
+pub(super) use about::{about_ui, help_ui};
+pub(super) use connect::{ConnectView, connect_ui};
+pub(super) use file::{FileView, ask, file_ui};
+pub(super) use question::question_ui;

@@ -1,0 +1,180 @@
+//! The header: which session is shown, how it stands with it, what can be done at any time, and STOP.
+
+use egui::{RichText, Stroke, Ui};
+
+use super::controls::{badge, button, dot, enabled_button, icon_button, name};
+use super::{Skin, Views, icons};
+use crate::app::connect;
+use crate::app::hiperface::{self, Encoder, Phase, Source};
+use crate::app::{Action, Language, Severity, Studio, Theme};
+
+/// Draws the header.
+pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    ui.horizontal_centered(|ui| {
+        sessions(ui, skin, studio, actions);
+        if let Some(encoder) = studio.encoder() {
+            status(ui, skin, encoder);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let settings = &studio.settings;
+            if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
+                views.about = true;
+            }
+            if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
+                views.help = !views.help;
+            }
+            let (theme_icon, theme) = match settings.theme {
+                Theme::Dark => (icons::SUN, Theme::Light),
+                Theme::Light => (icons::MOON, Theme::Dark),
+            };
+            let theme_word = match theme {
+                Theme::Light => "shell.light",
+                Theme::Dark => "shell.dark",
+            };
+            if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
+                actions.push(Action::SetTheme(theme));
+            }
+            let (other, other_code) = match settings.language {
+                Language::English => (Language::German, "DE"),
+                Language::German => (Language::English, "EN"),
+            };
+            let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
+            if name(response, true, &skin.say("shell.language")).clicked() {
+                actions.push(Action::SetLanguage(other));
+            }
+            stop(ui, skin, studio, actions);
+            if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+                actions.push(Action::Connect(connect::Action::Open));
+            }
+            let savable = studio.encoder().is_some_and(Encoder::is_savable);
+            if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("shell.save"))
+                .on_hover_text(skin.say("shell.save_hint"))
+                .clicked()
+            {
+                actions.push(Action::Hiperface(hiperface::Action::AskSave));
+            }
+            if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
+                actions.push(Action::AskOpen);
+            }
+            link(ui, skin, studio);
+        });
+    });
+}
+
+/// The sessions, as a menu behind the name of the one that is shown.
+fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    let shown = studio.encoder().map_or_else(|| skin.say("shell.no_session"), Encoder::name);
+    let text = RichText::new(format!("{shown}  {}", icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
+    let menu = ui.menu_button(text, |ui| {
+        ui.set_width(320.0);
+        ui.label(skin.caption(skin.say("shell.sessions")));
+        for encoder in studio.encoders() {
+            ui.horizontal(|ui| {
+                phase_dot(ui, skin, encoder);
+                let is_shown = studio.encoder().is_some_and(|own| own.id == encoder.id);
+                if ui.selectable_label(is_shown, encoder.name()).clicked() {
+                    actions.push(Action::Select(encoder.id));
+                    ui.close();
+                }
+                if encoder.staged.is_dirty() {
+                    ui.label(RichText::new(icons::PENCIL_SIMPLE).color(skin.palette.staged));
+                }
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if icon_button(ui, true, icons::X, &skin.say("shell.close_session")).clicked() {
+                        actions.push(Action::CloseSession(encoder.id));
+                        ui.close();
+                    }
+                });
+            });
+        }
+        ui.separator();
+        if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+            actions.push(Action::Connect(connect::Action::Open));
+            ui.close();
+        }
+    });
+    name(menu.response, true, &skin.say("shell.sessions"));
+}
+
+fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    let palette = skin.palette;
+    let (filled, colour) = match &encoder.phase {
+        Phase::Connected => (true, palette.good),
+        Phase::Opening => (false, palette.accent),
+        Phase::Lost(_) => (false, palette.bad),
+        Phase::Offline => (false, palette.muted),
+    };
+    dot(ui, filled, colour);
+}
+
+/// *virtual*, *offline*, *connected*, *lost*: each with a word.
+fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    let palette = skin.palette;
+    if encoder.is_virtual() {
+        badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
+    }
+    phase_dot(ui, skin, encoder);
+    let (id, colour) = match &encoder.phase {
+        Phase::Connected if encoder.is_writing() => ("shell.writing", palette.accent),
+        Phase::Connected => ("shell.connected", palette.good),
+        Phase::Opening => ("shell.opening", palette.accent),
+        Phase::Lost(_) => ("shell.lost", palette.bad),
+        Phase::Offline => ("shell.offline", palette.muted),
+    };
+    ui.label(RichText::new(skin.say(id)).color(colour));
+}
+
+fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+    let Some(encoder) = studio.encoder() else { return };
+    let words = match &encoder.source {
+        Source::Link(url) => url.to_string(),
+        Source::File { path, .. } => path.display().to_string(),
+    };
+    let label = egui::Label::new(skin.mono(&words).color(skin.palette.muted)).truncate().sense(egui::Sense::click());
+    let hint = format!("{words}\n{}", skin.say("shell.copy_link"));
+    if ui.add(label).on_hover_text(hint).clicked() {
+        ui.copy_text(words);
+    }
+}
+
+/// STOP ends everything that runs, in all sessions.
+fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    let active = studio.can_stop();
+    let word = skin.say("shell.stop");
+    let text = format!("{}  {word}", icons::STOP);
+    let palette = skin.palette;
+    let stop = if active {
+        egui::Button::new(RichText::new(text).color(palette.on_bad)).fill(palette.bad).stroke(Stroke::NONE)
+    } else {
+        egui::Button::new(RichText::new(text).color(palette.muted))
+    };
+    let response = ui.add_enabled(active, stop).on_hover_text(skin.say("shell.stop_hint"));
+    if name(response, active, &word).clicked() {
+        actions.push(Action::Stop);
+    }
+}
+
+/// The notice that stands in the window until it is read.
+pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    let Some(notice) = studio.services.log.standing() else { return };
+    let palette = skin.palette;
+    let (icon, colour) = match notice.severity {
+        Severity::Note => (icons::INFO, palette.accent),
+        Severity::Good => (icons::CHECK_CIRCLE, palette.good),
+        Severity::Warning => (icons::WARNING, palette.warn),
+        Severity::Error => (icons::X_CIRCLE, palette.bad),
+    };
+    ui.horizontal(|ui| {
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
+                actions.push(Action::Dismiss);
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
+                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
+                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
+            });
+        });
+    });
+}

@@ -1,0 +1,207 @@
+//! Who the encoder is, what its error queue says, the device check, the extended label, the wiring.
+
+use egui::{RichText, Ui};
+
+use super::wiring;
+use crate::app::Action;
+use crate::app::explain::hiperface as words;
+use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::device::hiperface::Identity;
+use crate::device::hiperface::check::Verdict;
+use crate::ui::controls::{card, empty, enabled_button, paragraph, row};
+use crate::ui::{Skin, icons};
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
+    two_columns(
+        ui,
+        skin,
+        (actions, restart),
+        |ui, (actions, _)| {
+            identity(ui, skin, encoder, actions);
+            ui.add_space(skin.space.groups);
+            extended_label(ui, skin, encoder);
+            wiring::card_ui(ui, skin);
+        },
+        |ui, (actions, restart)| {
+            status(ui, skin, encoder, actions);
+            ui.add_space(skin.space.groups);
+            check(ui, skin, encoder, restart, actions);
+        },
+    );
+}
+
+/// Two columns of cards where there is room, else one below the other.
+pub(super) fn two_columns<C>(
+    ui: &mut Ui,
+    skin: &Skin,
+    mut context: C,
+    left: impl FnOnce(&mut Ui, &mut C),
+    right: impl FnOnce(&mut Ui, &mut C),
+) {
+    if ui.available_width() < 640.0 {
+        left(ui, &mut context);
+        ui.add_space(skin.space.groups);
+        right(ui, &mut context);
+        return;
+    }
+    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor();
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = skin.space.between;
+        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+            left(ui, &mut context);
+        });
+        ui.add_space(skin.space.groups - skin.space.between);
+        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+            right(ui, &mut context);
+        });
+    });
+}
+
+fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let ready = encoder.is_ready() || encoder.phase == Phase::Offline;
+    let read = |ui: &mut Ui| {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
+            actions.push(Action::Hiperface(Hiperface::Read));
+        }
+    };
+    card(ui, skin, &skin.say("encoder_card.title"), read, |ui| {
+        let Some(identity) = &encoder.identity else {
+            empty(ui, skin, &skin.say("encoder_card.nothing"), None);
+            return;
+        };
+        ui.label(skin.value(&identity.name));
+        ui.add_space(skin.space.inside);
+        facts(ui, skin, identity);
+        if let Some(memory) = identity.memory {
+            let id = if memory.fields == 1 { "encoder_card.memory_one" } else { "encoder_card.memory_words" };
+            let text = crate::app::Text::new(id)
+                .with("total", identity.label.eeprom_bytes())
+                .with("free", memory.bytes())
+                .with("fields", memory.fields);
+            row(ui, skin, &skin.say("encoder_card.memory"), skin.words(&text));
+        } else {
+            let total = format!("{} B", identity.label.eeprom_bytes());
+            row(ui, skin, &skin.say("encoder_card.memory"), skin.mono(total));
+        }
+    });
+}
+
+fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
+    let none = || skin.say("encoder_card.not_told");
+    let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
+    let serial = &identity.serial;
+    row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(&serial.serial_number)));
+    row(ui, skin, &skin.say("encoder_card.type"), skin.mono(format!("{:02X}h", identity.label.encoder_type)));
+    let resolution = match identity.geometry {
+        Some(geometry) => skin.words(&words::geometry(geometry)),
+        None => skin.say("encoder_card.no_geometry"),
+    };
+    row(ui, skin, &skin.say("encoder_card.resolution"), resolution);
+    let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
+    row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware.trim())));
+    row(ui, skin, &skin.say("encoder_card.address"), skin.mono(format!("{:02X}h", identity.address)));
+    row(ui, skin, &skin.say("encoder_card.settings"), skin.words(&words::line_settings(identity.label.settings)));
+    row(ui, skin, &skin.say("encoder_card.options"), skin.mono(format!("{:02X}h", identity.label.options)));
+}
+
+fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let read = |ui: &mut Ui| {
+        if enabled_button(ui, encoder.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
+            actions.push(Action::Hiperface(Hiperface::ReadStatus));
+        }
+    };
+    let palette = skin.palette;
+    card(ui, skin, &skin.say("status_card.title"), read, |ui| match &encoder.codes {
+        None => {
+            ui.label(skin.label(skin.say("status_card.nothing")));
+        }
+        Some(codes) if codes.is_empty() => {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
+                ui.label(skin.say("status_card.good"));
+            });
+        }
+        Some(codes) => {
+            for code in codes {
+                let (icon, colour) =
+                    if code.is_warning() { (icons::WARNING, palette.warn) } else { (icons::X_CIRCLE, palette.bad) };
+                ui.horizontal_top(|ui| {
+                    ui.label(RichText::new(icon).color(colour));
+                    ui.label(skin.mono(format!("{:02X}h", code.byte())));
+                    ui.add(egui::Label::new(skin.words(&words::status(*code))).wrap().selectable(true));
+                });
+            }
+            ui.label(skin.caption(skin.say("status_card.queue")));
+        }
+    });
+}
+
+fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
+    let palette = skin.palette;
+    card(
+        ui,
+        skin,
+        &skin.say("check_card.title"),
+        |_| {},
+        |ui| {
+            match &encoder.check {
+                None => {
+                    paragraph(ui, skin.label(skin.say("check_card.nothing")));
+                }
+                Some(lines) => {
+                    for line in lines {
+                        let (icon, colour) = match line.verdict {
+                            Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
+                            Verdict::Attention => (icons::WARNING, palette.warn),
+                            Verdict::Bad => (icons::X_CIRCLE, palette.bad),
+                        };
+                        let verdict = skin.words(&words::verdict(line.verdict));
+                        ui.horizontal_top(|ui| {
+                            ui.label(RichText::new(icon).color(colour)).on_hover_text(verdict);
+                            ui.vertical(|ui| {
+                                ui.label(skin.words(&words::step(line.step)));
+                                for finding in &line.findings {
+                                    let finding = skin.words(&words::finding(finding));
+                                    ui.add(egui::Label::new(skin.caption(finding)).wrap().selectable(true));
+                                }
+                            });
+                        });
+                    }
+                }
+            }
+            ui.add_space(skin.space.between);
+            ui.checkbox(restart, skin.say("check_card.restart"));
+            if enabled_button(ui, encoder.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+                actions.push(Action::Hiperface(Hiperface::Check { restart: *restart }));
+            }
+        },
+    );
+}
+
+fn extended_label(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
+    card(
+        ui,
+        skin,
+        &skin.say("label_card.title"),
+        |_| {},
+        |ui| {
+            for part in words::label(bytes) {
+                ui.horizontal_top(|ui| {
+                    ui.spacing_mut().interact_size.y = 18.0;
+                    let addresses = ui.label(skin.mono(&part.addresses).color(skin.palette.muted));
+                    ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
+                    ui.vertical(|ui| {
+                        ui.spacing_mut().item_spacing.y = 0.0;
+                        paragraph(ui, skin.words(&part.meaning));
+                        paragraph(ui, skin.mono(&part.bytes).size(skin.sizes.caption).color(skin.palette.muted));
+                    });
+                });
+            }
+        },
+    );
+    ui.add_space(skin.space.groups);
+}
+
+/// Width of the column of addresses.
+const ADDRESSES: f32 = 72.0;

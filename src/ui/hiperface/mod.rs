@@ -1,0 +1,108 @@
+//! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
+
+mod backups;
+mod encoder;
+mod memory;
+mod review;
+mod setup;
+mod values;
+mod wiring;
+
+pub(super) use review::review_ui;
+
+use egui::{ScrollArea, Ui};
+
+use super::{Skin, icons};
+use crate::app::hiperface::Encoder;
+use crate::app::{Action, Studio};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Page {
+    /// Who it is, how it is, and how it is wired.
+    #[default]
+    Encoder,
+    /// Its memory.
+    Memory,
+    /// Analogue values and the counter.
+    Values,
+    /// Position, address, line settings, restart, access codes.
+    Setup,
+    /// Profiles, backups and what was written.
+    Backups,
+}
+
+impl Page {
+    pub(super) const ALL: [Page; 5] = [Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Backups];
+
+    pub(super) fn icon(self) -> &'static str {
+        match self {
+            Page::Encoder => icons::CPU,
+            Page::Memory => icons::MEMORY,
+            Page::Values => icons::GAUGE,
+            Page::Setup => icons::SLIDERS,
+            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Page::Encoder => "page.encoder",
+            Page::Memory => "page.memory",
+            Page::Values => "page.values",
+            Page::Setup => "page.setup",
+            Page::Backups => "page.backups",
+        }
+    }
+
+    pub(super) fn help(self) -> &'static str {
+        match self {
+            Page::Encoder => "help.encoder",
+            Page::Memory => "help.memory",
+            Page::Values => "help.values",
+            Page::Setup => "help.setup",
+            Page::Backups => "help.backups",
+        }
+    }
+}
+
+/// What the tab remembers while the window is open: text buffers and selections.
+#[derive(Default)]
+pub struct View {
+    /// The open page.
+    pub page: Page,
+    memory: memory::View,
+    values: values::View,
+    setup: setup::View,
+    check_restart: bool,
+}
+
+/// Draws the open page.
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    studio: &Studio,
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
+    if view.page == Page::Memory {
+        // The editor scrolls by itself; its buttons stay where they are.
+        egui::Frame::NONE
+            .inner_margin(margin)
+            .show(ui, |ui| memory::page_ui(ui, skin, studio, encoder, &mut view.memory, actions));
+        return;
+    }
+    ScrollArea::vertical().id_salt("page").auto_shrink(false).show(ui, |ui| {
+        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
+            Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
+            Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
+            Page::Backups => backups::page_ui(ui, skin, encoder, actions),
+            Page::Memory => {}
+        });
+    });
+}

@@ -1,0 +1,216 @@
+//! The review of a write: every operation old → new, what it costs and needs, the consent, how far it is, what came of it.
+
+use egui::{RichText, Ui};
+use egui_extras::{Column, TableBuilder};
+
+use crate::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState, review as plan};
+use crate::app::{Action, Text};
+use crate::ui::controls::{enabled_button, modal, paragraph, primary, row};
+use crate::ui::{Skin, icons};
+use crate::worker::hiperface::{Committed, Prepared};
+
+/// Draws the dialog, where a write is on its way.
+pub(in crate::ui) fn review_ui(ctx: &egui::Context, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(review) = &encoder.review else { return };
+    let width = (ctx.content_rect().width() - 64.0).min(760.0);
+    modal(ctx, skin, "review", width, |ui| {
+        ui.label(skin.heading(skin.words(&review.what)));
+        ui.label(skin.label(encoder.name()));
+        ui.add_space(skin.space.between);
+        content(ui, skin, encoder, review, actions);
+    });
+}
+
+fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions: &mut Vec<Action>) {
+    match &review.state {
+        ReviewState::Planning => {
+            ui.horizontal(|ui| {
+                ui.add(egui::Spinner::new());
+                ui.label(skin.label(skin.say("review.planning")));
+            });
+            buttons(ui, skin, actions, "review.cancel", |_, _| {});
+        }
+        ReviewState::Ready(prepared) if prepared.plan.is_empty() => {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                ui.label(skin.say("review.nothing"));
+            });
+            remarks(ui, skin, prepared);
+            options(ui, skin, review, actions);
+            buttons(ui, skin, actions, "review.close", |_, _| {});
+        }
+        ReviewState::Ready(prepared) => {
+            operations(ui, skin, prepared, None);
+            remarks(ui, skin, prepared);
+            options(ui, skin, review, actions);
+            ui.label(skin.label(skin.say("review.way")));
+            buttons(ui, skin, actions, "review.cancel", |ui, actions| {
+                if primary(ui, skin, encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("review.write")).clicked() {
+                    actions.push(Action::Hiperface(Hiperface::Write));
+                }
+            });
+        }
+        ReviewState::Writing(prepared) => {
+            let progress = encoder.line().and_then(|line| line.running()).and_then(|running| running.progress.clone());
+            let done = progress.as_ref().map_or(0, |progress| usize::try_from(progress.done).unwrap_or(usize::MAX));
+            operations(ui, skin, prepared, Some(done));
+            let part = done as f32 / prepared.plan.ops.len().max(1) as f32;
+            ui.add(egui::ProgressBar::new(part).desired_height(4.0));
+            let stopping = encoder.line().and_then(|line| line.running()).is_some_and(|running| running.stopping);
+            ui.horizontal(|ui| {
+                ui.label(skin.label(skin.say("review.writing")));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if enabled_button(ui, !stopping, icons::STOP, &skin.say("review.stop")).clicked() {
+                        actions.push(Action::Stop);
+                    }
+                });
+            });
+        }
+        ReviewState::Done(prepared, committed) => {
+            done(ui, skin, prepared, committed);
+            buttons(ui, skin, actions, "review.close", |_, _| {});
+        }
+        ReviewState::Failed { texts, begun } => {
+            let (icon, colour) =
+                if *begun { (icons::WARNING, skin.palette.warn) } else { (icons::X_CIRCLE, skin.palette.bad) };
+            for (at, text) in texts.iter().enumerate() {
+                ui.horizontal_top(|ui| {
+                    ui.label(RichText::new(if at == 0 { icon } else { "  " }).color(colour));
+                    ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
+                });
+            }
+            options(ui, skin, review, actions);
+            buttons(ui, skin, actions, "review.close", |_, _| {});
+        }
+    }
+}
+
+fn buttons(
+    ui: &mut Ui,
+    skin: &Skin,
+    actions: &mut Vec<Action>,
+    close: &'static str,
+    primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
+) {
+    ui.add_space(skin.space.groups);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        primary(ui, actions);
+        if enabled_button(ui, true, "", &skin.say(close)).clicked() {
+            actions.push(Action::Hiperface(Hiperface::CloseReview));
+        }
+    });
+}
+
+/// The operations; while they are carried out, with the number of those that are done.
+fn operations(ui: &mut Ui, skin: &Skin, prepared: &Prepared, done: Option<usize>) {
+    let palette = skin.palette;
+    let lines = plan::lines(&prepared.plan);
+    let height = (lines.len() as f32 * 26.0 + 28.0).clamp(56.0, 260.0);
+    skin.sunken().show(ui, |ui| {
+        TableBuilder::new(ui)
+            .id_salt("operations")
+            .max_scroll_height(height)
+            .min_scrolled_height(0.0)
+            .auto_shrink([false, true])
+            .column(Column::exact(22.0))
+            .column(Column::initial(150.0).clip(true))
+            .column(Column::initial(220.0).clip(true))
+            .column(Column::exact(18.0))
+            .column(Column::remainder().clip(true))
+            .header(22.0, |mut header| {
+                for id in ["", "review.item", "review.old", "", "review.new"] {
+                    header.col(|ui| {
+                        if !id.is_empty() {
+                            ui.label(skin.caption(skin.say(id)));
+                        }
+                    });
+                }
+            })
+            .body(|body| {
+                body.rows(24.0, lines.len(), |mut table_row| {
+                    let at = table_row.index();
+                    let Some(line) = lines.get(at) else { return };
+                    table_row.col(|ui| {
+                        if done.is_some_and(|done| at < done) {
+                            ui.label(RichText::new(icons::CHECK).color(palette.good));
+                        }
+                    });
+                    table_row.col(|ui| {
+                        let words = skin.words(&line.item);
+                        ui.label(&words).on_hover_text(&words);
+                    });
+                    table_row.col(|ui| {
+                        let words = skin.words(&line.old);
+                        ui.label(skin.mono(&words).color(palette.muted)).on_hover_text(skin.mono(&words));
+                    });
+                    table_row.col(|ui| {
+                        ui.label(RichText::new(icons::ARROW_RIGHT).color(palette.muted));
+                    });
+                    table_row.col(|ui| {
+                        let words = skin.words(&line.new);
+                        ui.label(skin.mono(&words).color(palette.staged)).on_hover_text(skin.mono(&words));
+                    });
+                });
+            });
+    });
+    ui.add_space(skin.space.between);
+}
+
+fn remarks(ui: &mut Ui, skin: &Skin, prepared: &Prepared) {
+    let palette = skin.palette;
+    for text in plan::warnings(prepared) {
+        remark(ui, icons::WARNING, palette.warn, &skin.words(&text));
+    }
+    for text in plan::needs(&prepared.plan) {
+        remark(ui, icons::INFO, palette.accent, &skin.words(&text));
+    }
+    if !prepared.plan.is_empty() {
+        remark(ui, icons::MEMORY, palette.muted, &skin.words(&plan::cost(prepared)));
+    }
+}
+
+fn remark(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: &str) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, words);
+    });
+}
+
+/// What a restore may do, and writing although the encoder counts as worn.
+fn options(ui: &mut Ui, skin: &Skin, review: &Review, actions: &mut Vec<Action>) {
+    if let Some(options) = review.options() {
+        let mut wanted = options;
+        ui.add_space(skin.space.inside);
+        ui.checkbox(&mut wanted.allow_other_device, skin.say("review.allow_other"));
+        ui.checkbox(&mut wanted.with_mounting, skin.say("review.with_mounting"))
+            .on_hover_text(skin.say("review.with_mounting_hint"));
+        ui.checkbox(&mut wanted.recreate, skin.say("review.recreate")).on_hover_text(skin.say("review.recreate_hint"));
+        if wanted != options {
+            actions.push(Action::Hiperface(Hiperface::PlanAgain(wanted)));
+        }
+    }
+    let worn = review.prepared().is_some_and(plan::is_worn);
+    if worn {
+        let mut force = review.force_wear;
+        ui.checkbox(&mut force, skin.say("review.force_wear"));
+        if force != review.force_wear {
+            actions.push(Action::Hiperface(Hiperface::ForceWear(force)));
+        }
+    }
+}
+
+fn done(ui: &mut Ui, skin: &Skin, prepared: &Prepared, committed: &Committed) {
+    operations(ui, skin, prepared, Some(usize::MAX));
+    let written = &committed.written;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
+        let text = Text::new("review.verified").with("verified", written.verified).with("cycles", written.write_cycles);
+        ui.label(skin.words(&text));
+    });
+    if let Some(backup) = &committed.backup {
+        row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
+    }
+    if let Some(why) = &committed.logbook_warning {
+        remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&crate::app::explain::logbook(why)));
+    }
+}

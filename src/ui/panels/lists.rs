@@ -1,0 +1,84 @@
+//! Jobs and the log: what was done, and what happened.
+
+use egui::{RichText, ScrollArea, Ui};
+use egui_extras::{Column, TableBuilder};
+
+use super::nothing;
+use crate::app::{JobEnd, Severity, Studio};
+use crate::ui::{Skin, icons};
+
+const ROW: f32 = 22.0;
+const TIME: &str = "%H:%M:%S";
+
+/// Draws the list of jobs, the newest first.
+pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+    let jobs: Vec<_> = studio.services.jobs().rev().collect();
+    if jobs.is_empty() {
+        nothing(ui, skin, &skin.say("jobs.nothing"));
+        return;
+    }
+    let palette = skin.palette;
+    TableBuilder::new(ui)
+        .id_salt("jobs")
+        .auto_shrink(false)
+        .column(Column::exact(64.0))
+        .column(Column::exact(72.0))
+        .column(Column::exact(20.0))
+        .column(Column::initial(220.0).clip(true))
+        .column(Column::remainder().clip(true))
+        .body(|body| {
+            body.rows(ROW, jobs.len(), |mut row| {
+                let Some(job) = jobs.get(row.index()) else { return };
+                row.col(|ui| {
+                    ui.label(skin.mono(job.since.strftime(TIME).to_string()).color(palette.muted));
+                });
+                row.col(|ui| {
+                    if let Some(until) = &job.until {
+                        let seconds = until.duration_since(&job.since).as_secs_f64();
+                        ui.label(skin.mono(format!("{} s", skin.number(seconds, 2))).color(palette.muted));
+                    }
+                });
+                let (icon, colour, words) = match &job.end {
+                    JobEnd::Running => (icons::SPINNER, palette.accent, skin.say("jobs.running")),
+                    JobEnd::Done => (icons::CHECK_CIRCLE, palette.good, String::new()),
+                    JobEnd::Failed(why) => (icons::X_CIRCLE, palette.bad, skin.words(why)),
+                    JobEnd::Cancelled => (icons::STOP, palette.warn, skin.say("jobs.cancelled")),
+                };
+                row.col(|ui| {
+                    ui.label(RichText::new(icon).color(colour));
+                });
+                row.col(|ui| {
+                    ui.label(skin.words(&job.what)).on_hover_text(&job.about);
+                });
+                row.col(|ui| {
+                    ui.label(RichText::new(&words).color(colour)).on_hover_text(&words);
+                });
+            });
+        });
+}
+
+/// Draws the log, the newest first.
+pub(in crate::ui) fn log_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+    let palette = skin.palette;
+    if studio.services.log.notices().len() == 0 {
+        nothing(ui, skin, &skin.say("log.nothing"));
+        return;
+    }
+    ScrollArea::vertical().id_salt("log").auto_shrink(false).show(ui, |ui| {
+        for notice in studio.services.log.notices().rev() {
+            let (icon, colour) = match notice.severity {
+                Severity::Note => (icons::INFO, palette.muted),
+                Severity::Good => (icons::CHECK_CIRCLE, palette.good),
+                Severity::Warning => (icons::WARNING, palette.warn),
+                Severity::Error => (icons::X_CIRCLE, palette.bad),
+            };
+            ui.horizontal_top(|ui| {
+                ui.label(skin.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
+                ui.label(RichText::new(icon).color(colour));
+                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
+                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
+            });
+        }
+    });
+}

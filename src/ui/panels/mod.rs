@@ -1,0 +1,21 @@
+//! The panels around the workspace: live values, the trace, jobs, the log.
+
+mod lists;
+mod live;
+mod trace;
+
+pub(super) use lists::{jobs_ui, log_ui};
+pub(super) use live::live_ui;
+pub(super) use trace::trace_ui;
+
+use egui::Ui;
+
+use super::Skin;
+
+/// A panel that has nothing to show says what would be here.
+fn nothing(ui: &mut Ui, skin: &Skin, words: &str) {
+    ui.vertical_centered(|ui| {
+        ui.add_space(skin.space.groups);
+        ui.label(skin.label(words));
+    });
+}

@@ -1,0 +1,58 @@
+//! What passes over the line of the session that is shown: time, direction, bytes, meaning. The newest is at the bottom,
+//! and stays in sight until one scrolls away from it.
+
+use egui::{RichText, Ui};
+use egui_extras::{Column, TableBuilder};
+
+use super::nothing;
+use crate::app::Studio;
+use crate::link::Direction;
+use crate::ui::{Skin, Views};
+
+const ROW: f32 = 18.0;
+const TIME: &str = "%H:%M:%S%.3f";
+
+/// Draws the panel.
+pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views: &mut Views) {
+    let lines = studio.encoder().map(|encoder| &encoder.trace);
+    let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
+        nothing(ui, skin, &skin.say("trace.nothing"));
+        return;
+    };
+    let palette = skin.palette;
+    if trace.dropped() > 0 {
+        let text = crate::app::Text::new("trace.dropped").with("count", trace.dropped());
+        ui.label(RichText::new(skin.words(&text)).color(palette.warn));
+    }
+    let lines = trace.lines();
+    TableBuilder::new(ui)
+        .id_salt("trace")
+        .auto_shrink(false)
+        .stick_to_bottom(true)
+        .column(Column::exact(96.0))
+        .column(Column::exact(16.0))
+        .column(Column::initial(330.0).at_least(120.0).resizable(true).clip(true))
+        .column(Column::remainder().clip(true))
+        .body(|body| {
+            body.rows(ROW, lines.len(), |mut row| {
+                let Some(line) = lines.get(row.index()) else { return };
+                let (arrow, colour) = match line.direction {
+                    Direction::Sent => ("→", palette.muted),
+                    Direction::Received => ("←", palette.text),
+                };
+                row.col(|ui| {
+                    let time = trace.time_of(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
+                    ui.label(skin.mono(time).color(palette.muted));
+                });
+                row.col(|ui| {
+                    ui.label(skin.mono(arrow).color(palette.accent));
+                });
+                row.col(|ui| {
+                    ui.label(skin.mono(&line.bytes).color(colour)).on_hover_text(skin.mono(&line.bytes));
+                });
+                row.col(|ui| {
+                    ui.label(RichText::new(&line.meaning).color(colour)).on_hover_text(&line.meaning);
+                });
+            });
+        });
+}

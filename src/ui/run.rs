@@ -1,0 +1,87 @@
+//! Opening the window: what it needs of the machine, and the one line that is said where there is no display.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use super::{Window, install_fonts, log_file};
+use crate::app::{Look, Studio, Wake, World, explain};
+use crate::cli::Window as Start;
+use crate::store::Store;
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// Why there is no window, in one line.
+pub fn run(start: Start) -> Result<(), String> {
+    let began = Instant::now();
+    if !has_display() {
+        return Err(NO_DISPLAY.to_owned());
+    }
+    let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
+    log_file::begin(&store.log_path());
+    let look = Look::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
+    // The window exists only after the studio: until then nobody has to be woken.
+    let context: Arc<OnceLock<egui::Context>> = Arc::default();
+    let waker = context.clone();
+    let wake: Wake = Arc::new(move || {
+        if let Some(context) = waker.get() {
+            context.request_repaint();
+        }
+    });
+    let mut studio = Studio::new(World { codes: start.codes, ..World::real(store) }, wake);
+    let (width, height) = studio.settings.size.unwrap_or((1280, 800));
+    studio.begin(start.link, start.profile);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("encoder-studio")
+            .with_app_id("encoder-studio")
+            .with_inner_size([width as f32, height as f32])
+            .with_min_inner_size([1024.0, 640.0])
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Glow,
+        ..eframe::NativeOptions::default()
+    };
+    let result = eframe::run_native(
+        "encoder-studio",
+        options,
+        Box::new(move |cc| {
+            install_fonts(&cc.egui_ctx);
+            let _ = context.set(cc.egui_ctx.clone());
+            Ok(Box::new(Shown { window: Window::new(studio, look), began: Some(began) }))
+        }),
+    );
+    result.map_err(|error| format!("The window cannot be opened: {error}. {PACKAGES}"))
+}
+
+/// The window as eframe runs it.
+struct Shown {
+    window: Window,
+    /// When the program began, until its first picture has been shown.
+    began: Option<Instant>,
+}
+
+impl eframe::App for Shown {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        // The second picture begins when the first is on the screen.
+        if ui.ctx().cumulative_frame_nr() > 0
+            && let Some(began) = self.began.take()
+        {
+            tracing::info!("first picture after {} ms", began.elapsed().as_millis());
+        }
+        if self.began.is_some() {
+            ui.ctx().request_repaint();
+        }
+        self.window.draw(ui);
+    }
+}
+
+const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
+                          encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
+                          find, decode, simulate, ports (see encoder-studio help).";
+const PACKAGES: &str =
+    "The README lists the run-time packages that the window needs; every other command works without.";
+
+fn has_display() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY") || set("WAYLAND_SOCKET")
+}

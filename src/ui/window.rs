@@ -1,0 +1,248 @@
+//! The window: header, navigation, panels, dialogs and the keyboard; what eframe asks of an application.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use egui::{Key, Modifiers, Panel, Ui};
+
+use super::dialogs::{self, ConnectView, FileView};
+use super::docks::Docks;
+use super::hiperface::{self, Page};
+use super::{Skin, header};
+use crate::app::hiperface::Action as Hiperface;
+use crate::app::{Action, Look, Studio, Tab};
+
+/// What views remember while the window is open: text buffers and selections, nothing of the state.
+#[derive(Default)]
+pub struct Views {
+    /// The HIPERFACE tab.
+    pub hiperface: hiperface::View,
+    pub(super) connect: ConnectView,
+    pub(super) file: Option<FileView>,
+    pub(super) about: bool,
+    pub(super) help: bool,
+    /// How often the position is read, in milliseconds.
+    pub(super) rate: u64,
+}
+
+/// The window.
+pub struct Window {
+    studio: Studio,
+    views: Views,
+    docks: Docks,
+    look: &'static Look,
+    dressed: Option<crate::app::Theme>,
+}
+
+impl Window {
+    /// A window on a studio.
+    pub fn new(studio: Studio, look: &'static Look) -> Self {
+        let docks = Docks::load(studio.settings.layout.as_deref());
+        let views = Views { rate: 50, ..Views::default() };
+        Window { studio, views, docks, look, dressed: None }
+    }
+
+    /// All state.
+    pub fn studio(&self) -> &Studio {
+        &self.studio
+    }
+
+    /// Draws everything and does what was asked.
+    pub fn draw(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.studio.poll();
+        let mut actions = Vec::new();
+        self.take_input(&ctx, &mut actions);
+        let skin = Skin::new(self.look, self.studio.settings.theme, self.studio.settings.language);
+        if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
+            skin.dress(&ctx);
+        }
+        self.shell(ui, &skin, &mut actions);
+        self.dialogs(&ctx, &skin, &mut actions);
+        if !actions.is_empty() {
+            // What they change is to be seen.
+            ctx.request_repaint();
+        }
+        for action in actions {
+            self.studio.act(action);
+        }
+        if let Some(question) = self.studio.take_file_question() {
+            dialogs::ask(question, skin.say("file.profiles"), self.studio.mailbox());
+        }
+        if let Some(question) = self.studio.take_path_question() {
+            self.type_path(question);
+        }
+        self.follow_up(&ctx);
+    }
+
+    fn type_path(&mut self, question: crate::app::FileQuestion) {
+        let folder = directories::UserDirs::new().map_or_else(PathBuf::new, |dirs| dirs.home_dir().to_owned());
+        self.views.file = Some(FileView::new(question, &folder));
+    }
+
+    fn shell(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+        let Window { studio, views, docks, .. } = self;
+        let flat = |fill: crate::app::Rgb| egui::Frame::NONE.fill(fill.into());
+        let palette = skin.palette;
+        Panel::top("header")
+            .exact_size(48.0)
+            .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
+            .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
+        writing_bar(ui, skin, studio);
+        if studio.services.log.standing().is_some() {
+            let margin = egui::Margin::symmetric(12, 4);
+            Panel::top("notice").frame(flat(palette.sunken).inner_margin(margin)).show(ui, |ui| {
+                header::notice_ui(ui, skin, studio, actions);
+            });
+        }
+        Panel::left("navigation").exact_size(148.0).frame(flat(palette.surface).inner_margin(8)).show(ui, |ui| {
+            navigation(ui, skin, studio, views, docks, actions);
+        });
+        egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
+            docks.ui(ui, skin, studio, views, actions);
+        });
+        if let Some(layout) = docks.changed() {
+            actions.push(Action::KeepLayout(layout));
+        }
+    }
+
+    fn dialogs(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
+        if let Some(encoder) = self.studio.encoder() {
+            hiperface::review_ui(ctx, skin, encoder, actions);
+        }
+        dialogs::connect_ui(ctx, skin, &self.studio, &mut self.views.connect, actions);
+        if let Some(file) = &mut self.views.file
+            && dialogs::file_ui(ctx, skin, file, actions)
+        {
+            self.views.file = None;
+        }
+        if self.views.about && dialogs::about_ui(ctx, skin) {
+            self.views.about = false;
+        }
+        if self.views.help && dialogs::help_ui(ctx, skin, self.views.hiperface.page) {
+            self.views.help = false;
+        }
+        dialogs::question_ui(ctx, skin, &self.studio, actions);
+    }
+
+    /// The keyboard, and files that are dropped on the window.
+    fn take_input(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
+        if ctx.input(|input| input.viewport().close_requested()) && !self.studio.may_close() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            actions.push(Action::Close);
+        }
+        let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
+        if pressed(Modifiers::NONE, Key::Escape) {
+            self.escape(ctx, actions);
+        }
+        if pressed(Modifiers::NONE, Key::F1) {
+            self.views.help = !self.views.help;
+        }
+        if pressed(Modifiers::COMMAND, Key::O) {
+            actions.push(Action::AskOpen);
+        }
+        // What stands over the window has the keyboard.
+        if self.studio.connect.is_some() || self.studio.question.is_some() || self.views.file.is_some() {
+            return;
+        }
+        let keys = [
+            (Modifiers::NONE, Key::F5, Action::Hiperface(Hiperface::Read)),
+            (Modifiers::COMMAND, Key::S, Action::Hiperface(Hiperface::AskSave)),
+            (Modifiers::COMMAND, Key::Enter, Action::Hiperface(Hiperface::Review)),
+            (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
+        ];
+        for (modifiers, key, action) in keys {
+            if pressed(modifiers, key) {
+                actions.push(action);
+            }
+        }
+    }
+
+    /// Esc stops what runs first, then closes what is open.
+    fn escape(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let views = &mut self.views;
+        if views.file.take().is_some() || std::mem::take(&mut views.about) {
+            return;
+        }
+        if egui::Popup::is_any_open(ctx) {
+            egui::Popup::close_all(ctx);
+            return;
+        }
+        if views.help && !self.studio.can_stop() {
+            views.help = false;
+            return;
+        }
+        actions.push(Action::Escape);
+    }
+
+    fn follow_up(&mut self, ctx: &egui::Context) {
+        let size = ctx.content_rect().size();
+        let size = (size.x.round() as u32, size.y.round() as u32);
+        if self.studio.settings.size != Some(size) {
+            self.studio.act(Action::KeepSize(size.0, size.1));
+        }
+        if self.studio.may_close() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if self.studio.is_live() {
+            // Fast enough for the eye, and little enough for drawing in software.
+            ctx.request_repaint_after(Duration::from_millis(50));
+        }
+    }
+}
+
+/// While something is written, a bar moves along the top edge.
+fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+    if !studio.encoder().is_some_and(crate::app::hiperface::Encoder::is_writing) {
+        return;
+    }
+    let screen = ui.ctx().content_rect();
+    let time = ui.input(|input| input.time);
+    let width = screen.width() * 0.25;
+    let left = screen.left() + (screen.width() + width) * (time as f32 * 0.6).fract() - width;
+    let bar = egui::Rect::from_min_size(egui::pos2(left, screen.top()), egui::vec2(width, 3.0));
+    ui.ctx().debug_painter().rect_filled(bar, 0.0, skin.palette.accent);
+    ui.ctx().request_repaint_after(Duration::from_millis(33));
+}
+
+/// The tabs, with the pages of the open one.
+fn navigation(
+    ui: &mut Ui,
+    skin: &Skin,
+    studio: &Studio,
+    views: &mut Views,
+    docks: &mut Docks,
+    actions: &mut Vec<Action>,
+) {
+    ui.spacing_mut().item_spacing.y = skin.space.inside;
+    let tab = egui::RichText::new("HIPERFACE").font(skin.strong(skin.sizes.body));
+    if entry(ui, false, tab, "HIPERFACE").clicked() {
+        actions.push(Action::ShowTab(Tab::Hiperface));
+    }
+    for page in Page::ALL {
+        let word = skin.say(page.word());
+        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
+        let edited = page == Page::Memory && studio.encoder().is_some_and(|encoder| encoder.staged.is_dirty());
+        if edited {
+            text = text.color(skin.palette.staged);
+        }
+        if entry(ui, views.hiperface.page == page, text, &word).clicked() {
+            views.hiperface.page = page;
+        }
+    }
+    ui.with_layout(egui::Layout::bottom_up(egui::Align::Min), |ui| {
+        let reset = super::controls::button(ui, "", &skin.say("shell.reset_layout"));
+        if reset.on_hover_text(skin.say("shell.reset_layout_hint")).clicked() {
+            docks.reset();
+        }
+    });
+}
+
+/// An entry of the navigation, as wide as it.
+fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
+    let size = egui::vec2(ui.available_width(), 32.0);
+    let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);
+    super::controls::name(ui.add(button.min_size(size)), true, word)
+}

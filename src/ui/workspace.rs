@@ -1,0 +1,88 @@
+//! The workspace: what the open tab shows of the session that is shown.
+
+use egui::{RichText, Ui};
+
+use super::controls::{button, empty, paragraph};
+use super::{Skin, Views, hiperface, icons};
+use crate::app::connect;
+use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::app::{Action, Studio, Tab};
+
+/// Draws the workspace.
+pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    let Some(encoder) = studio.encoder() else {
+        if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
+            actions.push(Action::Connect(connect::Action::Open));
+        }
+        return;
+    };
+    match studio.settings.tab {
+        Tab::Hiperface => {
+            running(ui, skin, encoder, actions);
+            lost(ui, skin, encoder, actions);
+            hiperface::page_ui(ui, skin, studio, encoder, &mut views.hiperface, actions);
+        }
+    }
+}
+
+/// What runs, how far it is, and a way to end it.
+fn running(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let opening = encoder.phase == Phase::Opening;
+    let running = encoder.line().and_then(|line| line.running());
+    if !opening && running.is_none() {
+        return;
+    }
+    let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
+    egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.add(egui::Spinner::new().size(14.0));
+            let words = match running {
+                Some(running) => {
+                    let what = skin.words(&running.what);
+                    match &running.progress {
+                        Some(progress) => {
+                            format!("{what}  {}/{}  {}", progress.done, progress.total, progress.what)
+                        }
+                        None => what,
+                    }
+                }
+                None => skin.say("shell.opening"),
+            };
+            ui.label(skin.label(words));
+            if let Some(running) = running {
+                let stopping = running.stopping;
+                let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                if super::controls::enabled_button(ui, !stopping, icons::X, &word).clicked() {
+                    actions.push(Action::Stop);
+                }
+                if let Some(progress) = &running.progress {
+                    let part = progress.done as f32 / progress.total.max(1) as f32;
+                    ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(120.0));
+                }
+            }
+        });
+    });
+}
+
+/// Why there is no connection, and the way back.
+fn lost(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Phase::Lost(why) = &encoder.phase else { return };
+    let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
+    egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::PLUGS).color(skin.palette.bad));
+            paragraph(ui, skin.words(why));
+        });
+        ui.horizontal_wrapped(|ui| {
+            if encoder.staged.is_dirty() {
+                ui.label(RichText::new(skin.say("shell.edits_kept")).color(skin.palette.staged));
+            }
+            if button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
+                actions.push(Action::Hiperface(Hiperface::Reconnect));
+            }
+            if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+                actions.push(Action::Connect(connect::Action::Open));
+            }
+        });
+    });
+}

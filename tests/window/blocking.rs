@@ -1,0 +1,208 @@
+//! The window waits for nothing: a link that hangs, a disk that does not answer or does not take anything, events that
+//! nobody reads.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::connect::{Action as Connect, LinkForm};
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::{Action, Severity, Theme};
+use encoder_studio::device::hiperface::find::FindOptions;
+
+use crate::support::{Desk, HANGING, PORT, is_review};
+
+/// A pipe that nobody reads or writes: whoever opens it waits for ever.
+fn pipe(path: &Path) {
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+}
+
+#[test]
+fn a_link_that_hangs_holds_nobody_up() {
+    let mut desk = Desk::fresh("");
+    desk.open(HANGING);
+    desk.settle();
+    assert_eq!(*desk.phase(), Phase::Opening);
+    let hanging = desk.encoder().id;
+    for action in [Hiperface::Read, Hiperface::Review, Hiperface::Poll(Some(Duration::ZERO)), Hiperface::Reconnect] {
+        desk.ask(action);
+    }
+    desk.open(&format!("serial:{PORT}"));
+    desk.until_read();
+    assert_eq!(desk.studio.encoders().len(), 2);
+    desk.act(Action::CloseSession(hanging));
+    assert!(desk.studio.question.is_none(), "nothing would be lost");
+    assert_eq!(desk.studio.encoders().len(), 1);
+    assert_eq!(desk.studio.settings.links(), [format!("serial:{PORT}")]);
+    desk.act(Action::Close);
+    desk.until("it may close", |studio| studio.may_close());
+}
+
+#[test]
+fn a_search_on_a_link_that_hangs_can_be_ended() {
+    let mut desk = Desk::fresh("");
+    let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
+    desk.connect(Connect::Open);
+    desk.connect(Connect::Edit(Box::new(hanging)));
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk.settle();
+    assert!(desk.studio.can_stop());
+    desk.act(Action::Escape);
+    assert!(!desk.studio.can_stop());
+    assert!(desk.studio.connect.as_ref().unwrap().search.as_ref().unwrap().end.is_some());
+    // The next search is not disturbed by it.
+    desk.connect(Connect::Use(format!("serial:{PORT}")));
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk.until("it is found", |studio| {
+        let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref());
+        search.is_some_and(|search| !search.is_running() && search.found.len() == 1)
+    });
+    desk.act(Action::Escape);
+    assert!(desk.studio.connect.is_none());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_does_not_answer_holds_nobody_up() {
+    let mut desk = Desk::begun("");
+    let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().encoder_types_path());
+    pipe(&profile);
+    pipe(&types);
+    desk.act(Action::Open(profile.clone()));
+    desk.ask(Hiperface::Restore(profile));
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface/multiturn-skm36.ron");
+    desk.act(Action::Open(shipped));
+    desk.ask(Hiperface::Read);
+    desk.until_ready();
+    desk.put(0, 0, b"X");
+    desk.write();
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+/// The settings cannot be kept and nobody says so: closing waits a while, not for ever.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
+    let mut desk = Desk::begun("");
+    let settings = desk.outside.store().settings_path();
+    desk.until("the settings are kept", |_| settings.exists());
+    desk.settle();
+    fs::remove_file(&settings).unwrap();
+    pipe(&settings);
+    desk.act(Action::SetTheme(Theme::Light));
+    desk.act(Action::Close);
+    assert!(!desk.studio.may_close());
+    let before = desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
+    desk.until("it may close", |studio| studio.may_close());
+    assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
+}
+
+/// The draft cannot even be looked for: closing waits a while, not for ever.
+#[cfg(unix)]
+#[test]
+fn a_draft_that_does_not_answer_does_not_keep_the_window_open() {
+    let mut desk = Desk::fresh("");
+    pipe(&desk.outside.path("data/drafts/virtual/GB0450179.ron"));
+    desk.studio.begin(None, None);
+    desk.until_read();
+    desk.put(0, 0, b"X");
+    desk.write();
+    desk.act(Action::Close);
+    assert!(desk.studio.question.is_none() && !desk.studio.may_close());
+    desk.until("it may close", |studio| studio.may_close());
+}
+
+#[cfg(unix)]
+#[test]
+fn settings_that_do_not_answer_do_not_hold_up_the_start() {
+    let desk = Desk::fresh("");
+    pipe(&desk.outside.store().settings_path());
+    let mut desk = desk.crash();
+    assert_eq!(desk.told(Severity::Warning), ["session.settings_broken"]);
+    desk.studio.begin(None, None);
+    desk.until_read();
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_told() {
+    let mut desk = Desk::begun("");
+    desk.ask(Hiperface::Save(desk.outside.path("no/such/folder/mine.ron")));
+    desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
+    assert_eq!(desk.told(Severity::Error), ["file.no_folder"]);
+    desk.until_ready();
+}
+
+#[test]
+fn without_a_backup_nothing_is_written() {
+    let mut desk = Desk::begun("");
+    fs::create_dir_all(desk.outside.path("data")).unwrap();
+    fs::write(desk.outside.path("data/backups"), "a file in the way").unwrap();
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.ask(Hiperface::Write);
+    desk.until("it is refused", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
+    });
+    let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
+    assert_eq!(texts[0].id(), "write.not_kept");
+    assert_eq!((desk.wire().wear(), desk.edits()), (0, vec![(0, 0, b'X')]));
+}
+
+#[test]
+fn without_a_logbook_it_is_written_with_a_warning() {
+    let mut desk = Desk::begun("");
+    fs::create_dir_all(desk.outside.store().logbook_path()).unwrap();
+    desk.put(0, 0, b"X");
+    desk.write();
+    assert_eq!(desk.wire().field(0)[0], b'X');
+    assert_eq!(desk.told(Severity::Warning), ["session.written", "write.logbook"]);
+    desk.until("the list says why", |studio| matches!(studio.encoder().unwrap().writes, Some(Err(_))));
+}
+
+/// Waits without looking at what the studio is told.
+fn without_polling(condition: impl Fn() -> bool) {
+    let began = Instant::now();
+    while !condition() {
+        assert!(began.elapsed() < Duration::from_secs(20));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
+    let mut desk = Desk::begun("rpm=60");
+    let wire = desk.wire();
+    desk.ask(Hiperface::Poll(Some(Duration::ZERO)));
+    without_polling(|| wire.count(0x42) > 6_000);
+    desk.studio.poll();
+    let curve = &desk.encoder().curve;
+    assert!(curve.dropped() > 0 && curve.points().len() >= 4_096, "{} {}", curve.dropped(), curve.points().len());
+    assert!(desk.encoder().trace.dropped() > 0);
+    // In between, a job is taken at once.
+    desk.ask(Hiperface::ReadCounter);
+    desk.until_ready();
+    desk.act(Action::Stop);
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn the_end_of_a_search_that_nobody_watches_is_not_lost() {
+    let mut desk = Desk::fresh("encoders=8");
+    let wire = desk.wire();
+    desk.connect(Connect::Open);
+    desk.connect(Connect::Use(format!("serial:{PORT}")));
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk.until("it has begun", |_| wire.sent() > 0);
+    // Hundreds of tries tell how far they are.
+    without_polling(|| {
+        let sent = wire.sent();
+        std::thread::sleep(Duration::from_millis(150));
+        wire.sent() == sent
+    });
+    desk.until("the end is told", |studio| !studio.can_stop());
+    let search = desk.studio.connect.as_ref().unwrap().search.as_ref().unwrap();
+    assert_eq!(search.found.iter().map(|found| found.address).collect::<Vec<_>>(), (0x40..0x48).collect::<Vec<u8>>());
+    assert_eq!(search.end.as_ref().unwrap().id(), "find.done");
+}

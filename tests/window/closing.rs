@@ -1,0 +1,159 @@
+//! Escape stops first and closes then; closing with something to lose asks once.
+
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::{Action, JobEnd};
+use encoder_studio::store::{DeviceKey, Logbook, Outcome};
+
+use crate::support::Desk;
+
+#[test]
+fn with_nothing_to_lose_it_closes() {
+    let mut desk = Desk::begun("");
+    assert!(!desk.studio.may_close());
+    desk.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(5))));
+    desk.act(Action::Close);
+    assert!(desk.studio.question.is_none());
+    desk.until("it may close", |studio| studio.may_close());
+}
+
+#[test]
+fn with_edits_it_asks_once_and_keeps_them() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.act(Action::Close);
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.edits");
+    desk.settle();
+    assert!(!desk.studio.may_close());
+    desk.act(Action::Escape);
+    assert!(desk.studio.question.is_none());
+    desk.settle();
+    assert!(!desk.studio.may_close(), "one stays");
+    desk.put(0, 1, b"Y");
+    desk.act(Action::Close);
+    desk.act(Action::Confirm);
+    desk.until("it may close", |studio| studio.may_close());
+    let mut desk = desk.crash();
+    desk.studio.begin(None, None);
+    desk.until("the edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
+}
+
+#[test]
+fn a_write_ends_at_a_safe_point_before_it_closes() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.put(0, 2, b"Y");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 1);
+    desk.ask(Hiperface::Write);
+    desk.wire().wait_until_held();
+    desk.act(Action::Close);
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
+    desk.act(Action::Confirm);
+    desk.settle();
+    assert!(!desk.studio.may_close(), "it still writes");
+    desk.wire().release();
+    desk.until("it may close", |studio| studio.may_close());
+    assert_eq!(desk.wire().field(0)[..3], *b"XMD");
+    let logbook = Logbook::open(&desk.outside.store().logbook_path()).unwrap();
+    let key = DeviceKey {
+        kind: "hiperface".to_owned(),
+        device_type: "37h".to_owned(),
+        serial_number: "GB0450179".to_owned(),
+        is_virtual: true,
+    };
+    let entries = logbook.history(&key, 10).unwrap();
+    assert_eq!(entries[0].conclusion.as_ref().unwrap().outcome, Outcome::Cancelled);
+}
+
+#[test]
+fn escape_stops_first_then_closes_the_dialog_then_the_review() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x46, 1);
+    desk.ask(Hiperface::ReadCounter);
+    desk.connect(Connect::Open);
+    desk.wire().wait_until_held();
+
+    desk.act(Action::Escape);
+    assert!(desk.encoder().line().unwrap().running().unwrap().stopping);
+    assert!(desk.studio.connect.is_some() && desk.encoder().review.is_some());
+    desk.wire().release();
+    desk.until_ready();
+    desk.act(Action::Escape);
+    assert!(desk.studio.connect.is_none() && desk.encoder().review.is_some());
+    desk.act(Action::Escape);
+    assert!(desk.encoder().review.is_none());
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+}
+
+#[test]
+fn a_plan_that_is_being_made_ends_with_its_review() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.wire().hold_at(0x56, 1);
+    desk.ask(Hiperface::Review);
+    desk.wire().wait_until_held();
+    desk.ask(Hiperface::CloseReview);
+    assert!(desk.encoder().review.is_none());
+    desk.wire().release();
+    desk.until_ready();
+    assert!(desk.encoder().review.is_none());
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+}
+
+#[test]
+fn a_review_that_writes_stays_until_it_is_over() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 1);
+    desk.ask(Hiperface::Write);
+    desk.wire().wait_until_held();
+    desk.ask(Hiperface::CloseReview);
+    assert!(desk.review().is_writing());
+    desk.put(0, 1, b"Y");
+    assert_eq!(desk.times_told("session.busy"), 1, "what is being written is not edited");
+    desk.wire().release();
+    desk.until_written();
+    assert!(!desk.encoder().staged.is_dirty());
+}
+
+#[test]
+fn a_session_with_edits_asks_before_it_is_closed_and_they_come_back() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.settle();
+    let id = desk.encoder().id;
+    desk.act(Action::CloseSession(id));
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_edits");
+    desk.act(Action::Confirm);
+    assert!(desk.studio.encoder().is_none() && desk.studio.encoders().is_empty());
+    // Nobody is shown: what is asked of nobody does nothing.
+    desk.ask(Hiperface::Read);
+    desk.act(Action::Stop);
+    desk.open("sim:");
+    desk.until("the edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+}
+
+#[test]
+fn a_session_that_is_closed_while_it_reads_ends_its_job() {
+    let mut desk = Desk::begun("");
+    desk.wire().hold_at(0x46, 1);
+    desk.ask(Hiperface::ReadCounter);
+    desk.wire().wait_until_held();
+    let id = desk.encoder().id;
+    desk.act(Action::CloseSession(id));
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_busy");
+    desk.act(Action::Confirm);
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    desk.wire().release();
+    desk.act(Action::Close);
+    desk.until("it may close", |studio| studio.may_close());
+}

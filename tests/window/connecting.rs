@@ -1,0 +1,158 @@
+//! The connection dialog: a form that refuses what cannot be, and the search for an encoder whose settings nobody knows.
+
+use std::sync::Arc;
+
+use encoder_studio::app::Action;
+use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
+use encoder_studio::app::hiperface::{Phase, Source};
+use encoder_studio::device::hiperface::find::FindOptions;
+use encoder_studio::units::{Baud, Parity};
+
+use crate::support::{Desk, PORT};
+
+fn dialog(desk: &Desk) -> &Dialog {
+    desk.studio.connect.as_ref().expect("the dialog is open")
+}
+
+fn search(desk: &Desk) -> &Search {
+    dialog(desk).search.as_ref().expect("there is a search")
+}
+
+fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
+    let mut form = LinkForm::default();
+    change(&mut form);
+    desk.connect(Connect::Edit(Box::new(form)));
+}
+
+/// An entry that cannot be used.
+type Slip = fn(&mut LinkForm);
+
+#[test]
+fn what_cannot_be_is_refused_with_a_sentence() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    let cases: [(Slip, &str); 9] = [
+        (|form| form.kind = LinkKind::Serial, "form.port_missing"),
+        (|form| form.kind = LinkKind::Tcp, "form.host_missing"),
+        (|form| (form.kind, form.host) = (LinkKind::Tcp, "moxa".to_owned()), "form.tcp_port_missing"),
+        (|form| form.kind = LinkKind::Replay, "form.file_missing"),
+        (|form| form.address = "60".to_owned(), "form.address"),
+        (|form| form.margin = "soon".to_owned(), "form.margin"),
+        (|form| form.turns = "4096".to_owned(), "form.turns_alone"),
+        (|form| form.rpm = "fast".to_owned(), "form.rpm"),
+        (|form| form.fault = "drop:2".to_owned(), "form.fault"),
+    ];
+    for (slip, id) in cases {
+        edit(&mut desk, slip);
+        for action in [Connect::Connect, Connect::Search(FindOptions::default())] {
+            desk.connect(action);
+            assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some(id));
+            desk.settle();
+        }
+        assert!(dialog(&desk).search.is_none() && desk.studio.encoders().is_empty());
+    }
+    edit(&mut desk, |_| {});
+    assert!(dialog(&desk).problem.is_none(), "with the entry goes the sentence");
+    desk.connect(Connect::Use("no link".to_owned()));
+    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("link.url"));
+    desk.connect(Connect::Connect);
+    desk.until_read();
+    assert!(desk.studio.connect.is_none());
+}
+
+#[test]
+fn it_begins_with_what_was_used_before() {
+    let mut desk = Desk::fresh("address=0x43");
+    let link = format!("serial:{PORT}?address=0x43");
+    desk.open(&link);
+    desk.until_read();
+    desk.connect(Connect::Open);
+    assert_eq!(dialog(&desk).form.url().unwrap().to_string(), link);
+    desk.until("the ports are listed", |studio| matches!(studio.connect.as_ref().unwrap().ports, Some(Ok(_))));
+    let offers = dialog(&desk).ports.clone().unwrap().unwrap();
+    assert!(offers[0].path == PORT && offers[0].used, "{offers:?}");
+    desk.connect(Connect::ListPorts);
+    assert!(dialog(&desk).ports.is_none());
+    desk.connect(Connect::Close);
+    desk.settle();
+    assert!(desk.studio.connect.is_none());
+}
+
+/// 19200 baud, odd parity at 43h and 44h: nothing that a form begins with.
+fn searching(hold: Option<usize>) -> Desk {
+    let mut desk = Desk::fresh("encoders=2&address=0x43&settings=0xF5");
+    desk.connect(Connect::Open);
+    edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
+    if let Some(number) = hold {
+        desk.wire().hold_at(0x52, number);
+    }
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk
+}
+
+#[test]
+fn all_that_answer_are_found_and_one_is_chosen() {
+    let mut desk = searching(None);
+    assert!(search(&desk).is_running() && desk.studio.can_stop());
+    desk.until("the search is over", |studio| !studio.can_stop());
+    let found: Vec<u8> = search(&desk).found.iter().map(|found| found.address).collect();
+    assert_eq!(found, [0x43, 0x44]);
+    let format = search(&desk).found[1].format;
+    desk.connect(Connect::Choose(1));
+    assert!(desk.studio.connect.is_none());
+    desk.until_read();
+    assert_eq!(*desk.phase(), Phase::Connected);
+    assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x44);
+    assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
+    let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
+    assert_eq!(desk.encoder().source, Source::Link(link.parse().unwrap()));
+    assert_eq!(desk.studio.settings.links(), [link]);
+}
+
+#[test]
+fn it_lists_while_it_runs_and_stop_ends_it() {
+    for stop in [|| Action::Connect(Connect::StopSearch), || Action::Stop, || Action::Escape] {
+        let mut desk = searching(None);
+        let wire = desk.wire();
+        wire.hold_at(0x52, 600);
+        desk.until("the line is held", |_| wire.is_held());
+        desk.until("something is listed", |studio| {
+            let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref()).unwrap();
+            !search.found.is_empty() && search.progress().is_some_and(|progress| progress.done > 0)
+        });
+        assert!(search(&desk).is_running());
+        desk.act(stop());
+        desk.wire().release();
+        desk.until("the search is over", |studio| !studio.can_stop());
+        assert_eq!(search(&desk).end.as_ref().unwrap().id(), "find.cut_short");
+        assert!(!search(&desk).found.is_empty(), "what answered stays");
+    }
+}
+
+#[test]
+fn a_search_that_finds_nobody_says_what_to_look_at() {
+    let mut desk = Desk::fresh("fault=silent-after:0");
+    desk.connect(Connect::Open);
+    edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk.until("it is over", |studio| !studio.can_stop());
+    assert_eq!(search(&desk).end.as_ref().unwrap().id(), "find.nothing");
+    desk.wire().unplug();
+    desk.connect(Connect::Search(FindOptions::default()));
+    desk.until("it is over", |studio| !studio.can_stop());
+    assert_eq!(search(&desk).end.as_ref().unwrap().id(), "link.not_found");
+    desk.connect(Connect::Choose(0));
+    assert!(desk.studio.connect.is_some() && desk.studio.encoders().is_empty());
+}
+
+#[test]
+fn closing_the_dialog_ends_its_search() {
+    let mut desk = searching(Some(5));
+    let wire = desk.wire();
+    desk.until("the line is held", |_| wire.is_held());
+    desk.connect(Connect::Close);
+    assert!(!desk.studio.can_stop());
+    let holders = Arc::strong_count(&wire);
+    wire.release();
+    desk.until("the wire is free", |_| Arc::strong_count(&wire) < holders);
+}

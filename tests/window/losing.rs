@@ -1,0 +1,324 @@
+//! Stopping half-way, pulling the cable, exchanging the encoder: what is edited stays, and never goes onto another one.
+
+use std::fs;
+use std::time::Duration;
+
+use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, ReviewState};
+use encoder_studio::app::{Action, JobEnd, Language, Severity, Studio, Text};
+use encoder_studio::store::read_text;
+use encoder_studio::worker::hiperface::Change;
+
+use crate::support::{Desk, PORT, is_review};
+
+fn failed(studio: &Studio) -> bool {
+    is_review(studio, |state| matches!(state, ReviewState::Failed { .. }))
+}
+
+fn lost(studio: &Studio) -> bool {
+    studio.encoder().is_some_and(|encoder| matches!(encoder.phase, Phase::Lost(_)))
+}
+
+/// A profile of the virtual encoder in which four single bytes differ, open beside the encoder.
+fn with_a_profile(desk: &mut Desk) {
+    let encoder = desk.encoder().id;
+    let path = desk.outside.path("mine.ron");
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    desk.until_ready();
+    // EMD71K-4 3000rpm → eMd71K-4 3000RpM: bytes 0, 2, 13 and 15.
+    let text = read_text(&path).unwrap();
+    let old = "45 4D 44 37 31 4B 2D 34 20 33 30 30 30 72 70 6D";
+    assert!(text.contains(old), "{text}");
+    fs::write(&path, text.replace(old, "65 4D 64 37 31 4B 2D 34 20 33 30 30 30 52 70 4D")).unwrap();
+    desk.act(Action::Open(path));
+    desk.until("the profile is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.ask(Hiperface::WriteInto(encoder));
+    desk.until_planned();
+}
+
+#[test]
+fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_later() {
+    let mut desk = Desk::begun("");
+    with_a_profile(&mut desk);
+    let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
+    assert_eq!(prepared.plan.ops.len(), 4);
+    desk.wire().hold_at(0x4B, 2);
+    desk.ask(Hiperface::Write);
+    desk.wire().wait_until_held();
+    desk.until("it is writing", |studio| studio.encoder().unwrap().is_writing());
+    assert!(desk.studio.can_stop());
+    desk.act(Action::Stop);
+    assert!(desk.encoder().line().unwrap().running().unwrap().stopping);
+    desk.wire().release();
+    desk.until("it has ended", failed);
+    let ReviewState::Failed { texts, begun: true } = &desk.review().state else { panic!() };
+    // The exchange that was on its way is completed; nothing after it is begun.
+    assert_eq!(texts[0], Text::new("write.cancelled").with("done", 2).with("planned", 4));
+    assert_eq!(texts[1].id(), "write.backup");
+    let backups = fs::read_dir(desk.outside.path("data/backups/hiperface/GB0450179")).unwrap();
+    let backup = backups.map(|entry| entry.unwrap().path()).next().unwrap();
+    assert!(texts[1].words(Language::German).contains(&backup.display().to_string()));
+    desk.until_ready();
+    assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000rpm");
+    assert_eq!(desk.encoder().staged.on_device(0, 2), Some(b'd'), "it is read again");
+    assert!(!desk.encoder().staged.is_dirty(), "the profile's bytes are no edits of the encoder");
+    let end = desk.studio.services.jobs().map(|job| job.end.clone()).find(|end| *end == JobEnd::Cancelled);
+    assert!(end.is_some());
+
+    desk.ask(Hiperface::CloseReview);
+    let profile = desk.studio.encoders().iter().find(|own| own.phase == Phase::Offline).unwrap().id;
+    let encoder = desk.encoder().id;
+    desk.act(Action::Select(profile));
+    desk.ask(Hiperface::WriteInto(encoder));
+    desk.until_planned();
+    let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
+    assert_eq!(prepared.plan.ops.len(), 2, "what is left");
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000RpM");
+}
+
+#[test]
+fn edits_survive_an_unplugged_cable_and_are_written_afterwards() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    let Phase::Lost(why) = desk.phase() else { panic!() };
+    assert_eq!(why.id(), "link.lost");
+    assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+    assert!(!desk.encoder().is_busy() && desk.encoder().line().is_none());
+    // One goes on editing what is known.
+    desk.put(0, 1, b"Y");
+    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
+    desk.ask(Hiperface::Review);
+    assert_eq!(desk.times_told("session.not_connected"), 1);
+
+    desk.ask(Hiperface::Reconnect);
+    assert_eq!(*desk.phase(), Phase::Opening);
+    desk.until("it is still not there", lost);
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(*desk.phase(), Phase::Connected);
+    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
+    desk.write();
+    assert_eq!(desk.wire().field(0)[..3], *b"XYD");
+    assert!(!desk.encoder().staged.is_dirty());
+}
+
+#[test]
+fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
+    let mut desk = Desk::at_port("");
+    for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {
+        desk.put(0, address, &[byte]);
+    }
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 2);
+    desk.ask(Hiperface::Write);
+    desk.wire().wait_until_held();
+    desk.wire().unplug();
+    desk.wire().release();
+    desk.until("it has ended", failed);
+    let ReviewState::Failed { texts, begun: true } = &desk.review().state else { panic!() };
+    let words = texts[0].words(Language::English);
+    assert!(texts[0].id() == "write.interrupted" && words.contains('1') && words.contains('3'), "{words}");
+    assert!(lost(&desk.studio));
+    desk.ask(Hiperface::CloseReview);
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(desk.edits(), [(0, 2, b'b'), (0, 4, b'c')], "the first is in the encoder");
+    desk.write();
+    assert_eq!(desk.wire().field(0)[..5], *b"aMb7c");
+}
+
+#[test]
+fn a_cable_pulled_while_something_is_read_is_told_once() {
+    let mut desk = Desk::at_port("");
+    desk.wire().hold_at(0x46, 1);
+    desk.ask(Hiperface::ReadCounter);
+    desk.wire().wait_until_held();
+    desk.wire().unplug();
+    desk.wire().release();
+    desk.until("it is lost", lost);
+    desk.settle();
+    assert_eq!(desk.told(Severity::Error), ["link.lost"]);
+    let last = desk.studio.services.jobs().next_back().unwrap();
+    assert!(matches!(&last.end, JobEnd::Failed(why) if why.id() == "link.lost") && last.until.is_some());
+    let frames = desk.encoder().trace.lines();
+    assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
+}
+
+/// Another encoder at the same cable: the edits wait for the one they were made for.
+#[test]
+fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.until_kept();
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().exchange("serial=OTHER0001");
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
+    desk.until_ready();
+    desk.settle();
+    assert!(desk.edits().is_empty());
+    assert_eq!(desk.times_told("session.other_encoder"), 1);
+    desk.put(0, 1, b"Y");
+    desk.until_kept();
+
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().exchange("");
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until("the first is read", |studio| serial(studio) == Some("GB0450179"));
+    desk.until("its edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+    assert_eq!(desk.times_told("session.draft_back"), 1);
+    desk.until_ready();
+    desk.write();
+    assert_eq!(desk.wire().field(0)[..2], *b"XM");
+}
+
+fn serial(studio: &Studio) -> Option<&str> {
+    let identity = studio.encoder().and_then(|encoder| encoder.identity.as_ref())?;
+    Some(&identity.serial.serial_number)
+}
+
+/// The adapter stays plugged in, the encoder behind it does not: no link is lost, and nobody has told us.
+#[test]
+fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.until_kept();
+    desk.wire().exchange("serial=OTHER0001");
+    desk.ask(Hiperface::Review);
+    desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
+    desk.until_ready();
+    desk.settle();
+    assert!(desk.encoder().review.is_none() && desk.edits().is_empty());
+    assert_eq!(desk.times_told("session.other_encoder"), 1);
+    assert_eq!(desk.wire().wear(), 0);
+}
+
+/// The survey after the replug is stopped: who is connected is not known, and the edits are not offered to it.
+#[test]
+fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.until_kept();
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().exchange("serial=OTHER0001");
+    desk.wire().plug();
+    desk.wire().hold_at(0x52, 1);
+    desk.ask(Hiperface::Reconnect);
+    desk.until("it is held", |studio| studio.encoder().is_some_and(Encoder::is_busy));
+    desk.wire().wait_until_held();
+    desk.act(Action::Stop);
+    desk.wire().release();
+    desk.until_ready();
+    assert_eq!(serial(&desk.studio), Some("GB0450179"), "nothing newer is known");
+    desk.ask(Hiperface::Review);
+    desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
+    desk.until_ready();
+    assert_eq!(desk.wire().wear(), 0);
+}
+
+#[test]
+fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
+    let mut desk = Desk::at_port("");
+    let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
+    desk.ask(Hiperface::Plan(Change::SetAddress(address)));
+    desk.until_planned();
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x41);
+    desk.ask(Hiperface::CloseReview);
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().plug();
+    let errors = desk.told(Severity::Error).len();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(desk.told(Severity::Error).len(), errors);
+    let link = format!("serial:{PORT}?address=0x41");
+    assert_eq!(desk.encoder().source, encoder_studio::app::hiperface::Source::Link(link.parse().unwrap()));
+}
+
+#[test]
+fn connecting_again_to_a_wire_that_is_written_is_refused() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 1);
+    desk.ask(Hiperface::Write);
+    desk.wire().wait_until_held();
+    desk.open(&format!("serial:{PORT}?address=0x40"));
+    desk.ask(Hiperface::Reconnect);
+    assert_eq!(desk.times_told("session.busy"), 1);
+    assert!(desk.encoder().is_writing());
+    desk.wire().release();
+    desk.until_written();
+}
+
+#[test]
+fn connecting_again_while_something_is_read_ends_that() {
+    let mut desk = Desk::at_port("");
+    desk.wire().hold_at(0x46, 1);
+    desk.ask(Hiperface::ReadCounter);
+    desk.wire().wait_until_held();
+    desk.open(&format!("serial:{PORT}"));
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    desk.wire().release();
+    desk.until_read();
+    assert!(desk.told(Severity::Error).is_empty());
+}
+
+#[test]
+fn live_values_go_on_around_a_job_and_end_with_the_cable() {
+    let mut desk = Desk::at_port("rpm=60");
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    assert!(desk.studio.is_live() && desk.studio.can_stop());
+    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 10);
+    let position = desk.encoder().curve.last().unwrap();
+    assert!(position.valid && position.position.is_some());
+    desk.put(0, 0, b"X");
+    desk.write();
+    let points = desk.encoder().curve.points().len();
+    desk.until("samples go on", |studio| studio.encoder().unwrap().curve.points().len() > points + 10);
+    assert!(desk.encoder().curve.points().iter().all(|point| point.value.is_some()));
+    assert!(desk.told(Severity::Warning).is_empty());
+
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    assert!(!desk.studio.is_live() && !desk.studio.can_stop());
+    // Longer than the worker waits between two looks at its wire.
+    for _ in 0..70 {
+        desk.studio.poll();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+}
+
+#[test]
+fn stop_and_escape_end_live_values() {
+    for stop in [|| Action::Stop, || Action::Escape] {
+        let mut desk = Desk::begun("");
+        desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+        desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+        desk.act(stop());
+        assert!(!desk.studio.is_live());
+        desk.settle();
+        let sent = desk.wire().sent();
+        desk.settle();
+        assert_eq!(desk.wire().sent(), sent);
+        desk.ask(Hiperface::ClearCurve);
+        assert!(desk.encoder().curve.points().is_empty() && desk.encoder().curve.last().is_some());
+    }
+}

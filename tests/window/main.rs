@@ -1,0 +1,20 @@
+//! What the window does, driven as a person would: its state by actions, without drawing, and its real widgets by their
+//! accessible labels. One module a behaviour.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+mod blocking;
+mod closing;
+mod connecting;
+mod drafts;
+mod losing;
+mod profiles;
+mod remembering;
+mod screen;
+mod state;
+mod support;
+mod texts;
+mod widgets_idle;
+mod widgets_pages;
+mod widgets_writing;
+mod wire;
+mod writing;

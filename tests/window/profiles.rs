@@ -1,0 +1,149 @@
+//! Profiles: saved as the encoder is, opened beside it, edited without one.
+
+use std::fs;
+
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::{Action, FileQuestion, Severity};
+use encoder_studio::profile::{Body, Document};
+use encoder_studio::store::read_text;
+
+use crate::support::{Desk, OTHER_PORT};
+
+fn saved() -> (Desk, std::path::PathBuf) {
+    let mut desk = Desk::begun("");
+    let path = desk.outside.path("mine.ron");
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is saved", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));
+    desk.until_ready();
+    (desk, path)
+}
+
+fn open(desk: &mut Desk, path: &std::path::Path) {
+    desk.act(Action::Open(path.to_owned()));
+    desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.settle();
+}
+
+#[test]
+fn a_saved_profile_is_the_encoder() {
+    let (desk, path) = saved();
+    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    assert_eq!(profile.identity.serial_number, "GB0450179");
+    assert_eq!(profile.fields, desk.encoder().staged.device());
+    assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..], desk.wire().field(0));
+    assert_eq!(profile.recorded.position, Some(0x000E_0531));
+}
+
+#[test]
+fn saving_asks_for_a_file_named_after_the_encoder() {
+    let mut desk = Desk::begun("");
+    desk.ask(Hiperface::AskSave);
+    let suggested = "SKM36-GB0450179.ron".into();
+    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Save { suggested }));
+    desk.act(Action::AskOpen);
+    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
+    assert_eq!(desk.studio.take_file_question(), None, "once");
+    desk.act(Action::FileNotChosen);
+    desk.act(Action::TypePath(FileQuestion::Open));
+    assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
+}
+
+/// Two saves at once: the second is refused, and the first goes where it was to go.
+#[test]
+fn a_refused_save_does_not_lead_another_astray() {
+    let mut desk = Desk::begun("");
+    let (first, second) = (desk.outside.path("first.ron"), desk.outside.path("second.ron"));
+    desk.wire().hold_at(0x4A, 1);
+    desk.ask(Hiperface::Save(first.clone()));
+    desk.wire().wait_until_held();
+    desk.ask(Hiperface::Save(second.clone()));
+    assert_eq!(desk.times_told("session.busy"), 1);
+    desk.wire().release();
+    desk.until("it is saved", |_| first.exists());
+    desk.settle();
+    assert!(!second.exists());
+}
+
+#[test]
+fn a_profile_that_cannot_be_read_is_told_and_left() {
+    let mut desk = Desk::begun("");
+    let path = desk.outside.path("broken.ron");
+    for (content, id) in
+        [("(schema: 1,, )", "profile.invalid"), ("(schema: 99, device: \"hiperface\")", "profile.schema")]
+    {
+        fs::write(&path, content).unwrap();
+        let before = desk.told(Severity::Error).len();
+        desk.act(Action::Open(path.clone()));
+        desk.until("it is told", |studio| {
+            studio.services.log.notices().filter(|own| own.severity == Severity::Error).count() > before
+        });
+        assert_eq!(*desk.told(Severity::Error).last().unwrap(), id);
+        assert_eq!(fs::read_to_string(&path).unwrap(), content);
+    }
+    desk.act(Action::Open(desk.outside.path("none.ron")));
+    desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "file.not_found"));
+    assert_eq!(desk.studio.encoders().len(), 1);
+}
+
+#[test]
+fn a_profile_read_again_keeps_its_edits() {
+    let (mut desk, path) = saved();
+    open(&mut desk, &path);
+    assert_eq!(desk.encoder().name(), "mine.ron");
+    assert!(desk.encoder().identity.is_some() && !desk.encoder().is_virtual());
+    desk.put(0, 0, b"X");
+    let text = read_text(&path).unwrap();
+    fs::write(&path, text.replace("45 4D 44 37", "45 4E 44 37")).unwrap();
+    desk.ask(Hiperface::Read);
+    desk.until("it is read again", |studio| studio.encoder().unwrap().staged.on_device(0, 1) == Some(0x4E));
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+
+    // A file that is broken by now changes nothing.
+    fs::write(&path, "(").unwrap();
+    desk.ask(Hiperface::Read);
+    desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
+    assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("the edit is saved", |studio| !studio.encoder().unwrap().staged.is_dirty());
+    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");
+}
+
+#[test]
+fn a_profile_is_not_protected_by_what_it_says_about_protection() {
+    let mut desk = Desk::fresh("");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
+    let path = desk.outside.path("ready-made.ron");
+    fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
+    desk.studio.begin(None, Some(path.clone()));
+    desk.until("it is open", |studio| studio.encoder().is_some());
+    assert_eq!(desk.encoder().mounting(1), [(0..16, "commutation offset".to_owned())]);
+    desk.put(0, 0, b"X");
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+}
+
+#[test]
+fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
+    let (mut desk, path) = saved();
+    desk.open(&format!("serial:{OTHER_PORT}"));
+    desk.until_read();
+    let other = desk.encoder().id;
+    open(&mut desk, &path);
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::WriteInto(other));
+    desk.until("it is refused", |studio| {
+        crate::support::is_review(studio, |state| {
+            matches!(state, encoder_studio::app::hiperface::ReviewState::Failed { .. })
+        })
+    });
+    assert_eq!(desk.encoder().id, other);
+    desk.until_ready();
+    let mut options = desk.review().options().unwrap();
+    options.allow_other_device = true;
+    desk.ask(Hiperface::PlanAgain(options));
+    desk.until_planned();
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.outside.wire(OTHER_PORT).field(0)[0], b'X', "the edit of the profile is in it");
+    assert_eq!(desk.wire().wear(), 0);
+}

@@ -1,0 +1,150 @@
+//! The real window on a desk of the test's own, used by its accessible labels, which are asked of the table of texts.
+
+use std::time::{Duration, Instant};
+
+use egui::{Key, Role, Vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+use encoder_studio::app::hiperface::Encoder;
+use encoder_studio::app::{Action, Language, Look, Studio, Text};
+use encoder_studio::link::LinkUrl;
+use encoder_studio::ui::{Window, install_fonts};
+
+use crate::support::{LONG, Outside, log};
+use crate::texts;
+
+/// The window as the program shows it.
+pub(crate) struct Shown(Window);
+
+impl eframe::App for Shown {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.0.draw(ui);
+    }
+}
+
+pub(crate) struct Screen {
+    pub(crate) harness: Harness<'static, Shown>,
+    pub(crate) outside: Outside,
+}
+
+impl Screen {
+    /// A window that begins with this link, or else with the virtual encoder.
+    pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
+        let mut studio = outside.studio();
+        studio.begin(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
+        let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
+            install_fonts(&cc.egui_ctx);
+            Shown(Window::new(studio, Look::built_in().unwrap()))
+        });
+        Screen { harness, outside }
+    }
+
+    /// A window in which the virtual encoder is connected and read.
+    pub(crate) fn begun(size: [f32; 2]) -> Self {
+        let mut screen = Self::opened(Outside::new(""), None, size);
+        screen.until("the encoder is read", |studio| {
+            studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+        });
+        screen
+    }
+
+    pub(crate) fn studio(&self) -> &Studio {
+        self.harness.state().0.studio()
+    }
+
+    pub(crate) fn encoder(&self) -> &Encoder {
+        self.studio().encoder().expect("an encoder is shown")
+    }
+
+    fn language(&self) -> Language {
+        self.studio().settings.language
+    }
+
+    /// Draws as often as it takes until a click is answered.
+    pub(crate) fn steps(&mut self) {
+        for _ in 0..4 {
+            self.harness.step();
+        }
+    }
+
+    #[track_caller]
+    pub(crate) fn until(&mut self, what: &str, condition: impl Fn(&Studio) -> bool) {
+        let began = Instant::now();
+        loop {
+            self.harness.step();
+            texts::check_all(self.studio());
+            if condition(self.studio()) {
+                return self.steps();
+            }
+            assert!(began.elapsed() < LONG, "never: {what}\n{}", log(self.studio()));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Does something that has no widget here.
+    pub(crate) fn act(&mut self, action: Action) {
+        self.studio().mailbox().send(action);
+        self.steps();
+    }
+
+    pub(crate) fn say(&self, id: &'static str) -> String {
+        Text::new(id).words(self.language())
+    }
+
+    pub(crate) fn words(&self, text: &Text) -> String {
+        text.words(self.language())
+    }
+
+    /// The button of that name; where there are several, the one that was drawn last stands over the others.
+    #[track_caller]
+    pub(crate) fn button(&self, id: &'static str) -> Node<'_> {
+        self.buttons(id).last().unwrap_or_else(|| panic!("there is no button {:?}", self.say(id)))
+    }
+
+    fn buttons(&self, id: &'static str) -> impl Iterator<Item = Node<'_>> {
+        let label = self.say(id);
+        self.harness.query_all_by(move |node| node.role() == Role::Button && node.label().as_ref() == Some(&label))
+    }
+
+    pub(crate) fn has_button(&self, id: &'static str) -> bool {
+        self.buttons(id).next().is_some()
+    }
+
+    /// Nothing that is shown is in the other language, is the name of a text, or has a place left open.
+    #[track_caller]
+    pub(crate) fn check_language(&self) {
+        let foreign = texts::foreign_to(self.language());
+        let mut seen = 0;
+        for node in self.harness.query_all_by(|_| true) {
+            let node = node.accesskit_node();
+            seen += usize::from(node.label().is_some());
+            for words in [node.label(), node.value()].into_iter().flatten() {
+                assert!(!foreign.contains(words.as_str()), "{words:?} in {:?}", self.language());
+                assert!(!texts::is_name(&words), "{words:?} is the name of a text");
+                let open = words.split_once('{').is_some_and(|(_, rest)| rest.contains('}'));
+                assert!(!open, "{words:?} has a place left open");
+            }
+        }
+        assert!(seen > 20, "{seen} labels");
+    }
+
+    pub(crate) fn shows(&self, words: &str) -> bool {
+        self.harness.query_all_by_label_contains(words).next().is_some()
+    }
+
+    pub(crate) fn is_enabled(&self, id: &'static str) -> bool {
+        !self.button(id).accesskit_node().is_disabled()
+    }
+
+    #[track_caller]
+    pub(crate) fn click(&mut self, id: &'static str) {
+        assert!(self.is_enabled(id), "{id} is disabled");
+        self.button(id).click();
+        self.steps();
+    }
+
+    pub(crate) fn key(&mut self, key: Key) {
+        self.harness.key_press(key);
+        self.steps();
+    }
+}

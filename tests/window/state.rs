@@ -1,0 +1,126 @@
+//! The start: the virtual encoder is connected and read, polling is off, and nothing is sent while nobody asks.
+
+use std::time::Duration;
+
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, Source};
+use encoder_studio::app::{Action, JobEnd, Severity};
+use encoder_studio::link::{Direction, LinkUrl};
+use encoder_studio::protocol::hiperface::FreeMemory;
+
+use crate::support::{Desk, OTHER_PORT};
+
+#[test]
+fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
+    let desk = Desk::begun("");
+    let encoder = desk.encoder();
+    assert_eq!(encoder.phase, Phase::Connected);
+    assert_eq!(encoder.source, Source::Link(LinkUrl::sim()));
+    assert!(encoder.is_virtual());
+    let identity = encoder.identity.as_ref().unwrap();
+    assert_eq!(identity.name, "SKM36");
+    assert_eq!(identity.serial.serial_number, "GB0450179");
+    // Of 112 blocks the name plate takes two.
+    assert_eq!(identity.memory, Some(FreeMemory { blocks: 110, fields: 1 }));
+    assert_eq!(encoder.field(0).unwrap().bytes.as_ref().unwrap()[..6], *b"EMD71K");
+    assert_eq!(encoder.counter, Some(0));
+    assert_eq!(encoder.line().unwrap().polling(), None);
+    assert!(!desk.studio.can_stop() && !desk.studio.is_live());
+    assert!(desk.told(Severity::Warning).is_empty());
+    assert_eq!(desk.studio.settings.links(), ["sim:"]);
+}
+
+#[test]
+fn nothing_is_sent_while_nobody_asks() {
+    let mut desk = Desk::begun("");
+    let (sent, frames) = (desk.wire().sent(), desk.encoder().trace.lines().len());
+    assert_eq!(desk.encoder().trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(), sent);
+    // Longer than the worker waits between two looks at its wire.
+    for _ in 0..60 {
+        desk.studio.poll();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!(desk.wire().sent(), sent);
+    assert_eq!(desk.encoder().trace.lines().len(), frames);
+}
+
+#[test]
+fn every_frame_is_shown_with_its_meaning() {
+    let desk = Desk::begun("");
+    let lines = desk.encoder().trace.lines();
+    assert!(lines.iter().all(|line| !line.bytes.is_empty() && !line.meaning.is_empty()), "{lines:?}");
+}
+
+#[test]
+fn each_read_is_a_job_that_ends_as_done() {
+    let mut desk = Desk::begun("");
+    let jobs = desk.studio.services.jobs().len();
+    for action in [
+        Hiperface::ReadStatus,
+        Hiperface::ReadPosition,
+        Hiperface::ReadCounter,
+        Hiperface::ReadAnalogue(0x48),
+        Hiperface::Check { restart: true },
+        Hiperface::Read,
+    ] {
+        desk.ask(action);
+        assert!(desk.encoder().is_busy());
+        desk.until_ready();
+    }
+    let ends: Vec<JobEnd> = desk.studio.services.jobs().skip(jobs).map(|job| job.end.clone()).collect();
+    assert_eq!(ends, vec![JobEnd::Done; 6]);
+    assert_eq!(desk.encoder().codes, Some(vec![]));
+    assert!(matches!(desk.encoder().analogue[&0x48], Ok((42, _))), "{:?}", desk.encoder().analogue);
+    assert!(!desk.encoder().check.as_ref().unwrap().is_empty());
+}
+
+#[test]
+fn what_the_encoder_does_not_have_is_an_answer() {
+    let mut desk = Desk::begun("");
+    desk.ask(Hiperface::ReadAnalogue(0x07));
+    desk.until_ready();
+    assert!(desk.encoder().analogue[&0x07].is_err());
+    assert!(desk.told(Severity::Warning).is_empty(), "it stands where it was asked for");
+}
+
+#[test]
+fn a_restart_is_followed_by_a_fresh_reading() {
+    let mut desk = Desk::begun("");
+    let surveys = desk.wire().count(0x52);
+    desk.ask(Hiperface::Reset);
+    desk.until("the restart is told", |studio| {
+        studio.services.log.notices().any(|notice| notice.texts[0].id() == "session.restarted")
+    });
+    desk.until_ready();
+    assert!(desk.wire().count(0x52) > surveys);
+}
+
+#[test]
+fn a_job_beside_another_is_refused_with_a_sentence() {
+    let mut desk = Desk::begun("");
+    desk.wire().hold_at(0x50, 1);
+    desk.ask(Hiperface::ReadStatus);
+    desk.wire().wait_until_held();
+    desk.ask(Hiperface::ReadCounter);
+    assert_eq!(desk.told(Severity::Warning), ["session.busy"]);
+    desk.wire().release();
+    desk.until_ready();
+}
+
+#[test]
+fn two_encoders_are_shown_one_at_a_time() {
+    let mut desk = Desk::begun("");
+    let first = desk.encoder().id;
+    desk.open(&format!("serial:{OTHER_PORT}"));
+    desk.until_read();
+    let second = desk.encoder().id;
+    assert_eq!(desk.encoder().identity.as_ref().unwrap().name, "SKS36");
+    assert_eq!(desk.studio.encoders().len(), 2);
+    desk.act(Action::Select(first));
+    assert_eq!(desk.encoder().id, first);
+    desk.act(Action::CloseSession(first));
+    assert_eq!((desk.encoder().id, desk.studio.encoders().len()), (second, 1));
+    // The same wire again is the same session.
+    desk.open(&format!("serial:{OTHER_PORT}?address=0x40"));
+    desk.until_read();
+    assert_eq!((desk.encoder().id, desk.studio.encoders().len()), (second, 1));
+}

@@ -1,0 +1,273 @@
+//! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, Review, ReviewState};
+use encoder_studio::app::{Action, Severity, Studio, World, connect};
+use encoder_studio::device::hiperface::Station;
+use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
+use encoder_studio::protocol::hiperface::EncoderTypes;
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+
+use crate::texts;
+use crate::wire::{TestLink, Wire};
+
+/// More than anything here takes; a hanging thread is what it is for.
+pub(crate) const LONG: Duration = Duration::from_secs(20);
+/// The margin of `sim:` links.
+const MARGIN: Duration = Duration::from_millis(20);
+
+/// The world of one test: a folder, and what stands at the ends of its links.
+pub(crate) struct Outside {
+    pub(crate) folder: tempfile::TempDir,
+    wires: BTreeMap<String, Arc<Wire>>,
+    pub(crate) wakes: Arc<AtomicUsize>,
+}
+
+/// The port at which the encoder stands that `begin` finds; `sim:` leads to it too.
+pub(crate) const PORT: &str = "/dev/enc0";
+/// A port with another encoder.
+pub(crate) const OTHER_PORT: &str = "/dev/enc1";
+/// A link that never opens.
+pub(crate) const HANGING: &str = "tcp:hanging:1";
+
+impl Outside {
+    /// Encoders at [`PORT`] as `query` describes them, and an SKS36 at [`OTHER_PORT`].
+    pub(crate) fn new(query: &str) -> Self {
+        let wires = [Wire::new(PORT, query), Wire::new(OTHER_PORT, "model=sks36")];
+        let wires = wires.into_iter().map(|wire| (wire.target().to_owned(), wire)).collect();
+        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes: Arc::default() }
+    }
+
+    pub(crate) fn store(&self) -> Store {
+        Store::at(self.folder.path())
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub(crate) fn wire(&self, port: &str) -> &Arc<Wire> {
+        &self.wires[port]
+    }
+
+    pub(crate) fn world(&self) -> World {
+        let wires = self.wires.clone();
+        World {
+            open: Arc::new(move |url, store| {
+                if url.to_string() == HANGING {
+                    loop {
+                        std::thread::park();
+                    }
+                }
+                let target = if url.scheme == Scheme::Sim { PORT } else { &url.target };
+                let wire = wires.get(target).ok_or_else(|| LinkError::new(target, LinkErrorKind::NotFound))?;
+                let station = Station::from_query(&url.query, MARGIN)?;
+                let mut link = TestLink::plug_into(wire)?;
+                link.set_format(station.format)?;
+                let is_virtual = url.scheme == Scheme::Sim;
+                Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
+            }),
+            ports: Arc::new(|| Ok(Vec::new())),
+            ..World::real(self.store())
+        }
+    }
+
+    pub(crate) fn studio(&self) -> Studio {
+        let wakes = self.wakes.clone();
+        let wake = move || {
+            wakes.fetch_add(1, Ordering::SeqCst);
+        };
+        Studio::new(self.world(), Arc::new(wake))
+    }
+}
+
+/// A studio in its world.
+pub(crate) struct Desk {
+    pub(crate) studio: Studio,
+    pub(crate) outside: Outside,
+}
+
+impl Desk {
+    /// A studio that has not begun.
+    pub(crate) fn fresh(query: &str) -> Self {
+        let outside = Outside::new(query);
+        Desk { studio: outside.studio(), outside }
+    }
+
+    /// Connected to the virtual encoder, which is read.
+    pub(crate) fn begun(query: &str) -> Self {
+        let mut desk = Self::fresh(query);
+        desk.studio.begin(None, None);
+        desk.until_read();
+        desk
+    }
+
+    /// Connected to [`PORT`], which is read.
+    pub(crate) fn at_port(query: &str) -> Self {
+        let mut desk = Self::fresh(query);
+        desk.open(&format!("serial:{PORT}"));
+        desk.until_read();
+        desk
+    }
+
+    /// The studio is gone without being closed, and starts again in the same world.
+    pub(crate) fn crash(self) -> Self {
+        let Desk { studio, outside } = self;
+        drop(studio);
+        Desk { studio: outside.studio(), outside }
+    }
+
+    pub(crate) fn wire(&self) -> Arc<Wire> {
+        self.outside.wire(PORT).clone()
+    }
+
+    pub(crate) fn open(&mut self, link: &str) {
+        self.studio.begin(Some(link.parse::<LinkUrl>().unwrap()), None);
+    }
+
+    pub(crate) fn act(&mut self, action: Action) {
+        let began = Instant::now();
+        self.studio.act(action);
+        assert!(began.elapsed() < LONG, "an action made the window wait");
+    }
+
+    pub(crate) fn ask(&mut self, action: Hiperface) {
+        self.act(Action::Hiperface(action));
+    }
+
+    pub(crate) fn connect(&mut self, action: connect::Action) {
+        self.act(Action::Connect(action));
+    }
+
+    /// Polls until it is so.
+    #[track_caller]
+    pub(crate) fn until(&mut self, what: &str, condition: impl Fn(&Studio) -> bool) {
+        let began = Instant::now();
+        loop {
+            self.studio.poll();
+            texts::check_all(&self.studio);
+            if condition(&self.studio) {
+                return;
+            }
+            if began.elapsed() > LONG {
+                panic!("never: {what}\n{}", log(&self.studio));
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Polls until the shown encoder is read and nothing runs.
+    #[track_caller]
+    pub(crate) fn until_read(&mut self) {
+        self.until("the encoder is read", |studio| {
+            studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+        });
+        self.settle();
+    }
+
+    /// Polls until the shown encoder is ready for the next job.
+    #[track_caller]
+    pub(crate) fn until_ready(&mut self) {
+        self.until("ready", |studio| studio.encoder().is_some_and(Encoder::is_ready));
+    }
+
+    /// Lets tasks on their threads come back: drafts, lists, settings.
+    pub(crate) fn settle(&mut self) {
+        for _ in 0..30 {
+            self.studio.poll();
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        texts::check_all(&self.studio);
+    }
+
+    /// Polls until the edits that are shown are on disk.
+    #[track_caller]
+    pub(crate) fn until_kept(&mut self) {
+        let folder = self.outside.path("data/drafts");
+        self.until("the edits are kept", |studio| {
+            let edits: Vec<(u8, usize, u8)> = studio.encoder().unwrap().staged.edits().collect();
+            let kinds = std::fs::read_dir(&folder).into_iter().flatten();
+            let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
+            // Beside it stands the one that is to take its place.
+            let files =
+                files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|own| own == "ron"));
+            let texts = files.filter_map(|path| std::fs::read_to_string(path).ok());
+            texts.filter_map(|text| ron::from_str(&text).ok()).any(|kept: Vec<(u8, usize, u8)>| kept == edits)
+        });
+    }
+
+    pub(crate) fn encoder(&self) -> &Encoder {
+        self.studio.encoder().expect("an encoder is shown")
+    }
+
+    pub(crate) fn review(&self) -> &Review {
+        self.encoder().review.as_ref().expect("a review is open")
+    }
+
+    pub(crate) fn phase(&self) -> &Phase {
+        &self.encoder().phase
+    }
+
+    pub(crate) fn put(&mut self, field: u8, address: usize, bytes: &[u8]) {
+        self.ask(Hiperface::Put { field, address, bytes: bytes.to_vec() });
+    }
+
+    /// Edits, as field, address and byte.
+    pub(crate) fn edits(&self) -> Vec<(u8, usize, u8)> {
+        self.encoder().staged.edits().collect()
+    }
+
+    /// Polls until the plan is there.
+    #[track_caller]
+    pub(crate) fn until_planned(&mut self) {
+        self.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+        self.until_ready();
+    }
+
+    /// Polls until it is written and read again.
+    #[track_caller]
+    pub(crate) fn until_written(&mut self) {
+        self.until("it is written", |studio| is_review(studio, |state| matches!(state, ReviewState::Done(..))));
+        self.until_ready();
+        self.settle();
+    }
+
+    /// Reviews and writes what is edited.
+    #[track_caller]
+    pub(crate) fn write(&mut self) {
+        self.ask(Hiperface::Review);
+        self.until_planned();
+        self.ask(Hiperface::Write);
+        self.until_written();
+    }
+
+    /// Names of the texts in all notices of at least this severity.
+    pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {
+        let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
+        notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
+    }
+
+    /// How often a text was told.
+    pub(crate) fn times_told(&self, id: &str) -> usize {
+        self.told(Severity::Note).iter().filter(|own| **own == id).count()
+    }
+}
+
+pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) -> bool {
+    studio.encoder().and_then(|encoder| encoder.review.as_ref()).is_some_and(|review| wanted(&review.state))
+}
+
+/// Everything that was told, for a test that fails.
+pub(crate) fn log(studio: &Studio) -> String {
+    let words = |notice: &encoder_studio::app::Notice| {
+        let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal).collect();
+        format!("{:?} {:?} {}", notice.severity, notice.about, words.join(" "))
+    };
+    studio.services.log.notices().map(words).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,129 @@
+//! Every text that comes up in these tests is complete in both languages: it is in the table, each place of it is filled
+//! in, and no name of the table stands twice.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
+
+use encoder_studio::app::explain::hiperface as words;
+use encoder_studio::app::hiperface::{Encoder, Phase, ReviewState, review};
+use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text, Texts};
+
+#[derive(serde::Deserialize)]
+struct Row {
+    en: String,
+    de: String,
+    #[serde(default)]
+    terminal: String,
+}
+
+static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| ron::from_str(Texts::SOURCE).unwrap());
+
+fn places(template: &str) -> impl Iterator<Item = &str> {
+    template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
+}
+
+/// The text is in the table, has an argument for each of its places, and says something in both languages.
+#[track_caller]
+pub(crate) fn check(text: &Text) {
+    let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
+    let arguments = format!("{text:?}");
+    for template in [&row.en, &row.de, &row.terminal] {
+        for place in places(template) {
+            assert!(arguments.contains(&format!("(\"{place}\", ")), "{} has nothing for {place}", text.id());
+        }
+    }
+    for words in [text.words(Language::English), text.words(Language::German), text.terminal()] {
+        assert!(!words.is_empty() && !words.contains('{'), "{}: {words}", text.id());
+    }
+}
+
+fn check_notice(notice: &Notice) {
+    assert!(!notice.texts.is_empty());
+    notice.texts.iter().for_each(check);
+}
+
+/// Every text that the window could show now.
+#[track_caller]
+pub(crate) fn check_all(studio: &Studio) {
+    studio.services.log.notices().for_each(check_notice);
+    studio.services.log.standing().iter().for_each(|notice| check_notice(notice));
+    for job in studio.services.jobs() {
+        check(&job.what);
+        if let JobEnd::Failed(why) = &job.end {
+            check(why);
+        }
+    }
+    if let Some(question) = &studio.question {
+        check(&question.text);
+        check(&question.confirm);
+    }
+    if let Some(dialog) = &studio.connect {
+        dialog.problem.iter().for_each(check);
+        if let Some(Err(why)) = &dialog.ports {
+            check(why);
+        }
+        dialog.search.iter().filter_map(|search| search.end.as_ref()).for_each(check);
+    }
+    studio.encoders().iter().for_each(check_encoder);
+}
+
+fn check_encoder(encoder: &Encoder) {
+    if let Phase::Lost(why) = &encoder.phase {
+        check(why);
+    }
+    for why in encoder.analogue.values().filter_map(|value| value.as_ref().err()) {
+        check(why);
+    }
+    for field in encoder.staged.device() {
+        check(&words::field_status(field.status));
+    }
+    encoder.codes.iter().flatten().for_each(|code| check(&words::status(*code)));
+    if let Some(Err(why)) = &encoder.backups {
+        check(why);
+    }
+    if let Some(Err(why)) = &encoder.writes {
+        check(why);
+    }
+    let Some(review) = &encoder.review else { return };
+    check(&review.what);
+    if let ReviewState::Failed { texts, .. } = &review.state {
+        texts.iter().for_each(check);
+    }
+    let Some(prepared) = review.prepared() else { return };
+    for line in review::lines(&prepared.plan) {
+        [&line.item, &line.old, &line.new].into_iter().for_each(check);
+    }
+    let mut texts = review::needs(&prepared.plan);
+    texts.extend(review::warnings(prepared));
+    texts.push(review::cost(prepared));
+    texts.iter().for_each(check);
+}
+
+/// The words are the name of a text: what is shown where the table has no such row.
+pub(crate) fn is_name(words: &str) -> bool {
+    let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    words.split_once('.').is_some_and(|(area, name)| {
+        part(area) && part(name) && TABLE.keys().any(|own| own.split_once('.').is_some_and(|(own, _)| own == area))
+    })
+}
+
+/// What only the other language says: texts without places that no row has in this one.
+pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
+    let own = |row: &'static Row| if language == Language::English { &row.en } else { &row.de };
+    let other = |row: &'static Row| if language == Language::English { &row.de } else { &row.en };
+    let known: BTreeSet<&str> = TABLE.values().map(|row| own(row).as_str()).collect();
+    let foreign = TABLE.values().map(|row| other(row).as_str());
+    foreign.filter(|words| !words.contains('{') && !known.contains(words)).collect()
+}
+
+#[test]
+fn no_name_stands_twice_in_the_table() {
+    let mut names = BTreeSet::new();
+    for line in Texts::SOURCE.lines() {
+        let name = line.strip_prefix("    \"").and_then(|line| line.split_once("\": (")).map(|(name, _)| name);
+        if let Some(name) = name {
+            assert!(names.insert(name), "{name} stands twice");
+        }
+    }
+    assert_eq!(names.len(), TABLE.len());
+}

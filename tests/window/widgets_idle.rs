@@ -1,0 +1,85 @@
+//! Keys, dropped files and the close button of the system; and a window that has nothing to show asks for no picture.
+
+use std::time::Duration;
+
+use egui::{Key, Modifiers, ViewportEvent, ViewportId};
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::{Action, Severity};
+
+use crate::screen::Screen;
+use crate::support::PORT;
+
+const SIZE: [f32; 2] = [1280.0, 800.0];
+const PAGES: [&str; 5] = ["page.encoder", "page.memory", "page.values", "page.setup", "page.backups"];
+
+/// When the window wants to be drawn again by itself.
+fn next_picture(screen: &Screen) -> Duration {
+    screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay
+}
+
+#[test]
+fn a_window_with_nothing_to_show_asks_for_no_picture() {
+    let mut screen = Screen::begun(SIZE);
+    for page in PAGES {
+        screen.click(page);
+        for _ in 0..30 {
+            screen.harness.step();
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert!(next_picture(&screen) > Duration::from_secs(1), "{page}: {:?}", next_picture(&screen));
+    }
+    screen.click("live.start");
+    screen.steps();
+    assert!(next_picture(&screen) <= Duration::from_millis(50), "live values are drawn as they come");
+}
+
+#[test]
+fn what_comes_back_from_a_thread_wakes_the_window() {
+    let mut screen = Screen::begun(SIZE);
+    let wakes = screen.outside.wakes.clone();
+    let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
+    screen.act(Action::Hiperface(Hiperface::ReadCounter));
+    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    assert!(wakes.load(std::sync::atomic::Ordering::SeqCst) > before + 1);
+}
+
+#[test]
+fn f5_reads_again() {
+    let mut screen = Screen::begun(SIZE);
+    let before = screen.outside.wire(PORT).count(0x56);
+    screen.key(Key::F5);
+    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    assert_eq!(screen.outside.wire(PORT).count(0x56), before + 1);
+    // What stands over the window has the keyboard.
+    screen.click("shell.connect");
+    screen.key(Key::F5);
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    screen.steps();
+    assert_eq!(screen.outside.wire(PORT).count(0x56), before + 1);
+}
+
+#[test]
+fn control_enter_with_nothing_edited_says_so() {
+    let mut screen = Screen::begun(SIZE);
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    screen.steps();
+    assert!(screen.shows(&screen.say("session.nothing_edited")));
+    assert!(screen.encoder().review.is_none());
+}
+
+#[test]
+fn the_close_button_of_the_system_asks_when_something_would_be_lost() {
+    let mut screen = Screen::begun(SIZE);
+    screen.act(Action::Hiperface(Hiperface::Put { field: 0, address: 0, bytes: vec![0] }));
+    let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    viewport.events.push(ViewportEvent::Close);
+    screen.harness.step();
+    let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    viewport.events.clear();
+    screen.steps();
+    assert!(screen.studio().question.is_some() && !screen.studio().may_close());
+    screen.key(Key::Escape);
+    assert!(screen.studio().question.is_none());
+    assert!(screen.studio().services.log.notices().all(|notice| notice.severity < Severity::Error));
+    assert_eq!(screen.encoder().phase, Phase::Connected);
+}

@@ -1,0 +1,197 @@
+//! Every page, at both sizes, in both themes and languages: it is drawn, and what leads on is in reach.
+
+use egui::{Key, Rect, Vec2};
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::{Action, FileQuestion, Language, Theme};
+
+use crate::screen::Screen;
+use crate::support::{HANGING, Outside, PORT};
+
+const LARGE: [f32; 2] = [1280.0, 800.0];
+const SMALL: [f32; 2] = [1024.0, 640.0];
+const PAGES: [&str; 5] = ["page.encoder", "page.memory", "page.values", "page.setup", "page.backups"];
+const PANELS: [&str; 4] = ["panel.live", "panel.trace", "panel.jobs", "panel.log"];
+const ALWAYS: [&str; 5] = ["shell.stop", "shell.connect", "shell.open", "shell.help", "shell.language"];
+
+/// Draws every page and panel in both themes and languages.
+fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
+    let window = Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(size));
+    for language in [Language::English, Language::German] {
+        for theme in [Theme::Dark, Theme::Light] {
+            screen.act(Action::SetLanguage(language));
+            screen.act(Action::SetTheme(theme));
+            for page in PAGES {
+                screen.click(page);
+                screen.check_language();
+                for id in ALWAYS {
+                    let place = screen.button(id).rect();
+                    assert!(window.contains_rect(place), "{id} at {place:?} on {page} in {language:?}");
+                }
+            }
+            for panel in PANELS {
+                let label = screen.say(panel);
+                let tab = screen.harness.query_all_by_label(&label).next();
+                tab.unwrap_or_else(|| panic!("there is no tab {label:?}")).click();
+                screen.steps();
+                screen.check_language();
+            }
+        }
+    }
+}
+
+#[test]
+fn every_page_is_drawn_with_the_virtual_encoder() {
+    for size in [LARGE, SMALL] {
+        look_at_everything(&mut Screen::begun(size), size);
+    }
+}
+
+#[test]
+fn every_page_is_drawn_with_nothing_connected() {
+    let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
+    screen.until("it is told", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    look_at_everything(&mut screen, SMALL);
+    assert!(screen.has_button("shell.reconnect"));
+    let id = screen.encoder().id;
+    screen.act(Action::CloseSession(id));
+    screen.act(Action::Dismiss);
+    assert!(screen.studio().encoder().is_none());
+    assert!(screen.shows(&screen.say("shell.empty")));
+}
+
+#[test]
+fn every_page_is_drawn_while_a_link_opens() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SMALL);
+    look_at_everything(&mut screen, SMALL);
+    assert!(screen.shows(&screen.say("shell.opening")));
+}
+
+#[test]
+fn every_page_is_drawn_with_all_that_an_encoder_tells() {
+    let mut screen = Screen::opened(Outside::new("model=sel37&rpm=60"), None, LARGE);
+    let ready = |studio: &encoder_studio::app::Studio| {
+        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+    };
+    screen.until("it is read", ready);
+    for action in [
+        Hiperface::Check { restart: true },
+        Hiperface::ReadAnalogue(0x48),
+        Hiperface::ReadAnalogue(0x07),
+        Hiperface::Put { field: 0, address: 3, bytes: vec![1, 2, 3] },
+    ] {
+        screen.act(Action::Hiperface(action));
+        screen.until("it is done", ready);
+    }
+    screen.act(Action::Hiperface(Hiperface::Poll(Some(std::time::Duration::from_millis(5)))));
+    look_at_everything(&mut screen, LARGE);
+    assert!(screen.encoder().curve.points().len() > 2);
+    screen.click("shell.stop");
+    assert!(!screen.studio().is_live());
+}
+
+#[test]
+fn every_page_of_a_profile_is_drawn() {
+    let outside = Outside::new("");
+    let mut screen = Screen::opened(outside, Some(&format!("serial:{PORT}")), SMALL);
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
+    let path = screen.outside.path("mine.ron");
+    std::fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
+    screen.act(Action::Open(path));
+    screen.until("it is open", |studio| studio.encoders().len() == 2);
+    look_at_everything(&mut screen, SMALL);
+    assert!(screen.shows(&screen.say("shell.offline")));
+}
+
+#[test]
+fn the_connection_dialog_opens_by_click_and_closes_with_escape() {
+    for size in [LARGE, SMALL] {
+        let mut screen = Screen::begun(size);
+        screen.click("shell.connect");
+        assert!(screen.studio().connect.is_some());
+        assert!(screen.shows(&screen.say("connect.title")));
+        for kind in ["connect.serial", "connect.tcp", "connect.replay", "connect.virtual"] {
+            screen.click(kind);
+            if kind != "connect.replay" {
+                screen.click("connect.more");
+            }
+            screen.check_language();
+        }
+        screen.act(Action::SetLanguage(Language::German));
+        screen.check_language();
+        assert!(screen.shows(&screen.say("connect.title")));
+        screen.click("connect.serial");
+        screen.click("connect.connect");
+        assert!(screen.studio().connect.as_ref().unwrap().problem.is_some(), "there is no port in it");
+        assert!(screen.shows(&screen.say("form.port_missing")));
+        screen.key(Key::Escape);
+        assert!(screen.studio().connect.is_none());
+        assert!(!screen.shows(&screen.say("connect.title")));
+    }
+}
+
+#[test]
+fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
+    let mut screen = Screen::opened(Outside::new("address=0x44"), None, LARGE);
+    screen.act(Action::Connect(Connect::Open));
+    screen.act(Action::Connect(Connect::Use(format!("serial:{PORT}"))));
+    screen.click("find.start");
+    screen.until("it is over", |studio| {
+        let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref());
+        search.is_some_and(|search| !search.is_running())
+    });
+    let choose = screen.words(&encoder_studio::app::Text::new("find.choose").with("address", "44h"));
+    screen.harness.get_by_label(&choose).click();
+    screen.until("it is read", |studio| {
+        studio.encoder().and_then(|encoder| encoder.identity.as_ref()).is_some_and(|own| own.address == 0x44)
+    });
+}
+
+#[test]
+fn f1_helps_and_escape_closes_it() {
+    let mut screen = Screen::begun(SMALL);
+    for (page, help) in
+        PAGES.into_iter().zip(["help.encoder", "help.memory", "help.values", "help.setup", "help.backups"])
+    {
+        screen.click(page);
+        screen.key(Key::F1);
+        assert!(screen.shows(&screen.say(help)), "{page}");
+        screen.key(Key::Escape);
+        assert!(!screen.shows(&screen.say(help)), "{page}");
+    }
+    screen.click("shell.about");
+    assert!(screen.shows(env!("CARGO_PKG_VERSION")));
+    screen.key(Key::Escape);
+    assert!(!screen.has_button("about.close"));
+}
+
+#[test]
+fn the_language_and_the_theme_are_a_click_away() {
+    let mut screen = Screen::begun(LARGE);
+    let english: Vec<String> = PAGES.map(|page| screen.say(page)).to_vec();
+    screen.click("shell.language");
+    assert_eq!(screen.studio().settings.language, Language::German);
+    for (page, english) in PAGES.into_iter().zip(english) {
+        assert!(screen.has_button(page));
+        assert_ne!(screen.say(page), english);
+    }
+    screen.click("shell.language");
+    assert_eq!(screen.studio().settings.language, Language::English);
+    screen.click("shell.light");
+    assert_eq!(screen.studio().settings.theme, Theme::Light);
+    screen.click("shell.dark");
+    assert_eq!(screen.studio().settings.theme, Theme::Dark);
+}
+
+/// Where the system has no dialogs, a path is typed.
+#[test]
+fn a_path_is_typed_where_there_is_no_dialog() {
+    let mut screen = Screen::begun(SMALL);
+    for question in [FileQuestion::Open, FileQuestion::Save { suggested: "x.ron".into() }] {
+        screen.act(Action::TypePath(question));
+        assert!(screen.has_button("file.cancel"));
+        screen.key(Key::Escape);
+        assert!(!screen.has_button("file.cancel"));
+    }
+}

@@ -1,0 +1,189 @@
+//! The way of a byte through the real widgets: edited, reviewed, written, read back; STOP and the questions beside it.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::{Action, Language, Text};
+
+use crate::screen::Screen;
+use crate::support::{Outside, PORT, is_review};
+
+const SIZE: [f32; 2] = [1280.0, 800.0];
+
+/// Types into the hex editor of data field 0.
+fn type_bytes(screen: &mut Screen, digits: &str) {
+    screen.click("page.memory");
+    let editor = screen.words(&Text::new("memory.bytes").with("number", 0));
+    screen.harness.get_by_label(&editor).focus();
+    screen.steps();
+    for digit in digits.chars() {
+        screen.harness.get_by_label(&editor).type_text(&digit.to_string());
+        screen.steps();
+    }
+}
+
+#[test]
+fn a_byte_is_typed_reviewed_written_and_read_back() {
+    let mut screen = Screen::begun(SIZE);
+    screen.click("page.memory");
+    assert!(!screen.is_enabled("memory.review"), "nothing is edited");
+    type_bytes(&mut screen, "58");
+    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 0, 0x58)]);
+    assert_eq!(screen.outside.wire(PORT).field(0)[0], b'E');
+
+    screen.click("memory.review");
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    let byte = screen.words(&Text::new("op.byte").with("field", 0).with("first", 0));
+    for words in [byte.as_str(), "45", "58"] {
+        screen.harness.query_all_by_label(words).next().unwrap_or_else(|| panic!("{words} is not in the review"));
+    }
+    assert_eq!(screen.outside.wire(PORT).wear(), 0);
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
+    screen.click("review.write");
+    screen.until("it is written", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Done(..))) && studio.encoder().unwrap().is_ready()
+    });
+    let verified = Text::new("review.verified").with("verified", 1).with("cycles", 1);
+    assert!(screen.shows(&screen.words(&verified)));
+    assert_eq!(screen.outside.wire(PORT).field(0)[0], 0x58);
+    screen.click("review.close");
+    assert!(screen.encoder().review.is_none() && !screen.encoder().staged.is_dirty());
+    let editor = screen.words(&Text::new("memory.bytes").with("number", 0));
+    // The cursor stands behind the byte that was typed.
+    assert!(screen.harness.get_by_label(&editor).value().unwrap().starts_with("0x01: 4D"));
+}
+
+#[test]
+fn the_review_is_closed_with_escape_and_writes_nothing() {
+    let mut screen = Screen::begun(SIZE);
+    type_bytes(&mut screen, "58");
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    screen.until("the plan is ready", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Ready(_))) && studio.encoder().unwrap().is_ready()
+    });
+    screen.key(Key::Escape);
+    assert!(screen.encoder().review.is_none());
+    assert!(screen.encoder().staged.is_dirty());
+    assert_eq!(screen.outside.wire(PORT).wear(), 0);
+    screen.click("memory.undo");
+    assert!(!screen.encoder().staged.is_dirty());
+    screen.click("memory.redo");
+    screen.click("memory.revert");
+    assert!(!screen.encoder().staged.is_dirty());
+}
+
+#[test]
+fn what_a_field_does_not_allow_cannot_be_pressed() {
+    let mut screen = Screen::begun(SIZE);
+    screen.click("page.memory");
+    assert!(screen.is_enabled("memory.delete"), "it is the last");
+    let size = encoder_studio::protocol::hiperface::FieldSize::from_bytes(16).unwrap();
+    let code = encoder_studio::protocol::hiperface::CodeNumber::ZERO;
+    let status = encoder_studio::app::hiperface::forms::new_field(size, code, true);
+    let create = encoder_studio::worker::hiperface::Change::CreateField { number: 1, status };
+    screen.act(Action::Hiperface(Hiperface::Plan(create)));
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.click("review.write");
+    screen.until("it is written", |studio| studio.encoder().unwrap().staged.device().len() == 2);
+    screen.click("review.close");
+    assert!(!screen.is_enabled("memory.delete") && !screen.is_enabled("memory.resize"), "another one is the last now");
+    screen.click("memory.lock");
+    screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    screen.click("review.write");
+    screen.until("it is written", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Done(..))) && studio.encoder().unwrap().is_ready()
+    });
+    screen.click("review.close");
+    type_bytes(&mut screen, "58");
+    assert!(!screen.encoder().staged.is_dirty());
+    assert!(screen.shows(&screen.words(&Text::new("plan.write_protected").with("field", 0))));
+}
+
+#[test]
+fn stop_can_be_pressed_only_while_something_runs() {
+    let mut screen = Screen::begun(SIZE);
+    assert!(!screen.is_enabled("shell.stop"));
+    screen.outside.wire(PORT).hold_at(0x46, 1);
+    screen.act(Action::Hiperface(Hiperface::ReadCounter));
+    screen.outside.wire(PORT).wait_until_held();
+    screen.steps();
+    assert!(screen.is_enabled("shell.stop"));
+    screen.click("shell.stop");
+    assert!(screen.encoder().line().unwrap().running().unwrap().stopping);
+    screen.outside.wire(PORT).release();
+    screen.until("it has ended", |studio| studio.encoder().unwrap().is_ready());
+    assert!(!screen.is_enabled("shell.stop"));
+    screen.click("live.start");
+    assert!(screen.is_enabled("shell.stop") && screen.studio().is_live());
+    screen.click("shell.stop");
+    assert!(!screen.is_enabled("shell.stop") && !screen.studio().is_live());
+}
+
+#[test]
+fn a_restore_is_stopped_half_way_by_click() {
+    let mut screen = Screen::begun(SIZE);
+    for address in [0, 2, 4] {
+        let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
+        screen.act(Action::Hiperface(edit));
+    }
+    screen.act(Action::Hiperface(Hiperface::Review));
+    screen.until("the plan is ready", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Ready(_))) && studio.encoder().unwrap().is_ready()
+    });
+    screen.outside.wire(PORT).hold_at(0x4B, 2);
+    screen.click("review.write");
+    screen.outside.wire(PORT).wait_until_held();
+    screen.steps();
+    assert!(screen.shows(&screen.say("shell.writing")));
+    screen.click("review.stop");
+    screen.outside.wire(PORT).release();
+    screen.until("it has ended", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))
+            && studio.encoder().unwrap().is_ready()
+    });
+    let words = Text::new("write.cancelled").with("done", 2).with("planned", 3);
+    assert!(screen.shows(&screen.words(&words)));
+    screen.click("review.close");
+    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 4, 0)]);
+}
+
+#[test]
+fn a_pulled_cable_shows_the_way_back_and_keeps_the_edits() {
+    let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
+    screen.until("it is read", |studio| studio.encoder().is_some_and(|own| own.is_ready() && own.identity.is_some()));
+    type_bytes(&mut screen, "58");
+    screen.outside.wire(PORT).unplug();
+    screen.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    assert!(screen.shows(&screen.say("shell.edits_kept")) && screen.shows(&screen.say("shell.lost")));
+    assert!(!screen.is_enabled("memory.review"));
+    screen.outside.wire(PORT).plug();
+    screen.click("shell.reconnect");
+    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    assert!(screen.is_enabled("memory.review"));
+    assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 0, 0x58)]);
+}
+
+#[test]
+fn closing_with_edits_asks_and_one_can_stay() {
+    let mut screen = Screen::begun(SIZE);
+    type_bytes(&mut screen, "58");
+    screen.act(Action::Close);
+    assert!(screen.shows(&screen.words(&screen.studio().question.as_ref().unwrap().text)));
+    screen.click("question.stay");
+    assert!(screen.studio().question.is_none() && !screen.studio().may_close());
+    screen.act(Action::Close);
+    screen.click("question.close_window");
+    screen.until("it may close", |studio| studio.may_close());
+}
+
+#[test]
+fn a_notice_stands_until_it_is_read() {
+    let mut screen = Screen::begun(SIZE);
+    screen.act(Action::Open(screen.outside.path("none.ron")));
+    screen.until("it is told", |studio| studio.services.log.standing().is_some());
+    screen.click("shell.dismiss");
+    assert!(screen.studio().services.log.standing().is_none() && !screen.has_button("shell.dismiss"));
+}

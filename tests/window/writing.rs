@@ -1,0 +1,280 @@
+//! Edit, review, write, see the read-back; and nothing is written without that.
+
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, review, rules};
+use encoder_studio::app::{Language, Severity, Text};
+use encoder_studio::profile::hiperface::{FieldRange, Op};
+use encoder_studio::profile::{Body, Document};
+use encoder_studio::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
+use encoder_studio::store::{Outcome, read_text};
+use encoder_studio::worker::hiperface::Change;
+
+use crate::support::{Desk, is_review};
+use crate::texts;
+
+/// The SKM36's name plate: after 16 characters the speed, then the rated current 01 22h at 18.
+const RATED: usize = 19;
+
+#[test]
+fn a_byte_is_edited_reviewed_written_and_read_back() {
+    let mut desk = Desk::begun("");
+    desk.put(0, RATED, &[0x23]);
+    let staged = &desk.encoder().staged;
+    assert_eq!((staged.on_device(0, RATED), staged.byte(0, RATED)), (Some(0x22), Some(0x23)));
+    assert_eq!(desk.wire().field(0)[RATED], 0x22);
+
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
+    let status = DataFieldStatus::from_byte(0xC9);
+    let store = Op::Store { field: 0, address: 19, status, old: Some(vec![0x22]), new: vec![0x23] };
+    assert_eq!(prepared.plan.ops, [store]);
+    let line = &review::lines(&prepared.plan)[0];
+    let words = [&line.item, &line.old, &line.new].map(|text| text.words(Language::German));
+    assert_eq!(words, ["Datenfeld 0, Byte 19", "22", "23"]);
+    assert_eq!(desk.wire().wear(), 0, "looking is no writing");
+
+    desk.ask(Hiperface::Write);
+    assert!(desk.encoder().is_writing());
+    desk.until_written();
+    let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
+    assert_eq!((committed.written.ops, committed.written.write_cycles), (1, 1));
+    assert_eq!(desk.wire().field(0)[RATED], 0x23);
+    assert_eq!(desk.encoder().staged.on_device(0, RATED), Some(0x23));
+    assert!(!desk.encoder().staged.is_dirty());
+    assert_eq!(desk.times_told("session.written"), 1);
+    desk.ask(Hiperface::CloseReview);
+    assert!(desk.encoder().review.is_none());
+}
+
+#[test]
+fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
+    let mut desk = Desk::begun("");
+    desk.put(0, RATED, &[0x23]);
+    desk.write();
+    let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
+    let backup = committed.backup.clone().unwrap();
+    let Body::Hiperface(profile) = Document::parse(&read_text(&backup).unwrap()).unwrap().body;
+    assert_eq!(profile.identity.serial_number, "GB0450179");
+    assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[RATED], 0x22, "as it was before");
+
+    desk.until(
+        "the lists are read",
+        |studio| matches!(&studio.encoder().unwrap().writes, Some(Ok(own)) if own.len() == 1),
+    );
+    let backups = desk.encoder().backups.clone().unwrap().unwrap();
+    assert_eq!(backups.iter().map(|own| &own.path).collect::<Vec<_>>(), [&backup]);
+    let writes = desk.encoder().writes.clone().unwrap().unwrap();
+    assert_eq!((writes[0].planned_cycles, writes[0].backup.as_ref()), (1, Some(&backup)));
+    let conclusion = writes[0].conclusion.as_ref().unwrap();
+    assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Outcome::Done, 1));
+
+    // The next plan knows what the encoder has taken, and the backup leads back.
+    desk.ask(Hiperface::Restore(backup));
+    desk.until_planned();
+    let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
+    assert_eq!(prepared.cycles_seen, Some(1));
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.wire().field(0)[RATED], 0x22);
+}
+
+#[test]
+fn nothing_is_written_without_consent() {
+    let mut desk = Desk::begun("");
+    let before = desk.wire().field(0);
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Write);
+    assert!(!desk.encoder().is_busy(), "there is no plan");
+    desk.ask(Hiperface::Review);
+    // Before the plan is shown there is nothing to consent to.
+    desk.ask(Hiperface::Write);
+    desk.until_planned();
+    desk.ask(Hiperface::CloseReview);
+    desk.ask(Hiperface::Write);
+    desk.settle();
+    assert!(!desk.encoder().is_busy() && desk.encoder().review.is_none());
+    assert_eq!((desk.wire().field(0), desk.wire().wear()), (before, 0));
+    assert_eq!(desk.edits(), [(0, 0, b'X')], "the edit stays");
+    assert!(!desk.outside.path("data/backups").exists());
+}
+
+#[test]
+fn write_pressed_twice_writes_once() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    for _ in 0..3 {
+        desk.ask(Hiperface::Write);
+    }
+    desk.until_written();
+    desk.ask(Hiperface::Write);
+    desk.settle();
+    assert_eq!((desk.wire().count(0x4B), desk.wire().wear()), (1, 1));
+    assert!(!desk.told(Severity::Note).contains(&"session.busy"));
+}
+
+#[test]
+fn what_is_there_already_is_not_written() {
+    let mut desk = Desk::begun("");
+    desk.ask(Hiperface::Review);
+    assert_eq!(desk.told(Severity::Note), ["session.nothing_edited"]);
+    desk.put(0, 0, b"E");
+    assert!(!desk.encoder().staged.is_dirty(), "E stands there");
+    desk.ask(Hiperface::Plan(Change::Store(vec![(FieldRange::new(0, 0, 1), b"E".to_vec())])));
+    desk.until_planned();
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.wire().wear(), 0);
+}
+
+#[test]
+fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.put(0, 1, b"Y");
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    assert_eq!(desk.wire().field(0)[..2], *b"XM");
+    assert_eq!(desk.edits(), [(0, 1, b'Y')]);
+}
+
+#[test]
+fn an_encoder_that_changed_since_the_plan_is_not_written() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().exchange("model=skm36&serial=AA1");
+    desk.ask(Hiperface::Write);
+    desk.until("it is refused", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
+    });
+    assert_eq!(desk.wire().wear(), 0);
+}
+
+/// A second field, so that the first is no longer the last.
+fn with_two_fields() -> Desk {
+    let mut desk = Desk::begun("");
+    let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), CodeNumber::ZERO, true);
+    change(&mut desk, Change::CreateField { number: 1, status });
+    assert_eq!(desk.encoder().staged.device().len(), 2);
+    desk
+}
+
+fn change(desk: &mut Desk, change: Change) {
+    desk.ask(Hiperface::Plan(change));
+    desk.until_planned();
+    desk.ask(Hiperface::Write);
+    desk.until_written();
+    desk.ask(Hiperface::CloseReview);
+}
+
+/// Why a change cannot be planned.
+fn refused(desk: &mut Desk, change: Change) -> Text {
+    let wear = desk.wire().wear();
+    desk.ask(Hiperface::Plan(change));
+    desk.until("it is refused", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
+    });
+    let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
+    let text = texts[0].clone();
+    texts::check(&text);
+    assert_eq!(desk.wire().wear(), wear);
+    desk.ask(Hiperface::CloseReview);
+    desk.until_ready();
+    text
+}
+
+#[test]
+fn what_the_rules_of_the_fields_forbid_is_refused_with_the_reason() {
+    let mut desk = with_two_fields();
+    let memory = desk.encoder().identity.as_ref().unwrap().memory.unwrap();
+    let first = desk.encoder().field(0).unwrap().clone();
+    let larger = FieldSize::from_bytes(64).unwrap();
+
+    let not_last = refused(&mut desk, Change::DeleteField { number: 0 });
+    assert_eq!(rules::delete(memory, &first), Err(not_last.clone()), "the button says the same");
+    assert_eq!(not_last, Text::new("plan.not_last").with("field", 0).with("last", 1));
+    assert_ne!(not_last.words(Language::English), not_last.words(Language::German));
+    assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: larger }), not_last);
+    assert_eq!(rules::resize(memory, &first, larger), Err(not_last));
+
+    let status = DataFieldStatus::new(larger, CodeNumber::ZERO, true);
+    assert_eq!(refused(&mut desk, Change::CreateField { number: 5, status }).id(), "plan.not_next");
+    assert_eq!(refused(&mut desk, Change::DeleteField { number: 7 }).id(), "encoder.no_field");
+}
+
+#[test]
+fn a_field_that_does_not_fit_is_refused() {
+    let mut desk = Desk::begun("");
+    // 112 blocks less the name plate's two: 13 fields of 128 bytes leave six blocks.
+    let size = FieldSize::from_bytes(128).unwrap();
+    let status = DataFieldStatus::new(size, CodeNumber::ZERO, false);
+    for number in 1..=13 {
+        change(&mut desk, Change::CreateField { number, status });
+    }
+    let memory = desk.encoder().identity.as_ref().unwrap().memory.unwrap();
+    assert_eq!((memory.blocks, memory.fields), (6, 14));
+    let why = refused(&mut desk, Change::CreateField { number: 14, status });
+    assert_eq!(why.id(), "plan.no_memory");
+    assert_eq!(rules::create(memory, size, CodeNumber::ZERO, false), Err(why));
+}
+
+#[test]
+fn a_write_protected_field_takes_no_edit() {
+    let mut desk = Desk::begun("");
+    change(&mut desk, Change::LockField { number: 0, lock: true });
+    desk.put(0, 0, b"X");
+    assert!(!desk.encoder().staged.is_dirty());
+    assert_eq!(desk.told(Severity::Error), ["plan.write_protected"]);
+    change(&mut desk, Change::LockField { number: 0, lock: false });
+    desk.put(0, 0, b"X");
+    assert!(desk.encoder().staged.is_dirty());
+}
+
+#[test]
+fn an_edit_beyond_the_field_or_in_none_says_why() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 31, &[1, 2]);
+    desk.put(3, 0, &[1]);
+    assert!(desk.edits().is_empty());
+    let told = desk.told(Severity::Error);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert_ne!(told[0], told[1]);
+}
+
+#[test]
+fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_lost() {
+    let mut desk = Desk::at_port("codes=0:9D");
+    assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
+    desk.put(0, 0, b"X");
+    assert_eq!(desk.told(Severity::Error), ["encoder.code_unknown"]);
+    let code = encoder_studio::app::hiperface::forms::access_code("9D").unwrap();
+    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.until("the field is readable", |studio| studio.encoder().unwrap().field(0).unwrap().bytes.is_some());
+    desk.until_ready();
+    desk.put(0, 0, b"X");
+
+    desk.wire().unplug();
+    desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(desk.edits(), [(0, 0, b'X')], "the code is still known");
+    desk.write();
+    assert_eq!(desk.wire().field(0)[0], b'X');
+    assert!(!desk.encoder().trace.lines().iter().any(|line| line.bytes.contains("9D") || line.meaning.contains("9D")));
+
+    // In a new start nobody knows the code: the draft waits for it.
+    desk.put(0, 1, b"Y");
+    desk.until_kept();
+    let mut desk = desk.crash();
+    desk.open("serial:/dev/enc0");
+    desk.until_read();
+    assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
+    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.until("the edit is back", |studio| studio.encoder().unwrap().staged.byte(0, 1) == Some(b'Y'));
+}
