@@ -49,8 +49,8 @@ pub enum Action {
     FileNotChosen,
     /// The system has no dialog for files: the path is to be typed.
     TypePath(FileQuestion),
-    /// Something in the HIPERFACE tab, about the session that is shown.
-    Hiperface(hiperface::Action),
+    /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
+    Hiperface(SessionId, hiperface::Action),
     /// A task has come back.
     Done(Done),
     /// The system has no thread left for a task.
@@ -140,6 +140,8 @@ pub enum FileQuestion {
     Open,
     /// Where to save; with a name to begin with.
     Save {
+        /// Whose profile it is.
+        session: SessionId,
         /// A name to begin with.
         suggested: PathBuf,
     },

@@ -101,7 +101,7 @@ impl Studio {
             }
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),
-            Action::Hiperface(action) => self.act_hiperface(action),
+            Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
                 let text = Text::new("session.no_thread").with("why", why);
@@ -194,25 +194,18 @@ impl Studio {
         self.next_id
     }
 
-    fn act_hiperface(&mut self, action: hiperface::Action) {
-        let Some(id) = self.shown else { return };
-        match action {
-            hiperface::Action::Reconnect => {
-                if let Some(Source::Link(url)) = self.encoder().map(|encoder| encoder.source.clone()) {
-                    self.reconnect(id, url);
-                }
-            }
-            hiperface::Action::WriteInto(target) => {
-                let Some(Source::File { document, .. }) = self.encoder().map(|encoder| encoder.source.clone()) else {
-                    return;
-                };
-                let wanted = self.encoder().map(|encoder| encoder.staged.wanted()).unwrap_or_default();
+    fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
+        let Some(encoder) = self.encoders.iter().find(|encoder| encoder.id == id) else { return };
+        match (action, &encoder.source) {
+            (hiperface::Action::Reconnect, Source::Link(url)) => self.reconnect(id, url.clone()),
+            (hiperface::Action::WriteInto(target), Source::File { document, .. }) => {
+                let (document, wanted) = (document.clone(), encoder.staged.wanted());
                 let crate::profile::Body::Hiperface(mut profile) = document.body;
                 profile.fields = wanted;
                 self.shown = Some(target);
                 self.with_encoder(target, |encoder, services| encoder.plan_restore(profile, services));
             }
-            action => self.with_encoder(id, |encoder, services| encoder.act(action, services)),
+            (action, _) => self.with_encoder(id, |encoder, services| encoder.act(action, services)),
         }
     }
 
@@ -293,8 +286,7 @@ impl Studio {
         if self.question.take().is_some() {
             return;
         }
-        let searching = self.search().is_some_and(connect::Search::is_running);
-        if searching || self.encoders.iter().any(Encoder::is_busy) {
+        if self.can_stop() {
             self.stop();
             return;
         }

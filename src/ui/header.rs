@@ -51,7 +51,7 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
                 .on_hover_text(skin.say("shell.save_hint"))
                 .clicked()
             {
-                actions.push(Action::Hiperface(hiperface::Action::AskSave));
+                actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
                 actions.push(Action::AskOpen);

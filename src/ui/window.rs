@@ -53,12 +53,14 @@ impl Window {
         self.studio.poll();
         let mut actions = Vec::new();
         self.take_input(&ctx, &mut actions);
+        let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
         let skin = Skin::new(self.look, self.studio.settings.theme, self.studio.settings.language);
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
             skin.dress(&ctx);
         }
         self.shell(ui, &skin, &mut actions);
         self.dialogs(&ctx, &skin, &mut actions);
+        self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
             // What they change is to be seen.
             ctx.request_repaint();
@@ -134,25 +136,21 @@ impl Window {
             actions.push(Action::Close);
         }
         let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
-        if pressed(Modifiers::NONE, Key::Escape) {
-            self.escape(ctx, actions);
-        }
         if pressed(Modifiers::NONE, Key::F1) {
             self.views.help = !self.views.help;
         }
-        if pressed(Modifiers::COMMAND, Key::O) {
-            actions.push(Action::AskOpen);
-        }
-        // What stands over the window has the keyboard.
-        if self.studio.connect.is_some() || self.studio.question.is_some() || self.views.file.is_some() {
+        if self.is_covered() {
             return;
         }
-        let keys = [
-            (Modifiers::NONE, Key::F5, Action::Hiperface(Hiperface::Read)),
-            (Modifiers::COMMAND, Key::S, Action::Hiperface(Hiperface::AskSave)),
-            (Modifiers::COMMAND, Key::Enter, Action::Hiperface(Hiperface::Review)),
+        let mut keys = vec![
+            (Modifiers::COMMAND, Key::O, Action::AskOpen),
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
         ];
+        if let Some(id) = self.studio.encoder().map(|encoder| encoder.id) {
+            keys.push((Modifiers::NONE, Key::F5, Action::Hiperface(id, Hiperface::Read)));
+            keys.push((Modifiers::COMMAND, Key::S, Action::Hiperface(id, Hiperface::AskSave)));
+            keys.push((Modifiers::COMMAND, Key::Enter, Action::Hiperface(id, Hiperface::Review)));
+        }
         for (modifiers, key, action) in keys {
             if pressed(modifiers, key) {
                 actions.push(action);
@@ -160,18 +158,24 @@ impl Window {
         }
     }
 
-    /// Esc stops what runs first, then closes what is open.
-    fn escape(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+    /// Something stands over the window and has the keyboard.
+    fn is_covered(&self) -> bool {
+        let studio = &self.studio;
+        let review = studio.encoder().is_some_and(|encoder| encoder.review.is_some());
+        let dialog = self.views.file.is_some() || self.views.about;
+        studio.connect.is_some() || studio.question.is_some() || review || dialog
+    }
+
+    /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half
+    /// typed byte, an open menu, a field that is being dragged.
+    fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
+        if !ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || in_use {
+            return;
+        }
         let views = &mut self.views;
-        if views.file.take().is_some() || std::mem::take(&mut views.about) {
-            return;
-        }
-        if egui::Popup::is_any_open(ctx) {
-            egui::Popup::close_all(ctx);
-            return;
-        }
-        if views.help && !self.studio.can_stop() {
-            views.help = false;
+        if !self.studio.can_stop()
+            && (views.file.take().is_some() || std::mem::take(&mut views.about) || std::mem::take(&mut views.help))
+        {
             return;
         }
         actions.push(Action::Escape);

@@ -78,7 +78,7 @@ fn lost(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) 
                 ui.label(RichText::new(skin.say("shell.edits_kept")).color(skin.palette.staged));
             }
             if button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
-                actions.push(Action::Hiperface(Hiperface::Reconnect));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Reconnect));
             }
             if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
                 actions.push(Action::Connect(connect::Action::Open));

@@ -39,7 +39,8 @@ fn saving_asks_for_a_file_named_after_the_encoder() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
-    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Save { suggested }));
+    let session = desk.studio.encoder().unwrap().id;
+    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Save { session, suggested }));
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
     assert_eq!(desk.studio.take_file_question(), None, "once");

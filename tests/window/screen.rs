@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use encoder_studio::app::hiperface::Encoder;
+use encoder_studio::app::hiperface::{Action as Hiperface, Encoder};
 use encoder_studio::app::{Action, Language, Look, Studio, Text};
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
@@ -85,6 +85,11 @@ impl Screen {
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
+    }
+
+    /// Asks something of the encoder that is shown.
+    pub(crate) fn ask(&mut self, action: Hiperface) {
+        self.act(Action::Hiperface(self.encoder().id, action));
     }
 
     pub(crate) fn say(&self, id: &'static str) -> String {

@@ -138,7 +138,10 @@ impl Desk {
     }
 
     pub(crate) fn ask(&mut self, action: Hiperface) {
-        self.act(Action::Hiperface(action));
+        let shown = self.studio.encoder().map(|encoder| encoder.id);
+        if let Some(id) = shown {
+            self.act(Action::Hiperface(id, action));
+        }
     }
 
     pub(crate) fn connect(&mut self, action: connect::Action) {

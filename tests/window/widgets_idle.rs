@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers, ViewportEvent, ViewportId};
 use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
-use encoder_studio::app::{Action, Severity};
+use encoder_studio::app::Severity;
 
 use crate::screen::Screen;
 use crate::support::PORT;
@@ -38,7 +38,7 @@ fn what_comes_back_from_a_thread_wakes_the_window() {
     let mut screen = Screen::begun(SIZE);
     let wakes = screen.outside.wakes.clone();
     let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
-    screen.act(Action::Hiperface(Hiperface::ReadCounter));
+    screen.ask(Hiperface::ReadCounter);
     screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
     assert!(wakes.load(std::sync::atomic::Ordering::SeqCst) > before + 1);
 }
@@ -70,7 +70,7 @@ fn control_enter_with_nothing_edited_says_so() {
 #[test]
 fn the_close_button_of_the_system_asks_when_something_would_be_lost() {
     let mut screen = Screen::begun(SIZE);
-    screen.act(Action::Hiperface(Hiperface::Put { field: 0, address: 0, bytes: vec![0] }));
+    screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     viewport.events.push(ViewportEvent::Close);
     screen.harness.step();

@@ -81,10 +81,10 @@ fn every_page_is_drawn_with_all_that_an_encoder_tells() {
         Hiperface::ReadAnalogue(0x07),
         Hiperface::Put { field: 0, address: 3, bytes: vec![1, 2, 3] },
     ] {
-        screen.act(Action::Hiperface(action));
+        screen.ask(action);
         screen.until("it is done", ready);
     }
-    screen.act(Action::Hiperface(Hiperface::Poll(Some(std::time::Duration::from_millis(5)))));
+    screen.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(5))));
     look_at_everything(&mut screen, LARGE);
     assert!(screen.encoder().curve.points().len() > 2);
     screen.click("shell.stop");
@@ -188,7 +188,8 @@ fn the_language_and_the_theme_are_a_click_away() {
 #[test]
 fn a_path_is_typed_where_there_is_no_dialog() {
     let mut screen = Screen::begun(SMALL);
-    for question in [FileQuestion::Open, FileQuestion::Save { suggested: "x.ron".into() }] {
+    let session = screen.encoder().id;
+    for question in [FileQuestion::Open, FileQuestion::Save { session, suggested: "x.ron".into() }] {
         screen.act(Action::TypePath(question));
         assert!(screen.has_button("file.cancel"));
         screen.key(Key::Escape);

@@ -84,7 +84,7 @@ fn what_a_field_does_not_allow_cannot_be_pressed() {
     let code = encoder_studio::protocol::hiperface::CodeNumber::ZERO;
     let status = encoder_studio::app::hiperface::forms::new_field(size, code, true);
     let create = encoder_studio::worker::hiperface::Change::CreateField { number: 1, status };
-    screen.act(Action::Hiperface(Hiperface::Plan(create)));
+    screen.ask(Hiperface::Plan(create));
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     screen.click("review.write");
     screen.until("it is written", |studio| studio.encoder().unwrap().staged.device().len() == 2);
@@ -107,7 +107,7 @@ fn stop_can_be_pressed_only_while_something_runs() {
     let mut screen = Screen::begun(SIZE);
     assert!(!screen.is_enabled("shell.stop"));
     screen.outside.wire(PORT).hold_at(0x46, 1);
-    screen.act(Action::Hiperface(Hiperface::ReadCounter));
+    screen.ask(Hiperface::ReadCounter);
     screen.outside.wire(PORT).wait_until_held();
     screen.steps();
     assert!(screen.is_enabled("shell.stop"));
@@ -127,9 +127,9 @@ fn a_restore_is_stopped_half_way_by_click() {
     let mut screen = Screen::begun(SIZE);
     for address in [0, 2, 4] {
         let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
-        screen.act(Action::Hiperface(edit));
+        screen.ask(edit);
     }
-    screen.act(Action::Hiperface(Hiperface::Review));
+    screen.ask(Hiperface::Review);
     screen.until("the plan is ready", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Ready(_))) && studio.encoder().unwrap().is_ready()
     });

@@ -67,7 +67,9 @@ impl Encoder {
             }
             Action::Write => self.write(services),
             Action::CloseReview => self.close_review(),
-            Action::AskSave => services.file_question = Some(FileQuestion::Save { suggested: self.suggested_file() }),
+            Action::AskSave => {
+                services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
+            }
             Action::Save(path) => self.save(path, services),
             Action::ListBackups => self.list_backups(services),
             Action::Restore(path) => self.read_backup(path, services),

@@ -31,7 +31,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, filter: String, mailbox: Mailbo
         let dialog = rfd::FileDialog::new().add_filter(filter, &["ron"]);
         let chosen = match &question {
             FileQuestion::Open => dialog.pick_file(),
-            FileQuestion::Save { suggested } => {
+            FileQuestion::Save { suggested, .. } => {
                 let dialog = match suggested.file_name() {
                     Some(name) => dialog.set_file_name(name.to_string_lossy()),
                     None => dialog,
@@ -63,7 +63,7 @@ fn has_dialogs() -> bool {
 fn answer(question: &FileQuestion, path: PathBuf) -> Action {
     match question {
         FileQuestion::Open => Action::Open(path),
-        FileQuestion::Save { .. } => Action::Hiperface(Hiperface::Save(path)),
+        FileQuestion::Save { session, .. } => Action::Hiperface(*session, Hiperface::Save(path)),
     }
 }
 
@@ -72,7 +72,7 @@ impl FileView {
     pub(in crate::ui) fn new(question: FileQuestion, folder: &std::path::Path) -> Self {
         let path = match &question {
             FileQuestion::Open => folder.join(""),
-            FileQuestion::Save { suggested } => folder.join(suggested),
+            FileQuestion::Save { suggested, .. } => folder.join(suggested),
         };
         FileView { question, path: path.display().to_string(), fresh: true }
     }

@@ -31,7 +31,7 @@ fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
             paragraph(ui, skin.label(skin.say("profile_card.words")));
             ui.horizontal(|ui| {
                 if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                    actions.push(Action::Hiperface(Hiperface::AskSave));
+                    actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
                 }
                 if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
                     actions.push(Action::AskOpen);
@@ -70,7 +70,7 @@ fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
                             &skin.say("backups_card.restore"),
                         );
                         if restore.clicked() {
-                            actions.push(Action::Hiperface(Hiperface::Restore(backup.path.clone())));
+                            actions.push(Action::Hiperface(encoder.id, Hiperface::Restore(backup.path.clone())));
                         }
                         if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
                             actions.push(Action::Open(backup.path.clone()));

@@ -61,7 +61,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
     let ready = encoder.is_ready() || encoder.phase == Phase::Offline;
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::Read));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
         }
     };
     card(ui, skin, &skin.say("encoder_card.title"), read, |ui| {
@@ -107,7 +107,7 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
 fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if enabled_button(ui, encoder.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::ReadStatus));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadStatus));
         }
     };
     let palette = skin.palette;
@@ -172,7 +172,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, action
             ui.add_space(skin.space.between);
             ui.checkbox(restart, skin.say("check_card.restart"));
             if enabled_button(ui, encoder.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-                actions.push(Action::Hiperface(Hiperface::Check { restart: *restart }));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Check { restart: *restart }));
             }
         },
     );

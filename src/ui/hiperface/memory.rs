@@ -53,7 +53,7 @@ pub(super) fn page_ui(
     if encoder.identity.is_none() {
         let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_ready());
         if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
-            actions.push(Action::Hiperface(Hiperface::Read));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
         }
         return;
     }
@@ -139,7 +139,7 @@ fn map(
             let size = u8::try_from(blocks).ok().and_then(FieldSize::from_blocks);
             if let (Some(size), Some(last)) = (size, wanted.last()) {
                 let change = Change::ResizeField { number: last.number, size };
-                actions.push(Action::Hiperface(Hiperface::Plan(change)));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
             }
         }
         None => {}
@@ -195,12 +195,15 @@ fn field_ui(
     }
     let number = field.number;
     actions.extend(edits.into_iter().map(|edit| {
-        Action::Hiperface(match edit {
-            HexEdit::Put { address, bytes } => Hiperface::Put { field: number, address, bytes },
-            HexEdit::Undo => Hiperface::Undo,
-            HexEdit::Redo => Hiperface::Redo,
-            HexEdit::Revert { range } => Hiperface::Revert(FieldRange::new(number, range.start, range.len())),
-        })
+        Action::Hiperface(
+            encoder.id,
+            match edit {
+                HexEdit::Put { address, bytes } => Hiperface::Put { field: number, address, bytes },
+                HexEdit::Undo => Hiperface::Undo,
+                HexEdit::Redo => Hiperface::Redo,
+                HexEdit::Revert { range } => Hiperface::Revert(FieldRange::new(number, range.start, range.len())),
+            },
+        )
     }));
 }
 
@@ -235,7 +238,7 @@ fn field_head(
             change = Some(Change::DeleteField { number: field.number });
         }
     });
-    actions.extend(change.map(|change| Action::Hiperface(Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::Hiperface(encoder.id, Hiperface::Plan(change))));
 }
 
 fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
@@ -311,7 +314,7 @@ fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view:
         if allowed_button(ui, skin, &allowed, icons::PLUS, &skin.say("memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
-            actions.push(Action::Hiperface(Hiperface::Plan(change)));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
         }
     });
 }
@@ -322,13 +325,13 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
     let dirty = encoder.staged.is_dirty();
     ui.horizontal(|ui| {
         if icon_button(ui, encoder.staged.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::Undo));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Undo));
         }
         if icon_button(ui, encoder.staged.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::Redo));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Redo));
         }
         if enabled_button(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::RevertAll));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if encoder.phase == Phase::Offline {
@@ -337,7 +340,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
                 .on_hover_text(skin.say("memory.review_hint"))
                 .clicked()
             {
-                actions.push(Action::Hiperface(Hiperface::Review));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Review));
             }
             if dirty {
                 let count = encoder.staged.edits().count();
@@ -360,7 +363,7 @@ fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, acti
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
             for target in &targets {
                 if ui.add_enabled(target.is_ready(), egui::Button::new(target.name())).clicked() {
-                    actions.push(Action::Hiperface(Hiperface::WriteInto(target.id)));
+                    actions.push(Action::Hiperface(encoder.id, Hiperface::WriteInto(target.id)));
                     ui.close();
                 }
             }

@@ -28,7 +28,7 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
                 ui.add(egui::Spinner::new());
                 ui.label(skin.label(skin.say("review.planning")));
             });
-            buttons(ui, skin, actions, "review.cancel", |_, _| {});
+            buttons(ui, skin, encoder, actions, "review.cancel", |_, _| {});
         }
         ReviewState::Ready(prepared) if prepared.plan.is_empty() => {
             ui.horizontal(|ui| {
@@ -36,17 +36,17 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
                 ui.label(skin.say("review.nothing"));
             });
             remarks(ui, skin, prepared);
-            options(ui, skin, review, actions);
-            buttons(ui, skin, actions, "review.close", |_, _| {});
+            options(ui, skin, encoder, review, actions);
+            buttons(ui, skin, encoder, actions, "review.close", |_, _| {});
         }
         ReviewState::Ready(prepared) => {
             operations(ui, skin, prepared, None);
             remarks(ui, skin, prepared);
-            options(ui, skin, review, actions);
+            options(ui, skin, encoder, review, actions);
             ui.label(skin.label(skin.say("review.way")));
-            buttons(ui, skin, actions, "review.cancel", |ui, actions| {
+            buttons(ui, skin, encoder, actions, "review.cancel", |ui, actions| {
                 if primary(ui, skin, encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("review.write")).clicked() {
-                    actions.push(Action::Hiperface(Hiperface::Write));
+                    actions.push(Action::Hiperface(encoder.id, Hiperface::Write));
                 }
             });
         }
@@ -68,7 +68,7 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
         }
         ReviewState::Done(prepared, committed) => {
             done(ui, skin, prepared, committed);
-            buttons(ui, skin, actions, "review.close", |_, _| {});
+            buttons(ui, skin, encoder, actions, "review.close", |_, _| {});
         }
         ReviewState::Failed { texts, begun } => {
             let (icon, colour) =
@@ -79,8 +79,8 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
                     ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
                 });
             }
-            options(ui, skin, review, actions);
-            buttons(ui, skin, actions, "review.close", |_, _| {});
+            options(ui, skin, encoder, review, actions);
+            buttons(ui, skin, encoder, actions, "review.close", |_, _| {});
         }
     }
 }
@@ -88,6 +88,7 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
 fn buttons(
     ui: &mut Ui,
     skin: &Skin,
+    encoder: &Encoder,
     actions: &mut Vec<Action>,
     close: &'static str,
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
@@ -96,7 +97,7 @@ fn buttons(
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         primary(ui, actions);
         if enabled_button(ui, true, "", &skin.say(close)).clicked() {
-            actions.push(Action::Hiperface(Hiperface::CloseReview));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::CloseReview));
         }
     });
 }
@@ -177,7 +178,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: &str) {
 }
 
 /// What a restore may do, and writing although the encoder counts as worn.
-fn options(ui: &mut Ui, skin: &Skin, review: &Review, actions: &mut Vec<Action>) {
+fn options(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions: &mut Vec<Action>) {
     if let Some(options) = review.options() {
         let mut wanted = options;
         ui.add_space(skin.space.inside);
@@ -186,7 +187,7 @@ fn options(ui: &mut Ui, skin: &Skin, review: &Review, actions: &mut Vec<Action>)
             .on_hover_text(skin.say("review.with_mounting_hint"));
         ui.checkbox(&mut wanted.recreate, skin.say("review.recreate")).on_hover_text(skin.say("review.recreate_hint"));
         if wanted != options {
-            actions.push(Action::Hiperface(Hiperface::PlanAgain(wanted)));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::PlanAgain(wanted)));
         }
     }
     let worn = review.prepared().is_some_and(plan::is_worn);
@@ -194,7 +195,7 @@ fn options(ui: &mut Ui, skin: &Skin, review: &Review, actions: &mut Vec<Action>)
         let mut force = review.force_wear;
         ui.checkbox(&mut force, skin.say("review.force_wear"));
         if force != review.force_wear {
-            actions.push(Action::Hiperface(Hiperface::ForceWear(force)));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::ForceWear(force)));
         }
     }
 }

@@ -67,11 +67,11 @@ fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
 }
 
 /// Hands a change over, or keeps why it cannot be made.
-fn plan(change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
+fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
     match change {
         Ok(change) => {
             *problem = None;
-            actions.push(Action::Hiperface(Hiperface::Plan(change)));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
         }
         Err(why) => *problem = Some(why),
     }
@@ -108,7 +108,7 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                 let synchronise =
                     view.synchronise && encoder.identity.as_ref().is_some_and(|own| own.kit != Some(false));
                 let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
-                plan(change, &mut view.position_problem, actions);
+                plan(encoder, change, &mut view.position_problem, actions);
             }
             problem(ui, skin, view.position_problem.as_ref());
             if let Some((from, to)) = encoder.position_set {
@@ -118,7 +118,7 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                     ui.label(skin.label(skin.words(&text)));
                     let undo = skin.say("position_card.undo");
                     if enabled_button(ui, encoder.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
-                        actions.push(Action::Hiperface(Hiperface::Plan(Change::ShiftPosition { steps })));
+                        actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                     }
                 });
             }
@@ -147,7 +147,7 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                         Ok(code) => {
                             view.code_problem = None;
                             view.code.clear();
-                            actions.push(Action::Hiperface(Hiperface::UseCode { number, code }));
+                            actions.push(Action::Hiperface(encoder.id, Hiperface::UseCode { number, code }));
                         }
                         Err(why) => view.code_problem = Some(why),
                     }
@@ -160,7 +160,7 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                     if change.is_ok() {
                         view.new_code.clear();
                     }
-                    plan(change, &mut view.code_problem, actions);
+                    plan(encoder, change, &mut view.code_problem, actions);
                 }
             });
             problem(ui, skin, view.code_problem.as_ref());
@@ -184,7 +184,7 @@ fn address(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions
                     .clicked()
                 {
                     let change = forms::address(&view.address).map(Change::SetAddress);
-                    plan(change, &mut view.address_problem, actions);
+                    plan(encoder, change, &mut view.address_problem, actions);
                 }
             });
             problem(ui, skin, view.address_problem.as_ref());
@@ -228,12 +228,12 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                 let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
                 let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &skin.say("settings_card.plan"));
                 if store.on_hover_text(skin.say("settings_card.plan_hint")).clicked() {
-                    plan(wanted().map(Change::Configure), &mut view.settings_problem, actions);
+                    plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
                 }
                 let now = enabled_button(ui, ready, icons::LIGHTNING, &skin.say("settings_card.now"));
                 if now.on_hover_text(skin.say("settings_card.now_hint")).clicked() {
                     match wanted() {
-                        Ok(wanted) => actions.push(Action::Hiperface(Hiperface::ConfigureForNow(wanted))),
+                        Ok(wanted) => actions.push(Action::Hiperface(encoder.id, Hiperface::ConfigureForNow(wanted))),
                         Err(why) => view.settings_problem = Some(why),
                     }
                 }
@@ -260,7 +260,7 @@ fn restart(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
         |ui| {
             paragraph(ui, skin.label(skin.say("restart_card.words")));
             if enabled_button(ui, encoder.is_ready(), icons::POWER, &skin.say("restart_card.run")).clicked() {
-                actions.push(Action::Hiperface(Hiperface::Reset));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Reset));
             }
         },
     );

@@ -69,7 +69,7 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                     match forms::channel(&view.channel) {
                         Ok(channel) => {
                             view.problem = None;
-                            actions.push(Action::Hiperface(Hiperface::ReadAnalogue(channel)));
+                            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadAnalogue(channel)));
                         }
                         Err(problem) => view.problem = Some(problem),
                     }
@@ -86,7 +86,7 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     let ready = encoder.is_ready();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("counter_card.read")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::ReadCounter));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadCounter));
         }
     };
     let mut change = None;
@@ -102,5 +102,5 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
             }
         });
     });
-    actions.extend(change.map(|change| Action::Hiperface(Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::Hiperface(encoder.id, Hiperface::Plan(change))));
 }

@@ -25,7 +25,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     ui.add_space(skin.space.inside);
     controls(ui, skin, encoder, views, actions);
     ui.add_space(skin.space.between);
-    curve(ui, skin, encoder.line().is_some(), &encoder.curve, actions);
+    curve(ui, skin, encoder, actions);
 }
 
 fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
@@ -66,23 +66,24 @@ fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, acti
     ui.horizontal_wrapped(|ui| {
         if polling.is_some() {
             if enabled_button(ui, true, icons::PAUSE, &skin.say("live.pause")).clicked() {
-                actions.push(Action::Hiperface(Hiperface::Poll(None)));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(None)));
             }
         } else if enabled_button(ui, connected, icons::PLAY, &skin.say("live.start")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
         }
         let ready = encoder.is_ready();
         if enabled_button(ui, ready, "", &skin.say("live.once")).clicked() {
-            actions.push(Action::Hiperface(Hiperface::ReadPosition));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadPosition));
         }
         let rates = RATES.map(|(milliseconds, id)| (milliseconds, skin.say(id)));
         if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling.is_some() {
-            actions.push(Action::Hiperface(Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
         }
     });
 }
 
-fn curve(ui: &mut Ui, skin: &Skin, connected: bool, curve: &Curve, actions: &mut Vec<Action>) {
+fn curve(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let (connected, curve) = (encoder.line().is_some(), &encoder.curve);
     let unit = match curve.unit() {
         Unit::Turns => skin.say("live.unit_turns"),
         Unit::Millimetres => "mm".to_owned(),
@@ -92,7 +93,7 @@ fn curve(ui: &mut Ui, skin: &Skin, connected: bool, curve: &Curve, actions: &mut
         ui.label(skin.caption(format!("{} / {unit}", skin.say("live.position"))));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if icon_button(ui, curve.points().len() > 1, icons::TRASH, &skin.say("live.clear")).clicked() {
-                actions.push(Action::Hiperface(Hiperface::ClearCurve));
+                actions.push(Action::Hiperface(encoder.id, Hiperface::ClearCurve));
             }
         });
     });
