@@ -63,6 +63,8 @@ pub enum Done {
     Opened {
         /// For whom.
         session: SessionId,
+        /// Which attempt of that session: only its latest counts.
+        attempt: u32,
         /// The session on its thread.
         result: Result<Box<Opened>, Box<OpenFailed>>,
     },
@@ -95,8 +97,10 @@ pub enum Done {
         /// How it went.
         result: Result<(), FileError>,
     },
-    /// The disk has had time enough to keep what is to be kept before the window closes.
-    ClosingTakesLong,
+    /// What closing waits for has had time enough.
+    Waited(Waited),
+    /// A session that was let go has ended.
+    Left,
     /// The settings were kept.
     SettingsKept(Result<(), FileError>),
     /// About one session in the HIPERFACE tab.
@@ -107,12 +111,27 @@ pub enum Done {
 pub struct Opened {
     /// The session.
     pub(super) worker: Worker<Hiperface>,
+    /// Where it talks.
+    pub(super) url: crate::link::LinkUrl,
     /// Its trace.
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     /// The device lives in this process.
     pub(super) is_virtual: bool,
     /// When its clock began.
     pub(super) began: jiff::Zoned,
+    /// Who waits for the wire waits until this is dropped.
+    pub(super) turn: crossbeam_channel::Sender<()>,
+}
+
+/// What has had time enough before the window closes; the later ones include those before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Waited {
+    /// The disk.
+    Disk,
+    /// Jobs that write nothing.
+    Jobs,
+    /// Writes.
+    Writes,
 }
 
 /// Why there is no session.
@@ -122,6 +141,8 @@ pub enum OpenFailed {
     Link(OpenError),
     /// No thread for it.
     Thread(String),
+    /// Whoever held the wire does not let go of it.
+    Held,
 }
 
 /// Why a profile cannot be read.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, FileQuestion, Question, ReadError, Then};
+use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waited};
 use super::connect::{self, Connect};
 use super::hiperface::{self, Encoder, Source};
 use super::keep::Keeper;
@@ -41,7 +41,7 @@ pub struct Studio {
     next_id: u32,
     keeper: Keeper,
     closing: bool,
-    patience_is_over: bool,
+    waited: Option<Waited>,
     path_question: Option<FileQuestion>,
 }
 
@@ -60,7 +60,7 @@ impl Studio {
             next_id: 0,
             keeper,
             closing: false,
-            patience_is_over: false,
+            waited: None,
             path_question: None,
         }
     }
@@ -122,13 +122,14 @@ impl Studio {
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.pump();
         }
+        self.services.pump_leaving();
         self.keep();
     }
 
     fn keep(&mut self) {
         self.keeper.keep(&self.settings, &self.services);
         for encoder in &mut self.encoders {
-            encoder.keep_draft(&self.services);
+            encoder.keep_draft(&mut self.services);
         }
     }
 
@@ -170,10 +171,18 @@ impl Studio {
         self.encoders.iter().any(|encoder| encoder.line().is_some_and(|line| line.polling().is_some()))
     }
 
-    /// The window may close now: nothing runs any more, and what is to be kept is on disk or the disk does not answer.
+    /// The window may close now: nothing runs any more, not even in sessions that were let go, and what is to be kept is
+    /// on disk; or it has had time enough.
     pub fn may_close(&self) -> bool {
-        let kept = self.keeper.is_idle() && self.encoders.iter().all(Encoder::is_draft_kept);
-        self.closing && !self.encoders.iter().any(Encoder::is_busy) && (kept || self.patience_is_over)
+        let services = &self.services;
+        let drafts = services.drafts_on_their_way == 0 && self.encoders.iter().all(Encoder::is_draft_kept);
+        let writes = services.leaves_writing() || self.encoders.iter().any(Encoder::is_writing);
+        let runs = !services.leaving.is_empty() || self.encoders.iter().any(Encoder::is_busy);
+        let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
+        self.closing
+            && over(Waited::Writes, !writes)
+            && over(Waited::Jobs, !runs)
+            && over(Waited::Disk, drafts && self.keeper.is_idle())
     }
 
     fn search(&self) -> Option<&connect::Search> {
@@ -189,7 +198,7 @@ impl Studio {
         SessionId(self.next_id)
     }
 
-    pub(super) fn new_search(&mut self) -> u32 {
+    pub(super) fn new_number(&mut self) -> u32 {
         self.next_id += 1;
         self.next_id
     }
@@ -217,12 +226,14 @@ impl Studio {
 
     fn done(&mut self, done: Done) {
         match done {
-            Done::Opened { session, result } => self.opened(session, result),
+            Done::Opened { session, attempt, result } => self.opened(session, attempt, result),
             Done::OpenedForSearch { number, result } => {
                 let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
-                // One that was ended while it opened has no use for it: dropping ends its thread.
-                if let Some(search) = search.filter(|search| search.number == number && search.is_running()) {
-                    search.opened(result, &self.services);
+                match (search.filter(|search| search.number == number && search.is_running()), result) {
+                    (Some(search), result) => search.opened(result, &self.services),
+                    // One that was ended while it opened has no use for it.
+                    (None, Ok(opened)) => self.turn_away(*opened, SessionId(number)),
+                    (None, Err(_)) => {}
                 }
             }
             Done::Ports(ports) => {
@@ -233,7 +244,9 @@ impl Studio {
                 }
             }
             Done::Read { path, result, types } => self.read(path, result, types),
-            Done::ClosingTakesLong => self.patience_is_over = true,
+            Done::Waited(what) => self.waited = self.waited.max(Some(what)),
+            // That was to be looked at.
+            Done::Left => {}
             Done::Written { session, path, document, result } => {
                 self.with_encoder(session, |encoder, services| encoder.written(path, *document, result, services));
             }
@@ -242,8 +255,21 @@ impl Studio {
                     self.services.tell(Severity::Warning, vec![text], None);
                 }
             }
-            Done::Hiperface(id, done) => self.with_encoder(id, |encoder, services| encoder.done(done, services)),
+            Done::Hiperface(id, done) => self.done_for_encoder(id, done),
         }
+    }
+
+    fn done_for_encoder(&mut self, id: SessionId, done: hiperface::Done) {
+        if let hiperface::Done::DraftKept { result, .. } = &done {
+            self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
+            if let Err(error) = result
+                && !self.encoders.iter().any(|encoder| encoder.id == id)
+            {
+                let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
+                self.services.tell(Severity::Warning, vec![text], None);
+            }
+        }
+        self.with_encoder(id, |encoder, services| encoder.done(done, services));
     }
 
     fn read(
@@ -290,7 +316,8 @@ impl Studio {
             self.stop();
             return;
         }
-        if self.connect.take().is_some() {
+        if self.connect.is_some() {
+            self.close_dialog();
             return;
         }
         if let Some(id) = self.shown
@@ -315,10 +342,9 @@ impl Studio {
     }
 
     fn remove(&mut self, id: SessionId) {
-        // Dropping its worker ends its thread.
         self.with_encoder(id, |encoder, services| {
             encoder.leave_draft(services);
-            drop(encoder.let_go(JobEnd::Cancelled, services));
+            encoder.let_go(JobEnd::Cancelled, services);
         });
         self.encoders.retain(|encoder| encoder.id != id);
         if self.shown == Some(id) {
@@ -339,11 +365,17 @@ impl Studio {
     }
 
     fn begin_to_close(&mut self) {
-        self.closing = true;
-        self.services.tasks.run("close", || {
-            std::thread::sleep(DISK);
-            Action::Done(Done::ClosingTakesLong)
-        });
+        if std::mem::replace(&mut self.closing, true) {
+            return;
+        }
+        let patience = self.services.world.patience;
+        let limits = [(Waited::Disk, patience.disk), (Waited::Jobs, patience.job), (Waited::Writes, patience.write)];
+        for (what, limit) in limits {
+            self.services.tasks.run("close", move || {
+                std::thread::sleep(limit);
+                Action::Done(Done::Waited(what))
+            });
+        }
     }
 
     fn confirm(&mut self) {
@@ -358,8 +390,6 @@ impl Studio {
     }
 }
 
-/// How long closing waits for the disk.
-const DISK: std::time::Duration = std::time::Duration::from_secs(3);
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
     let result = read_profile(&path).map(Box::new);

@@ -306,6 +306,28 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
 }
 
+/// The failure was on its way when the user wished anew: it is about the wish before.
+#[test]
+fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
+    let mut desk = Desk::at_port("");
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+    desk.wire().exchange("fault=silent-after:0");
+    let began = std::time::Instant::now();
+    while desk.encoder().line().unwrap().polling().is_some() {
+        assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // The event follows at once.
+    std::thread::sleep(Duration::from_millis(50));
+    desk.wire().exchange("");
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    let points = desk.encoder().curve.points().len();
+    desk.until("samples go on", |studio| studio.encoder().unwrap().curve.points().len() > points + 3);
+    assert!(desk.studio.is_live());
+    assert_eq!(desk.times_told("session.poll_failed"), 0);
+}
+
 #[test]
 fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {

@@ -1,10 +1,12 @@
 //! The connection dialog, carried out.
 
+use crossbeam_channel::Receiver;
+
 use super::{Action, Connect, LinkForm, Search, list_ports};
 use crate::app::Text;
 use crate::app::action::Done;
-use crate::app::line::Line;
-use crate::app::studio::Studio;
+use crate::app::leaving::Leaver;
+use crate::app::studio::{SessionId, Studio};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 
@@ -17,7 +19,7 @@ impl Studio {
                 self.connect = Some(Connect::new(LinkForm::from_url(&last.unwrap_or_else(LinkUrl::sim))));
                 list_ports(&self.services);
             }
-            Action::Close => self.connect = None,
+            Action::Close => self.close_dialog(),
             Action::ListPorts => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = None;
@@ -34,9 +36,8 @@ impl Studio {
                 match connect.form.url() {
                     Ok(url) => {
                         // A search may still hold the wire.
-                        let holder = connect.search.take().and_then(|search| search.line).map(Line::into_worker);
-                        self.connect = None;
-                        self.open_link_after(url, holder);
+                        self.close_dialog();
+                        self.open_link(url);
                     }
                     Err(problem) => self.refuse(problem),
                 }
@@ -73,20 +74,37 @@ impl Studio {
                 return;
             }
         };
-        let old = connect.search.take().and_then(|search| search.line).map(Line::into_worker);
-        let number = self.new_search();
-        let search = Search { number, url: url.clone(), options, line: None, found: Vec::new(), end: None };
+        let earlier = self.end_search();
+        let number = self.new_number();
+        let done = move |result| Done::OpenedForSearch { number, result };
+        let over = self.open_task(url.clone(), earlier, Vec::new(), done);
+        let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);
         }
-        let done = move |result| Done::OpenedForSearch { number, result };
-        self.open_task(url, old.into_iter().collect(), Vec::new(), done);
+    }
+
+    /// Closes the dialog; its search ends.
+    pub(in crate::app) fn close_dialog(&mut self) {
+        self.end_search();
+        self.connect = None;
+    }
+
+    /// Ends the search and forgets it. Where its link was still being opened, that is over when what is given tells so.
+    fn end_search(&mut self) -> Option<Receiver<()>> {
+        let search = self.connect.as_mut()?.search.take()?;
+        if let Some(line) = search.line {
+            let (session, about) = (SessionId(search.number), search.url.to_string());
+            let who = Leaver { session, about, url: search.url, write: None };
+            self.services.leave(line.into_worker(), who, None);
+        }
+        Some(search.over)
     }
 
     fn choose(&mut self, at: usize) {
-        let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.take()) else { return };
+        let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
         let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
-        self.connect = None;
-        self.open_link_after(url, search.line.map(Line::into_worker));
+        self.close_dialog();
+        self.open_link(url);
     }
 }

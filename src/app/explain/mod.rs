@@ -53,6 +53,7 @@ pub fn open_failed(failed: &OpenFailed) -> Text {
     match failed {
         OpenFailed::Link(error) => open(error),
         OpenFailed::Thread(why) => Text::new("session.no_thread").with("why", why),
+        OpenFailed::Held => Text::new("session.held"),
     }
 }
 

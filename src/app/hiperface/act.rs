@@ -10,6 +10,7 @@ use super::encoder::{Encoder, Phase, Source};
 use super::review::{Review, ReviewState};
 use super::rules;
 use crate::app::action::{self, FileQuestion};
+use crate::app::leaving::Leaver;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
@@ -17,8 +18,8 @@ use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
 use crate::profile::{Body, Consent, Document};
 use crate::store::write_atomically;
-use crate::worker::hiperface::{Change, Commit, Hiperface, HiperfaceJob};
-use crate::worker::{SubmitError, Worker};
+use crate::worker::SubmitError;
+use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
 
 impl Encoder {
     /// Does what is asked.
@@ -267,23 +268,30 @@ impl Encoder {
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         // What passed at last says most about why it was the last.
         self.take_samples_and_frames();
-        drop(self.let_go(JobEnd::Failed(why.clone()), services));
+        self.let_go(JobEnd::Failed(why.clone()), services);
+        self.opening = None;
+        if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
+            review.state = ReviewState::Failed { texts: vec![why.clone()], begun: true };
+        }
         self.phase = Phase::Lost(why);
     }
 
-    /// Gives its thread away, to be closed where nobody waits for it; what runs ends as `end` says, and a plan is none
-    /// any more.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) -> Option<Worker<Hiperface>> {
+    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more. A write that was cancelled ends by
+    /// itself, and tells how.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         (self.asked, self.save_to) = (None, None);
         let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
         if self.review.as_ref().is_some_and(is_plan) {
             self.review = None;
         }
-        let line = self.line.take()?;
-        if let Some(running) = line.running() {
+        let Source::Link(url) = &self.source else { return };
+        let (url, about) = (url.clone(), self.name());
+        let Some(line) = self.line.take() else { return };
+        let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
+        if let Some(running) = line.running().filter(|_| write.is_none()) {
             services.job_ends(self.id, running.id, end);
         }
-        Some(line.into_worker())
+        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
     }
 }
 

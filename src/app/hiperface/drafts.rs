@@ -105,7 +105,7 @@ impl Encoder {
     }
 
     /// Keeps the edits when they have changed. One task at a time: what comes meanwhile goes with the next one.
-    pub(in crate::app) fn keep_draft(&mut self, services: &Services) {
+    pub(in crate::app) fn keep_draft(&mut self, services: &mut Services) {
         if self.drafting.busy || !self.drafting.looked {
             return;
         }
@@ -125,7 +125,7 @@ impl Encoder {
     }
 
     /// Another encoder comes, or none: what is edited for this one stays on disk.
-    pub(in crate::app) fn leave_draft(&mut self, services: &Services) {
+    pub(in crate::app) fn leave_draft(&mut self, services: &mut Services) {
         let edits: Edits = self.staged.edits().collect();
         if let Some((kind, key)) = self.draft_key()
             && self.drafting.looked
@@ -137,7 +137,7 @@ impl Encoder {
     }
 
     /// The edits are in `path` now: where that is another file, those for the one before are no draft any more.
-    pub(super) fn forget_draft_unless(&mut self, path: &Path, services: &Services) {
+    pub(super) fn forget_draft_unless(&mut self, path: &Path, services: &mut Services) {
         if matches!(&self.source, Source::File { path: own, .. } if own != path)
             && let Some((kind, key)) = self.draft_key()
         {
@@ -147,7 +147,8 @@ impl Encoder {
     }
 }
 
-fn keep(kind: &'static str, key: String, edits: Edits, id: SessionId, services: &Services) {
+fn keep(kind: &'static str, key: String, edits: Edits, id: SessionId, services: &mut Services) {
+    services.drafts_on_their_way += 1;
     let drafts = services.world.store.drafts();
     services.tasks.run("draft", move || {
         let result = if edits.is_empty() {

@@ -49,6 +49,14 @@ pub enum Phase {
     Offline,
 }
 
+/// A link that is being opened.
+pub(in crate::app) struct Opening {
+    /// Which attempt of the session it is.
+    pub(in crate::app) attempt: u32,
+    /// Ends when it is over.
+    pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+}
+
 /// An encoder, or a profile of one.
 pub struct Encoder {
     /// Its number in the studio.
@@ -58,6 +66,7 @@ pub struct Encoder {
     /// How it stands with the connection.
     pub phase: Phase,
     pub(super) line: Option<Line<Hiperface>>,
+    pub(in crate::app) opening: Option<Opening>,
     /// Who it is.
     pub identity: Option<Identity>,
     /// Its memory and the edits beside it.
@@ -100,6 +109,7 @@ impl Encoder {
             source: Source::Link(url),
             phase: Phase::Opening,
             line: None,
+            opening: None,
             identity: None,
             staged: Staged::default(),
             codes: None,
@@ -153,6 +163,11 @@ impl Encoder {
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
             || matches!(&self.source, Source::Link(url) if url.scheme == crate::link::Scheme::Sim)
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.opening.as_ref().is_some_and(|opening| opening.attempt == attempt)
     }
 
     /// Something runs on its line.
@@ -287,7 +302,7 @@ impl Encoder {
         known.is_some_and(|known| *known != identity.serial.serial_number)
     }
 
-    fn forget_encoder(&mut self, services: &Services) {
+    fn forget_encoder(&mut self, services: &mut Services) {
         self.leave_draft(services);
         self.identity = None;
         self.staged.clear();

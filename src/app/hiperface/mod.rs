@@ -14,6 +14,8 @@ mod staged;
 
 pub use action::{Action, Done};
 pub use curve::{Curve, Point, Unit};
+pub(in crate::app) use encoder::Opening;
 pub use encoder::{Encoder, Phase, Source};
+pub(in crate::app) use news::{LastWords, last_words};
 pub use review::{Review, ReviewState};
 pub use staged::{Staged, StagedError};

@@ -10,12 +10,16 @@ use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample};
 use crate::profile::hiperface::{HiperfacePlan, Op};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value};
+use crate::worker::hiperface::{
+    Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+};
 use crate::worker::{Event, JobId};
 
 impl Encoder {
     /// The link is open: the encoder is read.
     pub(in crate::app) fn connect(&mut self, opened: Opened, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.opening = None;
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
@@ -29,6 +33,9 @@ impl Encoder {
             self.take(event, services);
         }
         self.take_samples_and_frames();
+        if self.line.as_ref().is_some_and(Line::is_dead) {
+            self.lose(Text::new("session.ended"), services);
+        }
     }
 
     pub(super) fn take_samples_and_frames(&mut self) {
@@ -59,6 +66,8 @@ impl Encoder {
                 let why = explain::hiperface::job(&error).into_iter().next();
                 self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
             }
+            // Of an earlier wish: the one in force now goes on.
+            Event::PollFailed(_) if self.line.as_ref().is_some_and(|line| line.polling().is_some()) => {}
             Event::PollFailed(error) => {
                 let mut texts = vec![Text::new("session.poll_failed")];
                 texts.extend(explain::hiperface::job(&error));
@@ -104,12 +113,7 @@ impl Encoder {
                 }
             }
             HiperfaceOutput::Committed(committed) => {
-                let text = Text::new("session.written").with("cycles", committed.written.write_cycles);
-                let mut texts = vec![text];
-                if let Some(why) = &committed.logbook_warning {
-                    texts.push(explain::logbook(why));
-                }
-                let severity = if texts.len() > 1 { Severity::Warning } else { Severity::Good };
+                let (severity, texts) = written(&committed);
                 services.tell(severity, texts, Some(&self.name()));
                 self.staged.forget_steps();
                 if let Some(review) = &mut self.review
@@ -221,6 +225,41 @@ impl Encoder {
             self.submit(HiperfaceJob::Survey, services);
         }
     }
+}
+
+/// What a write came to.
+fn written(committed: &Committed) -> (Severity, Vec<Text>) {
+    let text = Text::new("session.written").with("cycles", committed.written.write_cycles);
+    match &committed.logbook_warning {
+        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
+        None => (Severity::Good, vec![text]),
+    }
+}
+
+/// How the last job of a session that was let go ended.
+pub(in crate::app) struct LastWords {
+    pub(in crate::app) job: JobId,
+    pub(in crate::app) end: JobEnd,
+    pub(in crate::app) severity: Severity,
+    pub(in crate::app) texts: Vec<Text>,
+}
+
+/// What an event of a session that was let go says about the end of its job.
+pub(in crate::app) fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
+    let (job, end, (severity, texts)) = match event {
+        Event::Finished(job, output) => match &**output {
+            HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, written(committed)),
+            _ => (job, JobEnd::Done, (Severity::Note, vec![Text::new("session.ended")])),
+        },
+        Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, explain::hiperface::job(error))),
+        Event::Failed(job, error) => {
+            let texts = explain::hiperface::job(error);
+            let why = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
+            (job, JobEnd::Failed(why), (Severity::Error, texts))
+        }
+        _ => return None,
+    };
+    Some(LastWords { job: *job, end, severity, texts })
 }
 
 /// The wire itself failed, so that nothing more can be asked over it.
