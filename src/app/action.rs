@@ -94,6 +94,8 @@ pub enum Done {
         path: PathBuf,
         /// What was to be in it.
         document: Box<Document>,
+        /// What is not in it.
+        remarks: Vec<Text>,
         /// How it went.
         result: Result<(), FileError>,
     },

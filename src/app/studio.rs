@@ -247,8 +247,10 @@ impl Studio {
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             // That was to be looked at.
             Done::Left => {}
-            Done::Written { session, path, document, result } => {
-                self.with_encoder(session, |encoder, services| encoder.written(path, *document, result, services));
+            Done::Written { session, path, document, remarks, result } => {
+                self.with_encoder(session, |encoder, services| {
+                    encoder.written(path, *document, remarks, result, services);
+                })
             }
             Done::SettingsKept(result) => {
                 if let Some(text) = self.keeper.kept(result) {

@@ -141,7 +141,7 @@ fn without_a_backup_nothing_is_written() {
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::Review);
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until("it is refused", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
     });

@@ -15,7 +15,7 @@ fn closed_while_writing(mut desk: Desk) -> Desk {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     let id = desk.encoder().id;
     desk.act(Action::CloseSession(id));

@@ -43,7 +43,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 4);
     desk.wire().hold_at(0x4B, 2);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.until("it is writing", |studio| studio.encoder().unwrap().is_writing());
     assert!(desk.studio.can_stop());
@@ -73,7 +73,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 2, "what is left");
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000RpM");
 }
@@ -94,6 +94,7 @@ fn edits_survive_an_unplugged_cable_and_are_written_afterwards() {
     desk.ask(Hiperface::Review);
     assert_eq!(desk.times_told("session.not_connected"), 1);
 
+    assert!(desk.studio.services.log.standing().is_some());
     desk.ask(Hiperface::Reconnect);
     assert_eq!(*desk.phase(), Phase::Opening);
     desk.until("it is still not there", lost);
@@ -116,7 +117,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 2);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.wire().unplug();
     desk.wire().release();
@@ -235,7 +236,7 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x41);
     desk.ask(Hiperface::CloseReview);
@@ -257,7 +258,7 @@ fn connecting_again_to_a_wire_that_is_written_is_refused() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.open(&format!("serial:{PORT}?address=0x40"));
     desk.ask(Hiperface::Reconnect);

@@ -10,6 +10,7 @@ use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, Review
 use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
+use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
@@ -265,7 +266,10 @@ impl Desk {
 
     /// Consents to the plan that is shown.
     pub(crate) fn write_as_shown(&mut self) {
-        self.ask(Hiperface::Write);
+        let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
+        let shown = self.encoder().review.as_ref().and_then(Review::prepared);
+        let id = shown.map_or(nothing.id(), |prepared| prepared.plan.id());
+        self.ask(Hiperface::Write(id));
     }
 
     /// Reviews and writes what is edited.
@@ -273,7 +277,7 @@ impl Desk {
     pub(crate) fn write(&mut self) {
         self.ask(Hiperface::Review);
         self.until_planned();
-        self.ask(Hiperface::Write);
+        self.write_as_shown();
         self.until_written();
     }
 

@@ -16,7 +16,7 @@ use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
 use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
-use crate::profile::{Body, Consent, Document};
+use crate::profile::{Body, Consent, Document, PlanId};
 use crate::store::write_atomically;
 use crate::worker::SubmitError;
 use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
@@ -46,6 +46,7 @@ impl Encoder {
             Action::ConfigureForNow(settings) => self.submit(HiperfaceJob::ConfigureForNow(settings), services),
             Action::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
+                    self.tried_code = Some(number);
                     self.know_code(number, code);
                 }
             }
@@ -66,7 +67,7 @@ impl Encoder {
                     review.force_wear = force;
                 }
             }
-            Action::Write => self.write(services),
+            Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
             Action::AskSave => {
                 services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
@@ -152,7 +153,13 @@ impl Encoder {
             services.tell(Severity::Warning, vec![Text::new(text)], Some(&self.name()));
             return;
         }
-        self.review = Some(Review::new(explain::hiperface::change(&change), change.clone()));
+        let mut review = Review::new(explain::hiperface::change(&change), change.clone());
+        if let Err(why) = rules::change(&self.staged, &change) {
+            review.state = ReviewState::Failed { texts: vec![why], begun: false };
+            self.review = Some(review);
+            return;
+        }
+        self.review = Some(review);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.review = None;
         }
@@ -164,6 +171,7 @@ impl Encoder {
         }
         let Some(review) = &mut self.review else { return };
         review.set_options(options);
+        review.force_wear = false;
         review.state = ReviewState::Planning;
         let change = review.change.clone();
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
@@ -176,19 +184,19 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// The consent: the plan as it stands in the review, and no other.
-    fn write(&mut self, services: &mut Services) {
+    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
+    fn write(&mut self, shown: PlanId, services: &mut Services) {
         if !self.is_ready() {
             return;
         }
         let Some(review) = &mut self.review else { return };
         let ReviewState::Ready(prepared) = &review.state else { return };
+        if prepared.plan.id() != shown {
+            return;
+        }
         let prepared = prepared.clone();
-        let commit = Commit {
-            prepared: (*prepared).clone(),
-            consent: Consent::to(prepared.plan.id()),
-            force_wear: review.force_wear,
-        };
+        let commit =
+            Commit { prepared: (*prepared).clone(), consent: Consent::to(shown), force_wear: review.force_wear };
         review.state = ReviewState::Writing(prepared.clone());
         if !self.try_submit(HiperfaceJob::Commit(Box::new(commit)), services)
             && let Some(review) = &mut self.review
@@ -234,30 +242,39 @@ impl Encoder {
                 let mut document = (**document).clone();
                 let Body::Hiperface(profile) = &mut document.body;
                 profile.fields = self.staged.wanted();
-                self.write_document(path, document, services);
+                self.write_document(path, document, Vec::new(), services);
             }
         }
     }
 
-    /// Writes a profile on a thread.
-    pub(super) fn write_document(&mut self, path: PathBuf, document: Document, services: &Services) {
+    /// Writes a profile on a thread; `remarks` say what is not in it.
+    pub(super) fn write_document(
+        &mut self,
+        path: PathBuf,
+        document: Document,
+        remarks: Vec<Text>,
+        services: &Services,
+    ) {
         let id = self.id;
         services.tasks.run("save", move || {
             let result = write_atomically(&path, document.emit().as_bytes());
-            crate::app::Action::Done(action::Done::Written { session: id, path, document: Box::new(document), result })
+            let document = Box::new(document);
+            crate::app::Action::Done(action::Done::Written { session: id, path, document, remarks, result })
         });
     }
 
-    fn read_backup(&mut self, path: PathBuf, services: &Services) {
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
         let id = self.id;
+        let Some(of) = self.key() else {
+            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&self.name()));
+            return;
+        };
         services.tasks.run("backup", move || {
-            let done = match crate::app::studio::read_profile(&path) {
-                Ok(document) => {
-                    let Body::Hiperface(profile) = document.body;
-                    Done::Backup(Box::new(profile))
-                }
-                Err(error) => Done::NoBackup(path, error),
-            };
+            let result = crate::app::studio::read_profile(&path).map(|document| {
+                let Body::Hiperface(profile) = document.body;
+                Box::new(profile)
+            });
+            let done = Done::Backup { of, path, result };
             crate::app::Action::Done(action::Done::Hiperface(id, done))
         });
     }

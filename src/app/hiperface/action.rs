@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::app::studio::SessionId;
+use crate::profile::PlanId;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
-use crate::store::{Backup, Entry, FileError};
+use crate::store::{Backup, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::Change;
 
 /// Something in the HIPERFACE tab.
@@ -68,8 +69,8 @@ pub enum Action {
     PlanAgain(RestoreOptions),
     /// Write although the encoder counts as worn.
     ForceWear(bool),
-    /// Write what is shown.
-    Write,
+    /// Write the plan that was shown, and no other.
+    Write(PlanId),
     /// Close the review.
     CloseReview,
     /// Ask where to save the profile.
@@ -102,13 +103,20 @@ pub enum Done {
     },
     /// Backups and writes of this encoder.
     Backups {
+        /// Of which encoder.
+        of: DeviceKey,
         /// Backups, the newest first.
         backups: Result<Vec<Backup>, FileError>,
         /// Writes, the newest first, or why the logbook does not tell.
         writes: Result<Vec<Entry>, String>,
     },
-    /// A backup was read.
-    Backup(Box<HiperfaceProfile>),
-    /// A backup cannot be read.
-    NoBackup(PathBuf, crate::app::action::ReadError),
+    /// A backup was read, or not.
+    Backup {
+        /// For which encoder.
+        of: DeviceKey,
+        /// The file.
+        path: PathBuf,
+        /// What is in it.
+        result: Result<Box<HiperfaceProfile>, crate::app::action::ReadError>,
+    },
 }

@@ -19,7 +19,7 @@ use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, StatusCode};
-use crate::store::{Backup, Entry, FileError};
+use crate::store::{Backup, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
 
 /// Where the data come from.
@@ -97,6 +97,8 @@ pub struct Encoder {
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     /// What was asked for by the job that reads a single value.
     pub(super) asked: Option<Item>,
+    /// The access code that the user gave last: whether it fits shows when the fields are read.
+    pub(super) tried_code: Option<CodeNumber>,
     /// Where the profile goes that is being read.
     pub(super) save_to: Option<PathBuf>,
 }
@@ -126,6 +128,7 @@ impl Encoder {
             drafting: Drafting::default(),
             access_codes: Vec::new(),
             asked: None,
+            tried_code: None,
             save_to: None,
         }
     }
@@ -256,13 +259,16 @@ impl Encoder {
         &mut self,
         path: PathBuf,
         document: Document,
+        remarks: Vec<Text>,
         result: Result<(), FileError>,
         services: &mut Services,
     ) {
         match result {
             Ok(()) => {
-                let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.name()));
+                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
+                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
+                texts.extend(remarks);
+                services.tell(severity, texts, Some(&self.name()));
                 if self.phase == Phase::Offline {
                     self.forget_draft_unless(&path, services);
                     self.take_document(path, document);
@@ -293,7 +299,26 @@ impl Encoder {
         if first {
             self.load_draft(services);
         }
+        self.tell_of_code(services);
         self.list_backups(services);
+    }
+
+    /// Whether the access code that the user gave opens the fields that it guards; never the code itself.
+    fn tell_of_code(&mut self, services: &mut Services) {
+        let Some(number) = self.tried_code.take() else { return };
+        let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
+        let fields: Vec<&FieldImage> = self.staged.device().iter().filter(own).collect();
+        let shut: Vec<String> =
+            fields.iter().filter(|field| field.bytes.is_none()).map(|field| field.number.to_string()).collect();
+        let (severity, text) = match (fields.is_empty(), shut.is_empty()) {
+            (true, _) => (Severity::Note, Text::new("session.code_unused")),
+            (false, true) => (Severity::Good, Text::new("session.code_fits")),
+            (false, false) => (Severity::Warning, Text::new("session.code_wrong").with("fields", shut.join(", "))),
+        };
+        if severity == Severity::Warning {
+            self.access_codes.retain(|(own, _)| *own != number);
+        }
+        services.tell(severity, vec![text.with("number", number)], Some(&self.name()));
     }
 
     /// Another encoder than the one that was read before.
@@ -323,7 +348,7 @@ impl Encoder {
             return;
         }
         let (store, id, serial) = (services.world.store.clone(), self.id, identity.serial.serial_number.clone());
-        let key = device_key(identity, self.is_virtual());
+        let key = self.key_of(identity);
         services.tasks.run("backups", move || {
             let backups = store.backups().list("hiperface", &serial);
             let writes = match store.logbook_path() {
@@ -332,8 +357,19 @@ impl Encoder {
                     .and_then(|logbook| logbook.history(&key, 200))
                     .map_err(|error| error.to_string()),
             };
-            crate::app::Action::Done(crate::app::action::Done::Hiperface(id, Done::Backups { backups, writes }))
+            let done = Done::Backups { of: key, backups, writes };
+            crate::app::Action::Done(crate::app::action::Done::Hiperface(id, done))
         });
+    }
+
+    /// How the logbook knows an encoder on this line.
+    fn key_of(&self, identity: &Identity) -> DeviceKey {
+        device_key(identity, self.is_virtual())
+    }
+
+    /// How the logbook knows it.
+    pub(super) fn key(&self) -> Option<DeviceKey> {
+        self.identity.as_ref().map(|identity| self.key_of(identity))
     }
 
     /// Takes over what a task came back with.
@@ -341,12 +377,14 @@ impl Encoder {
         match done {
             Done::Draft { key, result } => self.take_draft(&key, result, services),
             Done::DraftKept { key, result } => self.draft_kept(&key, result, services),
-            Done::Backups { backups, writes } => {
+            // About another encoder than the one that is connected by now.
+            Done::Backups { of, .. } | Done::Backup { of, .. } if self.key().as_ref() != Some(&of) => {}
+            Done::Backups { backups, writes, .. } => {
                 self.backups = Some(backups.map_err(|error| explain::file(&error)));
                 self.writes = Some(writes.map_err(|why| Text::new("backups.no_logbook").with("why", why)));
             }
-            Done::Backup(profile) => self.plan_restore(*profile, services),
-            Done::NoBackup(path, error) => {
+            Done::Backup { result: Ok(profile), .. } => self.plan_restore(*profile, services),
+            Done::Backup { path, result: Err(error), .. } => {
                 let text = crate::app::studio::read_error(&path, &error);
                 services.tell(Severity::Error, vec![text], Some(&self.name()));
             }

@@ -3,6 +3,7 @@
 use super::act::document_of;
 use super::encoder::{Encoder, Phase, Source};
 use super::review::ReviewState;
+use super::rules;
 use crate::app::action::Opened;
 use crate::app::line::Line;
 use crate::app::services::{JobEnd, Services};
@@ -23,6 +24,7 @@ impl Encoder {
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
+        services.log.settle("session.not_connected", &self.name());
         self.curve.forget();
         self.submit(HiperfaceJob::Survey, services);
     }
@@ -108,8 +110,12 @@ impl Encoder {
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Prepared(prepared) => {
+                let allowed = rules::keeps_edits(&self.staged, &prepared.plan);
                 if let Some(review) = &mut self.review {
-                    review.state = ReviewState::Ready(prepared);
+                    review.state = match allowed {
+                        Ok(()) => ReviewState::Ready(prepared),
+                        Err(why) => ReviewState::Failed { texts: vec![why], begun: false },
+                    };
                 }
             }
             HiperfaceOutput::Committed(committed) => {
@@ -170,13 +176,18 @@ impl Encoder {
     }
 
     fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
-        for (field, number) in &saved.locked {
-            let text = Text::new("session.saved_locked").with("field", field).with("number", number);
-            services.tell(Severity::Warning, vec![text], Some(&self.name()));
+        let Some(path) = self.save_to.take() else { return };
+        let mut remarks = Vec::new();
+        // The profile holds what the encoder has.
+        let edits = self.staged.edits().count();
+        if edits > 0 {
+            remarks.push(Text::new("session.saved_without").with("count", edits));
         }
-        if let Some(path) = self.save_to.take() {
-            self.write_document(path, document_of(saved.profile), services);
-        }
+        let locked = saved.locked.iter();
+        remarks.extend(
+            locked.map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number)),
+        );
+        self.write_document(path, document_of(saved.profile), remarks, services);
     }
 
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
@@ -214,10 +225,15 @@ impl Encoder {
         self.asked = None;
         self.save_to = None;
         let texts = explain::hiperface::job(error);
-        services.tell(Severity::Warning, texts.clone(), Some(&self.name()));
         let begun = matches!(error, JobError::Interrupted { .. });
+        // As the user wished; what was written until then is to be looked at.
+        let severity = if begun { Severity::Warning } else { Severity::Note };
+        services.tell(severity, texts.clone(), Some(&self.name()));
+        if self.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Planning)) {
+            self.review = None;
+        }
         if let Some(review) = &mut self.review
-            && matches!(review.state, ReviewState::Planning | ReviewState::Writing(_))
+            && review.is_writing()
         {
             review.state = ReviewState::Failed { texts, begun };
         }
