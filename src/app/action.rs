@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use super::connect;
 use super::hiperface;
+use super::keep::SettingsRead;
 use super::studio::{SessionId, Tab};
 use super::{Language, Text, Theme};
-use crate::link::{LinkError, PortInfo};
+use crate::link::LinkError;
 use crate::profile::{Document, ProfileError};
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{FileError, StoreError};
@@ -76,11 +77,13 @@ pub enum Done {
         result: Result<Box<Opened>, Box<OpenFailed>>,
     },
     /// The serial ports of this machine.
-    Ports(Result<Vec<PortInfo>, LinkError>),
+    Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
     Read {
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
         /// The table of encoder types.
@@ -92,6 +95,8 @@ pub enum Done {
         session: SessionId,
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What was to be in it.
         document: Box<Document>,
         /// What is not in it.
@@ -103,6 +108,8 @@ pub enum Done {
     Waited(Waited),
     /// A session that was let go has ended.
     Left,
+    /// The settings were read, later than the start could wait for them.
+    SettingsRead(SettingsRead),
     /// The settings were kept.
     SettingsKept(Result<(), FileError>),
     /// About one session in the HIPERFACE tab.

@@ -19,6 +19,7 @@ mod texts;
 mod trace;
 
 pub use action::{Action, Done, FileQuestion, Question};
+pub use keep::SettingsRead;
 pub use leaving::Patience;
 pub use line::{Line, Running};
 pub use look::{Look, Palette, Rgb, Spaces, TextSizes};

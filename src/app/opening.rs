@@ -3,7 +3,7 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Done, OpenFailed, Opened};
-use super::hiperface::{Encoder, Opening, Phase, Source};
+use super::hiperface::{self, Encoder, Opening, Phase, Source};
 use super::leaving::{Leaver, same_wire};
 use super::services::{JobEnd, World};
 use super::studio::{SessionId, Studio};
@@ -52,20 +52,14 @@ impl Studio {
     /// Another attempt to open a link for a session: from now on only its result counts.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
-        let codes = self.codes_for(id);
+        let codes = self.services.world.codes.clone();
         let earlier = self.encoder_mut(id).and_then(|encoder| encoder.opening.take()).map(|opening| opening.over);
         let done = move |result| Done::Opened { session: id, attempt, result };
         let over = self.open_task(url, earlier, codes, done);
         if let Some(encoder) = self.encoder_mut(id) {
             encoder.phase = Phase::Opening;
-            encoder.opening = Some(Opening { attempt, over });
+            encoder.opening = Some(Opening { attempt: Some(attempt), over });
         }
-    }
-
-    /// Access codes given at the start, and those given for this encoder since.
-    fn codes_for(&self, id: SessionId) -> Vec<(CodeNumber, AccessCode)> {
-        let own = self.encoders.iter().find(|encoder| encoder.id == id).map(Encoder::access_codes);
-        self.services.world.codes.iter().chain(own.unwrap_or_default()).copied().collect()
     }
 
     /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
@@ -103,7 +97,7 @@ impl Studio {
         match result {
             Ok(opened) => {
                 if let Source::Link(url) = &encoder.source {
-                    self.settings.use_link(&url.to_string());
+                    self.settings.use_link(&hiperface::without_codes(url));
                 }
                 encoder.connect(*opened, &mut self.services);
             }

@@ -94,6 +94,8 @@ pub struct Services {
     pub(super) file_question: Option<FileQuestion>,
     /// Sessions that were let go and have not ended.
     pub(super) leaving: Vec<Leaving>,
+    /// Profiles that are being read.
+    pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
     pub(super) drafts_on_their_way: usize,
 }
@@ -104,7 +106,8 @@ impl Services {
     pub(super) fn new(world: World, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
         let (tasks, leaving) = (Tasks::new(wake), Vec::new());
-        Services { world, tasks, log, jobs, file_question: None, leaving, drafts_on_their_way: 0 }
+        let opening_files = Vec::new();
+        Services { world, tasks, log, jobs, file_question: None, leaving, opening_files, drafts_on_their_way: 0 }
     }
 
     /// The time of day.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waited};
 use super::connect::{self, Connect};
-use super::hiperface::{self, Encoder, Source};
+use super::hiperface::{self, Encoder, Phase, Source};
 use super::keep::Keeper;
 use super::services::{JobEnd, Services, World};
 use super::tasks::{Mailbox, Wake};
@@ -12,7 +12,7 @@ use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::protocol::hiperface::EncoderTypes;
-use crate::store::{Store, StoreError, read_text};
+use crate::store::{Store, StoreError, read_file};
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -97,6 +97,7 @@ impl Studio {
             Action::AskOpen => self.services.file_question = Some(FileQuestion::Open),
             Action::Open(path) => {
                 let store = self.services.world.store.clone();
+                self.services.opening_files.push(path.clone());
                 self.services.tasks.run("open", move || read_document(path, &store));
             }
             Action::FileNotChosen => {}
@@ -148,6 +149,11 @@ impl Studio {
         self.path_question.take()
     }
 
+    /// Profiles that are being read from the disk.
+    pub fn opening_files(&self) -> &[PathBuf] {
+        &self.services.opening_files
+    }
+
     /// All encoders, in the order in which they came.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
@@ -161,8 +167,11 @@ impl Studio {
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let active =
-            |encoder: &Encoder| encoder.is_busy() || encoder.line().is_some_and(|line| line.polling().is_some());
+        let active = |encoder: &Encoder| {
+            encoder.phase == Phase::Opening
+                || encoder.is_busy()
+                || encoder.line().is_some_and(|line| line.polling().is_some())
+        };
         self.encoders.iter().any(active) || self.search().is_some_and(connect::Search::is_running)
     }
 
@@ -237,21 +246,20 @@ impl Studio {
                 }
             }
             Done::Ports(ports) => {
-                let links = self.settings.links();
                 if let Some(connect) = &mut self.connect {
-                    let ports = ports.map(|ports| connect::offered_ports(&ports, links));
                     connect.ports = Some(ports.map_err(|error| explain::link(&error)));
                 }
             }
-            Done::Read { path, result, types } => self.read(path, result, types),
+            Done::Read { path, key, result, types } => self.read(path, key, result, types),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             // That was to be looked at.
             Done::Left => {}
-            Done::Written { session, path, document, remarks, result } => {
+            Done::Written { session, path, key, document, remarks, result } => {
                 self.with_encoder(session, |encoder, services| {
-                    encoder.written(path, *document, remarks, result, services);
+                    encoder.written((path, key), *document, remarks, result, services);
                 })
             }
+            Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => {
                 if let Some(text) = self.keeper.kept(result) {
                     self.services.tell(Severity::Warning, vec![text], None);
@@ -277,23 +285,28 @@ impl Studio {
     fn read(
         &mut self,
         path: PathBuf,
+        key: String,
         result: Result<Box<Document>, ReadError>,
         types: Result<EncoderTypes, StoreError>,
     ) {
+        let opening = &mut self.services.opening_files;
+        if let Some(at) = opening.iter().position(|own| *own == path) {
+            opening.remove(at);
+        }
         match result {
             Ok(document) => {
                 let known = self
                     .encoders
                     .iter()
-                    .find(|encoder| matches!(&encoder.source, Source::File { path: own, .. } if *own == path))
+                    .find(|encoder| matches!(&encoder.source, Source::File { key: own, .. } if *own == key))
                     .map(|encoder| encoder.id);
                 let id = known.unwrap_or_else(|| self.new_id());
                 self.shown = Some(id);
                 if known.is_some() {
-                    self.with_encoder(id, |encoder, _| encoder.take_document(path, *document));
+                    self.with_encoder(id, |encoder, _| encoder.take_document(path, key, *document));
                 } else {
                     let types = self.services.encoder_types(types);
-                    let encoder = Encoder::in_file(id, path, *document, &types, &self.services);
+                    let encoder = Encoder::in_file(id, (path, key), *document, &types, &self.services);
                     self.encoders.push(encoder);
                 }
             }
@@ -303,7 +316,7 @@ impl Studio {
 
     fn stop(&mut self) {
         for encoder in &mut self.encoders {
-            encoder.stop();
+            encoder.stop(&mut self.services);
         }
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.stop();
@@ -395,11 +408,14 @@ impl Studio {
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
     let result = read_profile(&path).map(Box::new);
-    Action::Done(Done::Read { path, result, types: store.encoder_types() })
+    let key = hiperface::file_key(&path);
+    // Where there is no profile, nobody waits for the table.
+    let types = if result.is_ok() { store.encoder_types() } else { Ok(EncoderTypes::built_in()) };
+    Action::Done(Done::Read { path, key, result, types })
 }
 
 pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
-    let text = read_text(path).map_err(ReadError::File)?;
+    let text = read_file(path).map_err(ReadError::File)?;
     Document::parse(&text).map_err(ReadError::Profile)
 }
 

@@ -3,10 +3,12 @@
 use crossbeam_channel::Receiver;
 
 use super::{Action, Connect, LinkForm, Search, list_ports};
-use crate::app::Text;
 use crate::app::action::Done;
-use crate::app::leaving::Leaver;
+use crate::app::hiperface::{Encoder, Phase, Source};
+use crate::app::leaving::{Leaver, same_wire};
+use crate::app::services::JobEnd;
 use crate::app::studio::{SessionId, Studio};
+use crate::app::{Severity, Text};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 
@@ -17,13 +19,13 @@ impl Studio {
                 // What was used before comes first.
                 let last = self.settings.links().first().and_then(|link| link.parse().ok());
                 self.connect = Some(Connect::new(LinkForm::from_url(&last.unwrap_or_else(LinkUrl::sim))));
-                list_ports(&self.services);
+                list_ports(&self.services, self.settings.links());
             }
             Action::Close => self.close_dialog(),
             Action::ListPorts => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = None;
-                    list_ports(&self.services);
+                    list_ports(&self.services, self.settings.links());
                 }
             }
             Action::Edit(form) => self.edit(*form),
@@ -74,7 +76,10 @@ impl Studio {
                 return;
             }
         };
-        let earlier = self.end_search();
+        let earlier = match self.free_for_search(&url) {
+            Ok(earlier) => self.end_search().or(earlier),
+            Err(problem) => return self.refuse(problem),
+        };
         let number = self.new_number();
         let done = move |result| Done::OpenedForSearch { number, result };
         let over = self.open_task(url.clone(), earlier, Vec::new(), done);
@@ -82,6 +87,26 @@ impl Studio {
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);
         }
+    }
+
+    /// Lets the session on this wire go, unless it writes; one whose link is still being opened is over when what is given
+    /// tells so.
+    fn free_for_search(&mut self, url: &LinkUrl) -> Result<Option<Receiver<()>>, Text> {
+        let holds = |encoder: &&mut Encoder| {
+            let held = encoder.line().is_some() || encoder.opening.is_some();
+            held && matches!(&encoder.source, Source::Link(own) if same_wire(own, url))
+        };
+        let Some(encoder) = self.encoders.iter_mut().find(holds) else { return Ok(None) };
+        let name = encoder.name();
+        if encoder.is_writing() {
+            return Err(Text::new("find.writing").with("name", name));
+        }
+        encoder.let_go(JobEnd::Cancelled, &mut self.services);
+        let why = Text::new("session.let_go_for_search");
+        encoder.phase = Phase::Lost(why.clone());
+        let earlier = encoder.opening.take().map(|opening| opening.over);
+        self.services.tell(Severity::Note, vec![why], Some(&name));
+        Ok(earlier)
     }
 
     /// Closes the dialog; its search ends.

@@ -153,8 +153,11 @@ impl Search {
     }
 }
 
-/// The serial ports, as a task's result.
-pub(super) fn list_ports(services: &Services) {
-    let ports = services.world.ports.clone();
-    services.tasks.run("ports", move || super::Action::Done(Done::Ports(ports())));
+/// The serial ports, as a task's result; `links` are the links used, the latest first.
+pub(super) fn list_ports(services: &Services, links: &[String]) {
+    let (ports, links) = (services.world.ports.clone(), links.to_vec());
+    services.tasks.run("ports", move || {
+        let exists = |path: &str| std::path::Path::new(path).exists();
+        super::Action::Done(Done::Ports(ports().map(|ports| offered_ports(&ports, &links, exists))))
+    });
 }

@@ -43,7 +43,11 @@ impl Encoder {
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             Action::Check { restart } => self.submit(HiperfaceJob::Check { restart }, services),
             Action::Reset => self.submit(HiperfaceJob::Reset, services),
-            Action::ConfigureForNow(settings) => self.submit(HiperfaceJob::ConfigureForNow(settings), services),
+            Action::ConfigureForNow(settings) => {
+                if self.try_submit(HiperfaceJob::ConfigureForNow(settings), services) {
+                    self.configured = Some(settings);
+                }
+            }
             Action::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
                     self.tried_code = Some(number);
@@ -113,8 +117,11 @@ impl Encoder {
     }
 
     fn read_again(&mut self, services: &mut Services) {
+        if let Source::File { path, .. } = &self.source {
+            services.opening_files.push(path.clone());
+        }
         match &self.source {
-            Source::Link(_) => self.submit(HiperfaceJob::Survey, services),
+            Source::Link(_) => self.read_encoder(services),
             Source::File { path, .. } => {
                 let (path, store) = (path.clone(), services.world.store.clone());
                 services.tasks.run("read", move || crate::app::studio::read_document(path, &store));
@@ -149,8 +156,12 @@ impl Encoder {
 
     pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
         if !self.is_ready() {
-            let text = if self.is_busy() { "session.busy" } else { "session.not_connected" };
-            services.tell(Severity::Warning, vec![Text::new(text)], Some(&self.name()));
+            let text = match &self.phase {
+                _ if self.is_busy() => Text::new("session.busy"),
+                Phase::Silent(why) => why.clone(),
+                _ => Text::new("session.not_connected"),
+            };
+            services.tell(Severity::Warning, vec![text], Some(&self.name()));
             return;
         }
         let mut review = Review::new(explain::hiperface::change(&change), change.clone());
@@ -258,8 +269,9 @@ impl Encoder {
         let id = self.id;
         services.tasks.run("save", move || {
             let result = write_atomically(&path, document.emit().as_bytes());
+            let key = super::file_key(&path);
             let document = Box::new(document);
-            crate::app::Action::Done(action::Done::Written { session: id, path, document, remarks, result })
+            crate::app::Action::Done(action::Done::Written { session: id, path, key, document, remarks, result })
         });
     }
 

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::DraftKey;
 use crate::app::studio::SessionId;
 use crate::profile::PlanId;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
-use crate::store::{Backup, DeviceKey, Entry, FileError};
+use crate::store::{Backup, Claim, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::Change;
 
 /// Something in the HIPERFACE tab.
@@ -90,14 +91,16 @@ pub enum Done {
     /// Edits of an earlier time.
     Draft {
         /// Whose they are.
-        key: String,
+        key: DraftKey,
+        /// The right to keep them; `None`: it belongs to another window or session.
+        claim: Result<Option<Claim>, FileError>,
         /// The edits.
         result: Result<Option<String>, FileError>,
     },
     /// A draft was kept or removed.
     DraftKept {
         /// Whose it is.
-        key: String,
+        key: DraftKey,
         /// How it went.
         result: Result<(), FileError>,
     },

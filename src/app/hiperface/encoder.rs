@@ -18,7 +18,7 @@ use crate::device::hiperface::{Identity, Survey, profile_of};
 use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
-use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, StatusCode};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
 use crate::store::{Backup, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
 
@@ -31,6 +31,8 @@ pub enum Source {
     File {
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What is in it, without the edits.
         document: Box<Document>,
     },
@@ -41,8 +43,10 @@ pub enum Source {
 pub enum Phase {
     /// The link is being opened.
     Opening,
-    /// Connected.
+    /// Connected, and the encoder answers.
     Connected,
+    /// The link is open, and the encoder does not answer: why, and what to do.
+    Silent(Text),
     /// It was connected, or could not be: why, and what to do.
     Lost(Text),
     /// A profile: there is no connection.
@@ -52,9 +56,17 @@ pub enum Phase {
 /// A link that is being opened.
 pub(in crate::app) struct Opening {
     /// Which attempt of the session it is.
-    pub(in crate::app) attempt: u32,
+    pub(in crate::app) attempt: Option<u32>,
     /// Ends when it is over.
     pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+}
+
+/// A link as it may be shown and kept: the access codes of a virtual encoder are no part of that.
+pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
+    let query: Vec<String> =
+        url.query.without(&["codes"]).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let question = if query.is_empty() { "" } else { "?" };
+    format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
 }
 
 /// An encoder, or a profile of one.
@@ -97,6 +109,12 @@ pub struct Encoder {
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     /// What was asked for by the job that reads a single value.
     pub(super) asked: Option<Item>,
+    /// Access codes that are given to the session again, once it is known who is connected.
+    pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
+    /// Interface settings that are being taken up until the next restart.
+    pub(super) configured: Option<LineSettings>,
+    /// Nothing has been read since the link was opened.
+    pub(super) just_connected: bool,
     /// The access code that the user gave last: whether it fits shows when the fields are read.
     pub(super) tried_code: Option<CodeNumber>,
     /// Where the profile goes that is being read.
@@ -128,6 +146,9 @@ impl Encoder {
             drafting: Drafting::default(),
             access_codes: Vec::new(),
             asked: None,
+            codes_due: Vec::new(),
+            configured: None,
+            just_connected: false,
             tried_code: None,
             save_to: None,
         }
@@ -136,7 +157,7 @@ impl Encoder {
     /// A profile of an encoder.
     pub(in crate::app) fn in_file(
         id: SessionId,
-        path: PathBuf,
+        (path, key): (PathBuf, String),
         document: Document,
         types: &EncoderTypes,
         services: &Services,
@@ -145,7 +166,7 @@ impl Encoder {
         let fields = profile.fields.clone();
         let identity = crate::device::hiperface::identity_of(profile, types);
         let counter = profile.recorded.counter;
-        let source = Source::File { path, document: Box::new(document) };
+        let source = Source::File { path, key, document: Box::new(document) };
         // A link is needed to make the rest; a profile has none.
         let mut encoder = Encoder::at_link(id, LinkUrl::sim());
         encoder.source = source;
@@ -170,7 +191,7 @@ impl Encoder {
 
     /// This is the attempt to open its link that counts.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
-        self.opening.as_ref().is_some_and(|opening| opening.attempt == attempt)
+        self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
     /// Something runs on its line.
@@ -188,6 +209,11 @@ impl Encoder {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
 
+    /// It can be read again: also an encoder that did not answer, and a profile.
+    pub fn is_readable(&self) -> bool {
+        self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
+    }
+
     /// A profile of it can be saved now.
     pub fn is_savable(&self) -> bool {
         self.is_ready() || self.phase == Phase::Offline
@@ -203,7 +229,7 @@ impl Encoder {
                 format!("{} · {}", identity.name, identity.serial.serial_number)
             }
             (Source::Link(_), Some(identity)) => identity.name.clone(),
-            (Source::Link(url), None) => url.to_string(),
+            (Source::Link(url), None) => without_codes(url),
         }
     }
 
@@ -235,29 +261,33 @@ impl Encoder {
         }
     }
 
-    /// Access codes for the next session with it.
-    pub(in crate::app) fn access_codes(&self) -> &[(CodeNumber, AccessCode)] {
-        &self.access_codes
-    }
-
-    /// Ends what runs.
-    pub(in crate::app) fn stop(&mut self) {
+    /// Ends what runs, and gives up a link that is being opened.
+    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+        if self.phase == Phase::Opening {
+            let why = Text::new("session.open_cancelled");
+            services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
+            self.phase = Phase::Lost(why);
+            if let Some(opening) = &mut self.opening {
+                // What it still gives is for nobody; the next attempt waits until it is over.
+                opening.attempt = None;
+            }
+        }
         if let Some(line) = &mut self.line {
             line.stop();
         }
     }
 
     /// A profile was read again from its file; edits stay.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, document: Document) {
+    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
         let Body::Hiperface(profile) = &document.body;
         self.staged.refresh(profile.fields.clone());
-        self.source = Source::File { path, document: Box::new(document) };
+        self.source = Source::File { path, key, document: Box::new(document) };
     }
 
     /// A profile was written, or not.
     pub(in crate::app) fn written(
         &mut self,
-        path: PathBuf,
+        (path, key): (PathBuf, String),
         document: Document,
         remarks: Vec<Text>,
         result: Result<(), FileError>,
@@ -270,8 +300,11 @@ impl Encoder {
                 texts.extend(remarks);
                 services.tell(severity, texts, Some(&self.name()));
                 if self.phase == Phase::Offline {
-                    self.forget_draft_unless(&path, services);
-                    self.take_document(path, document);
+                    let moved = self.forget_draft_unless(&key, services);
+                    self.take_document(path, key, document);
+                    if moved {
+                        self.begin_draft(services);
+                    }
                 }
             }
             Err(error) => services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name())),
@@ -281,9 +314,14 @@ impl Encoder {
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, counter, position } = survey;
-        if self.is_another(&identity) {
+        let fresh = std::mem::take(&mut self.just_connected);
+        // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
+        let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
+        if self.is_another(&identity) || (self.identity.is_some() && unproven) {
             if self.staged.is_dirty() {
-                let text = Text::new("session.other_encoder").with("serial", &identity.serial.serial_number);
+                let kept = self.identity.as_ref().is_some_and(|known| !known.serial.serial_number.is_empty());
+                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
+                let text = text.with("serial", &identity.serial.serial_number);
                 services.tell(Severity::Warning, vec![text], Some(&self.name()));
             }
             self.forget_encoder(services);
@@ -323,8 +361,8 @@ impl Encoder {
 
     /// Another encoder than the one that was read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
-        let known = self.identity.as_ref().map(|identity| &identity.serial.serial_number);
-        known.is_some_and(|known| *known != identity.serial.serial_number)
+        let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
+        self.identity.as_ref().is_some_and(|known| who(known) != who(identity))
     }
 
     fn forget_encoder(&mut self, services: &mut Services) {
@@ -375,7 +413,7 @@ impl Encoder {
     /// Takes over what a task came back with.
     pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
-            Done::Draft { key, result } => self.take_draft(&key, result, services),
+            Done::Draft { key, claim, result } => self.take_draft(&key, claim, result, services),
             Done::DraftKept { key, result } => self.draft_kept(&key, result, services),
             // About another encoder than the one that is connected by now.
             Done::Backups { of, .. } | Done::Backup { of, .. } if self.key().as_ref() != Some(&of) => {}

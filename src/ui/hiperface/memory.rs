@@ -51,7 +51,7 @@ pub(super) fn page_ui(
     let wanted = encoder.staged.wanted();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_ready());
+        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_readable());
         if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
         }
