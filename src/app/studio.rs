@@ -347,7 +347,11 @@ impl Studio {
     fn close_session(&mut self, id: SessionId) {
         let Some(encoder) = self.encoder_mut(id) else { return };
         if encoder.is_busy() || encoder.staged.is_dirty() {
-            let text = if encoder.is_busy() { "question.session_busy" } else { "question.session_edits" };
+            let text = match (encoder.is_busy(), encoder.staged.is_dirty() && !encoder.keeps_edits()) {
+                (_, true) => "question.session_lost",
+                (true, false) => "question.session_busy",
+                (false, false) => "question.session_edits",
+            };
             let text = Text::new(text).with("name", encoder.name());
             let confirm = Text::new("question.close_session");
             self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
@@ -371,7 +375,12 @@ impl Studio {
         let busy = self.encoders.iter().any(Encoder::is_busy);
         let edits = self.encoders.iter().filter(|encoder| encoder.staged.is_dirty()).count();
         if busy || edits > 0 {
-            let text = if busy { Text::new("question.busy") } else { Text::new("question.edits").with("count", edits) };
+            let lost = |encoder: &Encoder| encoder.staged.is_dirty() && !encoder.keeps_edits();
+            let text = match self.encoders.iter().find(|encoder| lost(encoder)) {
+                Some(encoder) => Text::new("question.session_lost").with("name", encoder.name()),
+                None if busy => Text::new("question.busy"),
+                None => Text::new("question.edits").with("count", edits),
+            };
             let confirm = Text::new("question.close_window");
             self.question = Some(Question { text, confirm, then: Then::CloseWindow });
         } else {
