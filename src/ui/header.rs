@@ -2,11 +2,11 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, button, dot, enabled_button, icon_button, name};
+use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperface::{self, Encoder, Phase, Source};
-use crate::app::{Action, Language, Severity, Studio, Theme};
+use crate::app::{Action, Language, Notice, Studio, Theme};
 
 /// Draws the header.
 pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -154,27 +154,27 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     }
 }
 
-/// The notice that stands in the window until it is read.
-pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let Some(notice) = studio.services.log.standing() else { return };
-    let palette = skin.palette;
-    let (icon, colour) = match notice.severity {
-        Severity::Note => (icons::INFO, palette.accent),
-        Severity::Good => (icons::CHECK_CIRCLE, palette.good),
-        Severity::Warning => (icons::WARNING, palette.warn),
-        Severity::Error => (icons::X_CIRCLE, palette.bad),
-    };
-    ui.horizontal(|ui| {
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
-                actions.push(Action::Dismiss);
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
-                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
-                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
+/// The notice that stands in the window until it is read, at its foot, over everything.
+pub(super) fn notice_ui(ctx: &egui::Context, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
+    let (icon, colour) = severity(skin, notice.severity);
+    let width = (ctx.content_rect().width() - 320.0).min(760.0);
+    egui::Area::new(egui::Id::unique("notice"))
+        .order(egui::Order::Tooltip)
+        .anchor(egui::Align2::CENTER_BOTTOM, [0.0, -skin.space.groups])
+        .show(ctx, |ui| {
+            let frame = skin.card().stroke(Stroke::new(1.0, colour)).inner_margin(egui::Margin::symmetric(12, 8));
+            frame.show(ui, |ui| {
+                ui.set_width(width);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
+                    let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
+                    let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                    let text = egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true);
+                    ui.add_sized([width - 76.0, 0.0], text.halign(egui::Align::Min));
+                    if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
+                        actions.push(Action::Dismiss);
+                    }
+                });
             });
         });
-    });
 }

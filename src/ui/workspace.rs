@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::controls::{button, empty, paragraph};
+use super::controls::{button, empty, paragraph, spinner};
 use super::{Skin, Views, hiperface, icons};
 use crate::app::connect;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
@@ -20,7 +20,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         Tab::Hiperface => {
             running(ui, skin, encoder, actions);
             lost(ui, skin, encoder, actions);
-            hiperface::page_ui(ui, skin, studio, encoder, &mut views.hiperface, actions);
+            hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);
         }
     }
 }
@@ -35,7 +35,7 @@ fn running(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(14.0));
+            spinner(ui, skin);
             let words = match running {
                 Some(running) => {
                     let what = skin.words(&running.what);

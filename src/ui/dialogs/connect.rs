@@ -12,7 +12,7 @@ use crate::device::hiperface::Echo;
 use crate::device::hiperface::find::FindOptions;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
-    LABELS, button, choice, enabled_button, entry, icon_button, modal, name, paragraph, primary, text_entry,
+    LABELS, button, choice, enabled_button, entry, icon_button, modal, name, paragraph, primary, spinner, text_entry,
 };
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -40,12 +40,13 @@ pub(in crate::ui) fn connect_ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(dialog) = &studio.connect else { return };
-    let height = ctx.content_rect().height() - 190.0;
+    let height = (ctx.content_rect().height() - 190.0).min(560.0);
     let mut form = dialog.form.clone();
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.label(skin.heading(skin.say("connect.title")));
         ui.add_space(skin.space.inside);
-        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        // Always as high: nothing jumps away under the pointer.
+        ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
             used_before(ui, skin, studio, actions);
             kinds(ui, skin, &mut form);
             ui.add_space(skin.space.between);
@@ -260,7 +261,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
                 if button(ui, icons::STOP, &skin.say("find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
-                ui.add(egui::Spinner::new().size(14.0));
+                spinner(ui, skin);
             } else if enabled_button(ui, true, icons::MAGNIFYING_GLASS, &skin.say("find.start")).clicked() {
                 let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
                 let options = FindOptions { one_encoder: view.one_encoder, power_cycle };

@@ -8,7 +8,7 @@ use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
 use crate::device::hiperface::Identity;
 use crate::device::hiperface::check::Verdict;
-use crate::ui::controls::{card, empty, enabled_button, paragraph, row};
+use crate::ui::controls::{card, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
@@ -19,42 +19,15 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut
         |ui, (actions, _)| {
             identity(ui, skin, encoder, actions);
             ui.add_space(skin.space.groups);
+            status(ui, skin, encoder, actions);
             extended_label(ui, skin, encoder);
-            wiring::card_ui(ui, skin);
         },
         |ui, (actions, restart)| {
-            status(ui, skin, encoder, actions);
-            ui.add_space(skin.space.groups);
             check(ui, skin, encoder, restart, actions);
+            ui.add_space(skin.space.groups);
+            wiring::card_ui(ui, skin);
         },
     );
-}
-
-/// Two columns of cards where there is room, else one below the other.
-pub(super) fn two_columns<C>(
-    ui: &mut Ui,
-    skin: &Skin,
-    mut context: C,
-    left: impl FnOnce(&mut Ui, &mut C),
-    right: impl FnOnce(&mut Ui, &mut C),
-) {
-    if ui.available_width() < 640.0 {
-        left(ui, &mut context);
-        ui.add_space(skin.space.groups);
-        right(ui, &mut context);
-        return;
-    }
-    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor();
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = skin.space.between;
-        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
-            left(ui, &mut context);
-        });
-        ui.add_space(skin.space.groups - skin.space.between);
-        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
-            right(ui, &mut context);
-        });
-    });
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -180,6 +153,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, action
 
 fn extended_label(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
+    ui.add_space(skin.space.groups);
     card(
         ui,
         skin,
@@ -200,7 +174,6 @@ fn extended_label(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
             }
         },
     );
-    ui.add_space(skin.space.groups);
 }
 
 /// Width of the column of addresses.

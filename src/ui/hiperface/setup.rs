@@ -3,12 +3,13 @@
 
 use egui::{RichText, Ui};
 
-use super::encoder::two_columns;
 use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, forms};
 use crate::app::{Action, Text};
 use crate::protocol::hiperface::{BAUDS, CodeNumber, LineSettings};
-use crate::ui::controls::{card, choice, enabled_button, entry, paragraph, row, text_entry};
+use crate::ui::controls::{
+    card, choice, enabled_button, entry, forget_secret, paragraph, row, secret_entry, text_entry, two_columns,
+};
 use crate::ui::{Skin, icons};
 use crate::units::{CharacterFormat, Parity};
 use crate::worker::hiperface::Change;
@@ -29,6 +30,7 @@ pub(super) struct View {
     code_number: CodeNumber,
     code: String,
     new_code: String,
+    new_again: String,
     code_problem: Option<Text>,
 }
 
@@ -141,25 +143,29 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
             let number = view.code_number;
             let ready = encoder.is_ready();
             entry(ui, skin, &skin.say("codes_card.known"), |ui| {
-                text_entry(ui, &mut view.code, 64.0, &skin.say("codes_card.known"), "55");
+                let response = secret_entry(ui, &mut view.code, 64.0, &skin.say("codes_card.known"));
                 if enabled_button(ui, ready, icons::KEY, &skin.say("codes_card.use")).clicked() {
-                    match forms::access_code(&view.code) {
+                    let code = forms::access_code(&view.code);
+                    forget_secret(ui, &response, &mut view.code);
+                    match code {
                         Ok(code) => {
                             view.code_problem = None;
-                            view.code.clear();
                             actions.push(Action::Hiperface(encoder.id, Hiperface::UseCode { number, code }));
                         }
                         Err(why) => view.code_problem = Some(why),
                     }
                 }
             });
-            entry(ui, skin, &skin.say("codes_card.new"), |ui| {
-                text_entry(ui, &mut view.new_code, 64.0, &skin.say("codes_card.new"), "");
+            let new = entry(ui, skin, &skin.say("codes_card.new"), |ui| {
+                secret_entry(ui, &mut view.new_code, 64.0, &skin.say("codes_card.new"))
+            });
+            entry(ui, skin, &skin.say("codes_card.again"), |ui| {
+                let again = secret_entry(ui, &mut view.new_again, 64.0, &skin.say("codes_card.again"));
                 if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &skin.say("codes_card.change")).clicked() {
-                    let change = forms::access_code(&view.new_code).map(|new| Change::ChangeCode { number, new });
-                    if change.is_ok() {
-                        view.new_code.clear();
-                    }
+                    let code = forms::new_access_code(&view.new_code, &view.new_again);
+                    forget_secret(ui, &new, &mut view.new_code);
+                    forget_secret(ui, &again, &mut view.new_again);
+                    let change = code.map(|new| Change::ChangeCode { number, new });
                     plan(encoder, change, &mut view.code_problem, actions);
                 }
             });

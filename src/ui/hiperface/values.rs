@@ -2,10 +2,9 @@
 
 use egui::{RichText, Ui};
 
-use super::encoder::two_columns;
 use crate::app::hiperface::{Action as Hiperface, Encoder, forms};
 use crate::app::{Action, Text};
-use crate::ui::controls::{card, enabled_button, entry, paragraph, text_entry};
+use crate::ui::controls::{card, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Skin, icons};
 use crate::worker::hiperface::Change;
 
