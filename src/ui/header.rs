@@ -15,50 +15,68 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
         if let Some(encoder) = studio.encoder() {
             status(ui, skin, encoder);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let settings = &studio.settings;
-            if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
-                views.about = true;
-            }
-            if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
-                views.help = !views.help;
-            }
-            let (theme_icon, theme) = match settings.theme {
-                Theme::Dark => (icons::SUN, Theme::Light),
-                Theme::Light => (icons::MOON, Theme::Dark),
-            };
-            let theme_word = match theme {
-                Theme::Light => "shell.light",
-                Theme::Dark => "shell.dark",
-            };
-            if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
-                actions.push(Action::SetTheme(theme));
-            }
-            let (other, other_code) = match settings.language {
-                Language::English => (Language::German, "DE"),
-                Language::German => (Language::English, "EN"),
-            };
-            let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
-            if name(response, true, &skin.say("shell.language")).clicked() {
-                actions.push(Action::SetLanguage(other));
-            }
-            stop(ui, skin, studio, actions);
-            if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
-                actions.push(Action::Connect(connect::Action::Open));
-            }
-            let savable = studio.encoder().is_some_and(Encoder::is_savable);
-            if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("shell.save"))
-                .on_hover_text(skin.say("shell.save_hint"))
-                .clicked()
-            {
-                actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
-            }
-            if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
-                actions.push(Action::AskOpen);
-            }
-            link(ui, skin, studio);
-        });
+        // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
+        let width_id = ui.scope_id().with("tools");
+        let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);
+        let room = (ui.available_width() - width).max(0.0);
+        ui.allocate_ui_with_layout(
+            egui::vec2(room, ui.available_height()),
+            egui::Layout::right_to_left(egui::Align::Center),
+            |ui| {
+                ui.set_min_width(room - ui.spacing().item_spacing.x);
+                link(ui, skin, studio);
+            },
+        );
+        let tools = ui.scope(|ui| tools(ui, skin, studio, views, actions)).response.rect.width();
+        if (tools - width).abs() > 0.5 {
+            ui.data_mut(|data| data.insert_temp(width_id, tools));
+            ui.ctx().request_repaint();
+        }
     });
+}
+
+/// What can be done at any time.
+fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
+        actions.push(Action::AskOpen);
+    }
+    let savable = studio.encoder().is_some_and(Encoder::is_savable);
+    if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("shell.save"))
+        .on_hover_text(skin.say("shell.save_hint"))
+        .clicked()
+    {
+        actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
+    }
+    if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+        actions.push(Action::Connect(connect::Action::Open));
+    }
+    stop(ui, skin, studio, actions);
+    let settings = &studio.settings;
+    let (other, other_code) = match settings.language {
+        Language::English => (Language::German, "DE"),
+        Language::German => (Language::English, "EN"),
+    };
+    let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
+    if name(response, true, &skin.say("shell.language")).clicked() {
+        actions.push(Action::SetLanguage(other));
+    }
+    let (theme_icon, theme) = match settings.theme {
+        Theme::Dark => (icons::SUN, Theme::Light),
+        Theme::Light => (icons::MOON, Theme::Dark),
+    };
+    let theme_word = match theme {
+        Theme::Light => "shell.light",
+        Theme::Dark => "shell.dark",
+    };
+    if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
+        actions.push(Action::SetTheme(theme));
+    }
+    if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
+        views.help = !views.help;
+    }
+    if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
+        views.about = true;
+    }
 }
 
 /// The sessions, as a menu behind the name of the one that is shown.

@@ -106,9 +106,12 @@ impl Window {
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
         writing_bar(ui, skin, studio);
-        Panel::left("navigation").exact_size(148.0).frame(flat(palette.surface).inner_margin(8)).show(ui, |ui| {
-            navigation(ui, skin, studio, views, docks, actions);
-        });
+        Panel::left("navigation")
+            .exact_size(if ui.available_width() < 1000.0 { 124.0 } else { 148.0 })
+            .frame(flat(palette.surface).inner_margin(8))
+            .show(ui, |ui| {
+                navigation(ui, skin, studio, views, docks, actions);
+            });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
             docks.ui(ui, skin, studio, views, actions);
         });

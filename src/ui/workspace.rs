@@ -14,6 +14,11 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
             actions.push(Action::Connect(connect::Action::Open));
         }
+        ui.vertical_centered(|ui| {
+            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+                actions.push(Action::AskOpen);
+            }
+        });
         return;
     };
     match studio.settings.tab {
