@@ -23,8 +23,10 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
             egui::vec2(room, ui.available_height()),
             egui::Layout::right_to_left(egui::Align::Center),
             |ui| {
-                ui.set_min_width(room - ui.spacing().item_spacing.x);
-                link(ui, skin, studio);
+                ui.set_min_width((room - ui.spacing().item_spacing.x).max(0.0));
+                if room > 80.0 {
+                    link(ui, skin, studio);
+                }
             },
         );
         let tools = ui.scope(|ui| tools(ui, skin, studio, views, actions)).response.rect.width();
@@ -37,17 +39,20 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
 
 /// What can be done at any time.
 fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
+    // In a narrow window the icons have to do; their words are the tooltips.
+    let narrow = ui.ctx().content_rect().width() < 1000.0;
+    let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
+        let word = skin.say(id);
+        if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
+    };
+    if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
     let savable = studio.encoder().is_some_and(Encoder::is_savable);
-    if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("shell.save"))
-        .on_hover_text(skin.say("shell.save_hint"))
-        .clicked()
-    {
+    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(skin.say("shell.save_hint")).clicked() {
         actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
     }
-    if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+    if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::Action::Open));
     }
     stop(ui, skin, studio, actions);
@@ -82,7 +87,8 @@ fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.encoder().map_or_else(|| skin.say("shell.no_session"), Encoder::name);
-    let text = RichText::new(format!("{shown}  {}", icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
+    let text =
+        RichText::new(format!("{}  {}", shortened(&shown), icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
         ui.label(skin.caption(skin.say("shell.sessions")));
@@ -112,6 +118,12 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
         }
     });
     name(menu.response, true, &skin.say("shell.sessions"));
+}
+
+/// A name that leaves room for the rest of the header.
+fn shortened(name: &str) -> String {
+    const MOST: usize = 28;
+    if name.chars().count() <= MOST { name.to_owned() } else { name.chars().take(MOST - 1).chain(['…']).collect() }
 }
 
 fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
