@@ -10,11 +10,16 @@ const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 /// Width of the column of labels.
 pub(super) const LABELS: f32 = 132.0;
 
+/// A card with a heading.
+pub(super) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    card_with(ui, skin, title, |_| {}, content)
+}
+
 /// A card with a heading; what stands at the right of the heading comes from `aside`.
-pub(super) fn card<R>(
+pub(super) fn card_with<R>(
     ui: &mut Ui,
     skin: &Skin,
-    title: &str,
+    title: &'static str,
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
@@ -22,7 +27,7 @@ pub(super) fn card<R>(
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
             ui.horizontal(|ui| {
-                ui.label(skin.heading(title));
+                ui.label(skin.heading(skin.say(title)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
             ui.add_space(skin.space.inside);
