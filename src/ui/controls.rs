@@ -7,8 +7,15 @@ use super::{Skin, icons};
 
 /// Inside a line of text, so that it is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
+/// The least width of a dialog.
+const MODAL: f32 = 240.0;
 /// Width of the column of labels.
 pub(super) const LABELS: f32 = 132.0;
+
+/// Takes the whole width; in a window that is too small for anything there may be less than none.
+pub(super) fn fill(ui: &mut Ui) {
+    ui.set_width(ui.available_width().max(0.0));
+}
 
 /// A card with a heading.
 pub(super) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
@@ -25,7 +32,7 @@ pub(super) fn card_with<R>(
 ) -> R {
     skin.card()
         .show(ui, |ui| {
-            ui.set_width(ui.available_width());
+            fill(ui);
             ui.horizontal(|ui| {
                 ui.label(skin.heading(skin.say(title)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
@@ -59,7 +66,7 @@ pub(super) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOn
 }
 
 fn label_ui(ui: &mut Ui, skin: &Skin, label: &str) {
-    let width = LABELS.min(ui.available_width() * 0.4);
+    let width = LABELS.min(ui.available_width() * 0.4).max(0.0);
     ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
         ui.set_min_width(width);
         ui.add(egui::Label::new(skin.label(label)).truncate());
@@ -83,7 +90,7 @@ pub(super) fn modal<R>(
     egui::Modal::new(egui::Id::unique(name))
         .frame(frame)
         .show(ctx, |ui| {
-            ui.set_width(width);
+            ui.set_width(width.max(MODAL));
             content(ui)
         })
         .inner
@@ -255,7 +262,7 @@ pub(super) fn two_columns<C>(
         right(ui, &mut context);
         return;
     }
-    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor();
+    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor().max(0.0);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = skin.space.between;
         ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {

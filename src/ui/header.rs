@@ -187,7 +187,7 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
 /// The notice that stands in the window until it is read, at its foot, over everything.
 pub(super) fn notice_ui(ctx: &egui::Context, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
     let (icon, colour) = severity(skin, notice.severity);
-    let width = (ctx.content_rect().width() - 320.0).min(760.0);
+    let width = (ctx.content_rect().width() - 320.0).clamp(240.0, 760.0);
     egui::Area::new(egui::Id::unique("notice"))
         .order(egui::Order::Tooltip)
         .anchor(egui::Align2::CENTER_BOTTOM, [0.0, -skin.space.groups])

@@ -7,6 +7,7 @@ mod closing;
 mod connecting;
 mod drafts;
 mod losing;
+mod monkey;
 mod profiles;
 mod remembering;
 mod screen;

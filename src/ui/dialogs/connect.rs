@@ -12,7 +12,8 @@ use crate::device::hiperface::Echo;
 use crate::device::hiperface::find::FindOptions;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
-    LABELS, button, choice, enabled_button, entry, icon_button, modal, name, paragraph, primary, spinner, text_entry,
+    LABELS, button, choice, enabled_button, entry, fill, icon_button, modal, name, paragraph, primary, spinner,
+    text_entry,
 };
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -247,7 +248,7 @@ fn link_text(ui: &mut Ui, skin: &Skin, form: &LinkForm) {
 fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, actions: &mut Vec<Action>) {
     let running = dialog.search.as_ref().is_some_and(Search::is_running);
     skin.card().show(ui, |ui| {
-        ui.set_width(ui.available_width());
+        fill(ui);
         ui.label(skin.heading(skin.say("find.title")));
         paragraph(ui, skin.label(skin.say("find.words")));
         ui.add_enabled_ui(!running, |ui| {

@@ -101,7 +101,7 @@ fn curve(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     skin.sunken().inner_margin(4).show(ui, |ui| {
         let height = ui.available_height().max(80.0);
         if curve.points().len() < 2 {
-            ui.set_min_size(egui::vec2(ui.available_width(), height));
+            ui.set_min_size(egui::vec2(ui.available_width().max(0.0), height));
             nothing(ui, skin, &skin.say(if connected { "live.no_curve" } else { "live.nothing" }));
             return;
         }
