@@ -8,9 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms directly under `src/` and their floors.
-const ROOMS: [(&str, u8); 14] = [
+const ROOMS: [(&str, u8); 15] = [
     ("units", 1),
     ("bits", 1),
+    ("signal", 1),
     ("protocol", 2),
     ("profile", 2),
     ("link", 3),
