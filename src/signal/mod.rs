@@ -8,5 +8,7 @@ pub mod commutation;
 pub mod ellipse;
 pub mod input_circuit;
 pub mod moments;
+pub mod nonlinearity;
 pub mod quality;
+pub mod spectrum;
 pub mod synchronise;
