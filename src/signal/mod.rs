@@ -3,12 +3,15 @@
 //!
 //! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
 
+pub mod analysis;
 pub mod arctan;
 pub mod commutation;
+pub mod coverage;
 pub mod ellipse;
 pub mod input_circuit;
 pub mod moments;
 pub mod nonlinearity;
+pub mod position_error;
 pub mod quality;
 pub mod spectrum;
 pub mod synchronise;
