@@ -5,6 +5,7 @@
 
 pub mod analysis;
 pub mod arctan;
+pub mod capture;
 pub mod commutation;
 pub mod coverage;
 pub mod ellipse;

@@ -3,6 +3,7 @@
 //! No folder is made before something is written into it, and no access code is ever written.
 
 mod backups;
+mod captures;
 mod drafts;
 mod file_error;
 mod file_names;
@@ -14,6 +15,7 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 
 pub use backups::{Backup, Backups};
+pub use captures::{OnProgress, ReadCaptureError, read_capture};
 pub use drafts::Drafts;
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use files::{MAX_TEXT, read_text, write_atomically, write_in_folder};
