@@ -194,7 +194,7 @@ fn record(session: &mut Session<Hiperface>, path: &Path) -> Result<()> {
 }
 
 /// Progress on a terminal; silence elsewhere.
-struct Bar(ProgressBar);
+pub(super) struct Bar(ProgressBar);
 
 impl Default for Bar {
     fn default() -> Self {
@@ -208,7 +208,7 @@ impl Default for Bar {
 }
 
 impl Bar {
-    fn show(&self, progress: &Progress) {
+    pub(super) fn show(&self, progress: &Progress) {
         self.0.set_length(progress.total);
         self.0.set_position(progress.done);
         self.0.set_message(progress.what.clone());

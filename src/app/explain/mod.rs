@@ -2,6 +2,7 @@
 //! device stands in a module of its own.
 
 pub mod hiperface;
+pub mod signal;
 
 use std::path::Path;
 

@@ -43,12 +43,6 @@ pub enum CaptureError {
         /// Columns that there are.
         columns: usize,
     },
-    /// A column that was asked for by its name is not there.
-    #[error("it has no column named {name}")]
-    NoColumn {
-        /// The name.
-        name: String,
-    },
     /// A row ends before a column that is needed.
     #[error("row {row} has {columns} columns, {needed} are needed")]
     ShortRow {
