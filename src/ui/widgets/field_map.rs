@@ -169,7 +169,7 @@ fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>,
             response
         } else {
             // egui gives tooltips the plain numbers.
-            ui.interact(*rect, id.with(("line", number)), Sense::CLICK)
+            ui.interact(*rect, id.with("line").with(number), Sense::CLICK)
         };
         part.clicked |= response.clicked();
         part.state.hovered |= response.hovered();
