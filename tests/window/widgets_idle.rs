@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use egui::{Key, Modifiers, ViewportEvent, ViewportId};
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
 use encoder_studio::app::Severity;
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
 
 use crate::screen::Screen;
 use crate::support::PORT;

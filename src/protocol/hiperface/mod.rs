@@ -25,6 +25,9 @@ mod type_label;
 #[cfg(test)]
 mod vectors;
 
+/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+pub const KIND: &str = "hiperface";
+
 pub use address::{BROADCAST, DeviceAddress};
 pub use command::{COMMANDS, Command, CommandRow};
 pub use data_field::{

@@ -11,7 +11,7 @@ use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Ite
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::store::FileError;
+use crate::store::{FileError, LogbookError};
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -173,7 +173,7 @@ pub struct Committed {
     /// The before-image; `None` when there was nothing to write.
     pub backup: Option<PathBuf>,
     /// What the logbook could not take: the write itself is done.
-    pub logbook_warning: Option<String>,
+    pub logbook_warning: Option<LogbookError>,
 }
 
 /// A value that was read.
