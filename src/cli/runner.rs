@@ -20,7 +20,7 @@ use crate::link::{LinkError, write_entry, write_header};
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, open};
+use crate::worker::hiperface::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, open};
 use crate::worker::{Event, OpenError, Progress, Session, Worker};
 
 /// A session on its thread.
@@ -208,10 +208,10 @@ impl Default for Bar {
 }
 
 impl Bar {
-    fn show(&self, progress: &Progress) {
+    fn show(&self, progress: &Progress<Doing>) {
         self.0.set_length(progress.total);
         self.0.set_position(progress.done);
-        self.0.set_message(progress.what.clone());
+        self.0.set_message(progress.what.to_string());
     }
 }
 

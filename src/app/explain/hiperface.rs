@@ -2,7 +2,10 @@
 
 mod change;
 mod check;
+mod command;
 mod damage;
+mod doing;
+mod frame;
 mod label;
 mod op;
 mod words;
@@ -11,7 +14,10 @@ use std::path::Path;
 
 pub use change::{change, staged};
 pub use check::{finding, step, verdict};
+pub use command::command;
 pub use damage::damage;
+pub use doing::doing;
+pub use frame::frame;
 pub use label::{LabelRow, label};
 pub use op::{OpWords, op};
 pub use words::{
@@ -66,11 +72,12 @@ pub fn encoder(error: &Error) -> Text {
             let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
             Text::new(id)
                 .with("address", format!("{address:02X}h"))
-                .with("command", command.row().name)
+                .with_text("command", command::command(*command))
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
-            let text = Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries);
+            let text =
+                Text::new("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
             text.with_text("why", damage(cause))
         }
         Error::NeverSilent => Text::new("encoder.never_silent"),
@@ -78,11 +85,11 @@ pub fn encoder(error: &Error) -> Text {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
             let codes = codes.iter().copied().map(status_with_number);
-            Text::new(id).with("command", command.row().name).with_list("codes", codes)
+            Text::new(id).with_text("command", command::command(*command)).with_list("codes", codes)
         }
-        Error::Unclear { command, cause } => {
-            Text::new("encoder.unclear").with("command", command.row().name).with_text("cause", encoder(cause))
-        }
+        Error::Unclear { command, cause } => Text::new("encoder.unclear")
+            .with_text("command", command::command(*command))
+            .with_text("cause", encoder(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Moving { readings } => {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();

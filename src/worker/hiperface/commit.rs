@@ -2,7 +2,7 @@
 
 use jiff::Timestamp;
 
-use super::{Commit, Committed, Hiperface, JobError, Prepared, WEAR_LIMIT};
+use super::{Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
 use crate::device::hiperface::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::hiperface::{Error, Identity, Master, profile_of};
 use crate::profile::hiperface::{Op, Recorded, Scalar};
@@ -16,7 +16,7 @@ pub(super) fn commit(
     encoder: &mut Hiperface,
     desk: &mut Desk,
     commit: &Commit,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Committed, JobError> {
     let prepared = &commit.prepared;
     let plan = &prepared.plan;
@@ -59,7 +59,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
 struct EncoderWrite<'w, 'm> {
     master: Master<'m>,
     commit: &'w Commit,
-    tell: &'w mut dyn FnMut(Progress),
+    tell: &'w mut dyn FnMut(Progress<Doing>),
 }
 
 impl<'w> Write for EncoderWrite<'w, '_> {
@@ -79,7 +79,9 @@ impl<'w> Write for EncoderWrite<'w, '_> {
 
     fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
         let total = self.commit.prepared.plan.ops.len() as u64;
-        let progress = &mut |at: usize, op: &Op| (self.tell)(Progress { done: at as u64, total, what: op.item() });
+        let progress = &mut |at: usize, op: &Op| {
+            (self.tell)(Progress { done: at as u64, total, what: Doing::Operation(op.clone()) })
+        };
         carry_out(&mut self.master, confirmed, progress)
     }
 

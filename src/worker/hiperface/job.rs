@@ -1,13 +1,14 @@
 //! What can be asked of a HIPERFACE encoder, and what comes of it.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use crate::device::hiperface::check::Line;
-use crate::device::hiperface::find::{FindOptions, Findings, Found};
+use crate::device::hiperface::find::{Attempt, FindOptions, Findings, Found};
 use crate::device::hiperface::write::{Interrupted, Written};
 use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions, Survey};
 use crate::profile::Consent;
-use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, PlanError, RestoreOptions};
+use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RestoreOptions};
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
@@ -208,6 +209,27 @@ pub enum Remark {
     Codes(Vec<StatusCode>),
     /// An encoder that answered while one searched.
     Found(Found),
+}
+
+/// The step that a HIPERFACE job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// The data field of that number is read.
+    Field(u64),
+    /// An operation of a plan is carried out.
+    Operation(Op),
+    /// An encoder is searched.
+    Attempt(Attempt),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Field(field) => write!(f, "field:{field}"),
+            Doing::Operation(op) => f.write_str(&op.item()),
+            Doing::Attempt(attempt) => attempt.fmt(f),
+        }
+    }
 }
 
 /// What a HIPERFACE job gives.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Hiperface, JobError, Prepared, device_key};
+use super::{Change, Doing, Hiperface, JobError, Prepared, device_key};
 use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
@@ -19,7 +19,7 @@ pub(super) fn prepare(
     encoder: &mut Hiperface,
     desk: &mut Desk,
     change: Change,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
     let mut master = encoder.master(desk);
@@ -58,7 +58,7 @@ fn restore(
     prepared: &mut Prepared,
     profile: &HiperfaceProfile,
     options: RestoreOptions,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<(), JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
@@ -67,7 +67,7 @@ fn restore(
         check_device(profile, &serial_number, encoder_type)?;
     }
     let memory = read_memory(master)?;
-    let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+    let progress = &mut |done, total| tell(Progress { done, total, what: Doing::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     prepared.plan = restore.plan;
