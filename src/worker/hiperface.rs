@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 pub use commit::device_key;
 pub use job::{
-    Change, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark, SavedProfile, Value,
-    WEAR_LIMIT,
+    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark,
+    SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::open;
 

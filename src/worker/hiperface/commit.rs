@@ -41,7 +41,7 @@ pub(super) fn commit(
         Err(Failed::Refused(error)) => Err(error.into()),
         Err(Failed::NotKept(error)) => Err(JobError::NotKept(error)),
         Err(Failed::Interrupted { interrupted, backup }) => {
-            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len() })
+            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind })
         }
     }
 }

@@ -136,9 +136,33 @@ pub enum Change {
     IncrementCounter,
 }
 
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edited bytes are written: those that are not yet stay edited.
+    Bytes,
+    /// One thing, which is done or not.
+    Single,
+}
+
+impl Change {
+    /// Its kind.
+    pub fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Store(_) => ChangeKind::Bytes,
+            _ => ChangeKind::Single,
+        }
+    }
+}
+
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
     /// What would be written.
     pub plan: HiperfacePlan,
     /// The encoder it is for.
@@ -282,6 +306,8 @@ pub enum JobError {
         backup: PathBuf,
         /// Operations of the plan.
         planned: usize,
+        /// The kind of change.
+        kind: ChangeKind,
     },
 }
 

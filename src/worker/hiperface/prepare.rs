@@ -25,6 +25,7 @@ pub(super) fn prepare(
     let mut master = encoder.master(desk);
     let identity = identify(&mut master, &types)?;
     let mut prepared = Prepared {
+        kind: change.kind(),
         plan: HiperfacePlan { base: Base::default(), ops: Vec::new() },
         identity,
         cycles_seen: None,
