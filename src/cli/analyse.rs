@@ -14,13 +14,12 @@ use crate::signal::capture::Wishes;
 use crate::signal::position_error::{Basis, Samples, harmonics};
 use crate::signal::quality::Limits;
 use crate::store::read_capture;
-use crate::worker::Progress;
 
 pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let path = &arguments.file;
     let wishes = Wishes { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..Wishes::default() };
     let bar = Bar::default();
-    let mut progress = |done, total| bar.show(&Progress { done, total, what: "bytes".to_owned() });
+    let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Ctrl-C ends a command that only reads.
     let read = read_capture(path, &wishes, &AtomicBool::new(false), &mut progress);
     drop(bar);

@@ -8,6 +8,7 @@ mod drafts;
 mod file_error;
 mod file_names;
 mod files;
+mod log_file;
 mod logbook;
 
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ pub use captures::{OnProgress, ReadCaptureError, read_capture};
 pub use drafts::Drafts;
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use files::{MAX_TEXT, read_text, write_atomically, write_in_folder};
+pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
 
 use crate::protocol::hiperface::{EncoderTypes, TypeTableError};

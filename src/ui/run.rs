@@ -3,10 +3,10 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::{Window, install_fonts, log_file};
+use super::{Window, install_fonts};
 use crate::app::{Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
-use crate::store::Store;
+use crate::store::{LogFile, Store};
 
 /// Opens the window and returns when it is closed.
 ///
@@ -18,7 +18,7 @@ pub fn run(start: Start) -> Result<(), String> {
         return Err(NO_DISPLAY.to_owned());
     }
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
-    log_file::begin(&store.log_path());
+    let log = LogFile::begin(&store.log_path());
     let look = Look::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
     // The window exists only after the studio: until then nobody has to be woken.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
@@ -50,11 +50,15 @@ pub fn run(start: Start) -> Result<(), String> {
             Ok(Box::new(Shown { window: Window::new(studio, look), began: Some(began) }))
         }),
     );
-    result.map_err(|error| {
+    let result = result.map_err(|error| {
         // The words of the libraries are for programmers, with paths of the machine that built them.
         tracing::error!("{error}");
         NOT_OPENED.to_owned()
-    })
+    });
+    if let Ok(log) = log {
+        log.wait();
+    }
+    result
 }
 
 /// The window as eframe runs it.

@@ -4,9 +4,9 @@ use egui::{RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::{Skin, Views, hiperface, icons};
-use crate::app::connect;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Studio, Tab};
+use crate::app::{connect, explain};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -46,7 +46,8 @@ fn running(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
                     let what = skin.words(&running.what);
                     match &running.progress {
                         Some(progress) => {
-                            format!("{what}  {}/{}  {}", progress.done, progress.total, progress.what)
+                            let doing = skin.words(&explain::hiperface::doing(&progress.what));
+                            format!("{what}  {}/{}  {doing}", progress.done, progress.total)
                         }
                         None => what,
                     }

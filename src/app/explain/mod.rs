@@ -10,7 +10,8 @@ use super::Text;
 use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::ProfileError;
-use crate::store::{FileError, FileProblem, StoreError};
+use crate::protocol::hiperface::KIND;
+use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::worker::OpenError;
 
 /// A wire.
@@ -94,14 +95,14 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
             Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
         }
         ProfileError::Device(found) => {
-            Text::new("profile.device").with("path", path).with("found", found).with("known", "hiperface")
+            Text::new("profile.device").with("path", path).with("found", found).with("known", KIND)
         }
         error => Text::new("profile.invalid").with("path", path).with("why", error),
     }
 }
 
 /// What the logbook could not take.
-pub fn logbook(why: &str) -> Text {
+pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with("why", why)
 }
 

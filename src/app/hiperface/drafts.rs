@@ -9,6 +9,7 @@ use super::encoder::{Encoder, Source};
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
+use crate::protocol::hiperface::KIND;
 use crate::store::FileError;
 
 type Edits = Vec<(u8, usize, u8)>;
@@ -37,7 +38,7 @@ impl Encoder {
             }
             Source::Link(_) => {
                 let serial = &self.identity.as_ref()?.serial.serial_number;
-                let kind = if self.is_virtual() { "virtual" } else { "hiperface" };
+                let kind = if self.is_virtual() { "virtual" } else { KIND };
                 (!serial.is_empty()).then(|| (kind, serial.clone()))
             }
         }

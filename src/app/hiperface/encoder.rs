@@ -18,7 +18,7 @@ use crate::device::hiperface::{Identity, Survey, profile_of};
 use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
-use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, StatusCode};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, KIND, StatusCode};
 use crate::store::{Backup, Entry, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
 
@@ -310,7 +310,7 @@ impl Encoder {
         let (store, id, serial) = (services.world.store.clone(), self.id, identity.serial.serial_number.clone());
         let key = device_key(identity, self.is_virtual());
         services.tasks.run("backups", move || {
-            let backups = store.backups().list("hiperface", &serial);
+            let backups = store.backups().list(KIND, &serial);
             let writes = match store.logbook_path() {
                 path if !path.exists() => Ok(Vec::new()),
                 path => crate::store::Logbook::open(&path)

@@ -55,15 +55,14 @@ impl Encoder {
             }
             Event::Failed(id, error) => self.failed(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
-            Event::PollFailed(error) if link_is_gone(&error) => {
-                let why = explain::hiperface::job(&error).into_iter().next();
-                self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
-            }
-            Event::PollFailed(error) => {
-                let mut texts = vec![Text::new("session.poll_failed")];
-                texts.extend(explain::hiperface::job(&error));
-                services.tell(Severity::Error, texts, Some(&self.name()));
-            }
+            Event::PollFailed(error) => match explain::hiperface::loss(&error) {
+                Some(why) => self.lose(why, services),
+                None => {
+                    let mut texts = vec![Text::new("session.poll_failed")];
+                    texts.extend(explain::hiperface::job(&error));
+                    services.tell(Severity::Error, texts, Some(&self.name()));
+                }
+            },
             Event::Lost(error) => self.lose(explain::link(&error), services),
         }
     }
@@ -104,8 +103,7 @@ impl Encoder {
                 }
             }
             HiperfaceOutput::Committed(committed) => {
-                let text = Text::new("session.written").with("cycles", committed.written.write_cycles);
-                let mut texts = vec![text];
+                let mut texts = vec![explain::hiperface::written(&committed.written)];
                 if let Some(why) = &committed.logbook_warning {
                     texts.push(explain::logbook(why));
                 }
@@ -187,7 +185,7 @@ impl Encoder {
             return;
         }
         self.save_to = None;
-        let gone = link_is_gone(error);
+        let gone = explain::hiperface::loss(error);
         let begun = matches!(error, JobError::Interrupted { .. });
         match &mut self.review {
             Some(review) if matches!(review.state, ReviewState::Planning | ReviewState::Writing(_)) => {
@@ -195,11 +193,11 @@ impl Encoder {
                 services.note(Severity::Error, texts, Some(&self.name()));
             }
             // That is told below.
-            _ if gone => {}
+            _ if gone.is_some() => {}
             _ => services.tell(Severity::Error, texts, Some(&self.name())),
         }
-        if gone {
-            self.lose(first, services);
+        if let Some(why) = gone {
+            self.lose(why, services);
         } else if begun {
             self.submit(HiperfaceJob::Survey, services);
         }
@@ -220,14 +218,5 @@ impl Encoder {
         if begun {
             self.submit(HiperfaceJob::Survey, services);
         }
-    }
-}
-
-/// The wire itself failed, so that nothing more can be asked over it.
-fn link_is_gone(error: &JobError) -> bool {
-    match error {
-        JobError::Device(Error::Link(_)) => true,
-        JobError::Interrupted { interrupted, .. } => matches!(interrupted.cause, Error::Link(_)),
-        _ => false,
     }
 }

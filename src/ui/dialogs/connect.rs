@@ -271,7 +271,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
             if let Some(progress) = dialog.search.as_ref().and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(skin.mono(&progress.what).color(skin.palette.muted));
+                ui.label(skin.mono(skin.words(&words::doing(&progress.what))).color(skin.palette.muted));
             }
         });
         if let Some(search) = &dialog.search {

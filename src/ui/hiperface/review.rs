@@ -3,7 +3,7 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState, review as plan};
-use crate::app::{Action, Text};
+use crate::app::{Action, explain};
 use crate::ui::controls::{enabled_button, modal, paragraph, primary, row, spinner};
 use crate::ui::{Skin, icons};
 use crate::worker::hiperface::{Committed, Prepared};
@@ -186,16 +186,14 @@ fn options(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
 
 fn done(ui: &mut Ui, skin: &Skin, prepared: &Prepared, committed: &Committed) {
     operations(ui, skin, prepared, Some(usize::MAX));
-    let written = &committed.written;
     ui.horizontal(|ui| {
         ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
-        let text = Text::new("review.verified").with("verified", written.verified).with("cycles", written.write_cycles);
-        ui.label(skin.words(&text));
+        ui.label(skin.words(&explain::hiperface::verified(&committed.written)));
     });
     if let Some(backup) = &committed.backup {
         row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
     }
     if let Some(why) = &committed.logbook_warning {
-        remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&crate::app::explain::logbook(why)));
+        remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&explain::logbook(why)));
     }
 }
