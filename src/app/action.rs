@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use super::connect;
 use super::hiperface;
+use super::keep::SettingsRead;
 use super::studio::{SessionId, Tab};
 use super::{Language, Text, Theme};
-use crate::link::{LinkError, PortInfo};
+use crate::link::LinkError;
 use crate::profile::{Document, ProfileError};
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{FileError, StoreError};
@@ -63,6 +64,8 @@ pub enum Done {
     Opened {
         /// For whom.
         session: SessionId,
+        /// Which attempt of that session: only its latest counts.
+        attempt: u32,
         /// The session on its thread.
         result: Result<Box<Opened>, Box<OpenFailed>>,
     },
@@ -74,11 +77,13 @@ pub enum Done {
         result: Result<Box<Opened>, Box<OpenFailed>>,
     },
     /// The serial ports of this machine.
-    Ports(Result<Vec<PortInfo>, LinkError>),
+    Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
     Read {
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
         /// The table of encoder types.
@@ -90,13 +95,21 @@ pub enum Done {
         session: SessionId,
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What was to be in it.
         document: Box<Document>,
+        /// What is not in it.
+        remarks: Vec<Text>,
         /// How it went.
         result: Result<(), FileError>,
     },
-    /// The disk has had time enough to keep what is to be kept before the window closes.
-    ClosingTakesLong,
+    /// What closing waits for has had time enough.
+    Waited(Waited),
+    /// A session that was let go has ended.
+    Left,
+    /// The settings were read, later than the start could wait for them.
+    SettingsRead(SettingsRead),
     /// The settings were kept.
     SettingsKept(Result<(), FileError>),
     /// About one session in the HIPERFACE tab.
@@ -107,12 +120,27 @@ pub enum Done {
 pub struct Opened {
     /// The session.
     pub(super) worker: Worker<Hiperface>,
+    /// Where it talks.
+    pub(super) url: crate::link::LinkUrl,
     /// Its trace.
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     /// The device lives in this process.
     pub(super) is_virtual: bool,
     /// When its clock began.
     pub(super) began: jiff::Zoned,
+    /// Who waits for the wire waits until this is dropped.
+    pub(super) turn: crossbeam_channel::Sender<()>,
+}
+
+/// What has had time enough before the window closes; the later ones include those before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Waited {
+    /// The disk.
+    Disk,
+    /// Jobs that write nothing.
+    Jobs,
+    /// Writes.
+    Writes,
 }
 
 /// Why there is no session.
@@ -122,6 +150,8 @@ pub enum OpenFailed {
     Link(OpenError),
     /// No thread for it.
     Thread(String),
+    /// Whoever held the wire does not let go of it.
+    Held,
 }
 
 /// Why a profile cannot be read.

@@ -1,5 +1,6 @@
 //! Keeping the settings: written on a thread when they have changed, one write at a time.
 
+use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
 
@@ -17,37 +18,88 @@ const PATIENCE: Duration = Duration::from_millis(300);
 #[derive(Debug)]
 pub(super) struct Keeper {
     kept: Settings,
+    /// The file has been read, or put aside: before that nothing is written over it.
+    may_write: bool,
     busy: bool,
     told: bool,
 }
 
+/// What came of reading the settings.
+#[derive(Debug)]
+pub enum SettingsRead {
+    /// They are as the program writes them.
+    Whole(Box<Settings>),
+    /// There are none yet.
+    Missing,
+    /// The file is broken: what could be read of it, and where it was put.
+    Broken {
+        /// What could be read.
+        settings: Box<Settings>,
+        /// The file.
+        path: PathBuf,
+        /// Where it is kept, or why it is not.
+        aside: Result<PathBuf, String>,
+    },
+    /// The file cannot be read at all.
+    Unreadable(FileError),
+}
+
 impl Keeper {
-    /// Reads the settings. A file that cannot be understood is told and left until something changes.
+    /// Reads the settings. A disk that does not answer at once comes back as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let path = services.world.store.settings_path();
-        let (sender, read) = bounded(1);
-        // A disk that does not answer must not hold up the start; without a thread there is no answer either.
-        let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || sender.send(read_text(&path)));
-        let Ok(read) = read.recv_timeout(PATIENCE) else {
-            services.tell(Severity::Warning, vec![Text::new("session.settings_broken")], None);
-            return (Settings::default(), Keeper { kept: Settings::default(), busy: false, told: false });
-        };
-        let settings = match read {
-            Ok(text) => Settings::parse(&text).unwrap_or_else(|| {
-                services.tell(Severity::Warning, vec![Text::new("session.settings_broken")], None);
-                Settings::default()
-            }),
-            Err(FileError { problem: FileProblem::NotFound, .. }) => Settings::default(),
-            Err(error) => {
-                services.tell(Severity::Warning, vec![explain::file(&error)], None);
+        let mailbox = services.tasks.mailbox();
+        // Handed over from hand to hand: what nobody takes any more goes into the mailbox.
+        let (sender, receiver) = bounded(0);
+        let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
+            if let Err(late) = sender.send(read(path)) {
+                mailbox.send(Action::Done(Done::SettingsRead(late.into_inner())));
+            }
+        });
+        let mut settings = Settings::default();
+        let mut keeper = Keeper { kept: settings.clone(), may_write: false, busy: false, told: false };
+        match receiver.recv_timeout(PATIENCE) {
+            Ok(read) => keeper.take(read, &mut settings, services),
+            Err(_) => {
+                drop(receiver);
+                services.tell(Severity::Warning, vec![Text::new("session.settings_slow")], None);
+            }
+        }
+        (settings, keeper)
+    }
+
+    /// Takes over what was read; what the user has set meanwhile stays.
+    pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
+        let found = match read {
+            SettingsRead::Whole(found) => {
+                self.may_write = true;
+                *found
+            }
+            SettingsRead::Missing => {
+                self.may_write = true;
                 Settings::default()
             }
+            SettingsRead::Broken { settings, path, aside } => {
+                let text = match &aside {
+                    Ok(aside) => Text::new("session.settings_broken").with("aside", aside.display()),
+                    Err(why) => Text::new("session.settings_left").with("why", why),
+                };
+                services.tell(Severity::Warning, vec![text.with("path", path.display())], None);
+                self.may_write = aside.is_ok();
+                *settings
+            }
+            SettingsRead::Unreadable(error) => {
+                let text = Text::new("session.settings_unread").with_text("why", explain::file(&error));
+                services.tell(Severity::Warning, vec![text], None);
+                return;
+            }
         };
-        (settings.clone(), Keeper { kept: settings, busy: false, told: false })
+        self.kept = found.clone();
+        settings.stand_on(found);
     }
 
     pub(super) fn keep(&mut self, settings: &Settings, services: &Services) {
-        if self.busy || *settings == self.kept {
+        if self.busy || !self.may_write || *settings == self.kept {
             return;
         }
         self.kept = settings.clone();
@@ -72,4 +124,25 @@ impl Keeper {
     pub(super) fn is_idle(&self) -> bool {
         !self.busy
     }
+}
+
+/// Reads the settings, and puts a broken file aside: as it is, beside itself.
+fn read(path: PathBuf) -> SettingsRead {
+    let settings = match read_text(&path) {
+        Ok(text) => match Settings::parse(&text) {
+            Some(settings) => return SettingsRead::Whole(Box::new(settings)),
+            None => Settings::salvage(&text),
+        },
+        Err(FileError { problem: FileProblem::NotFound, .. }) => return SettingsRead::Missing,
+        Err(FileError { problem: FileProblem::NotUtf8 { .. } | FileProblem::TooLarge { .. }, .. }) => {
+            Settings::default()
+        }
+        Err(error) => return SettingsRead::Unreadable(error),
+    };
+    let mut aside = path.clone().into_os_string();
+    aside.push(".broken");
+    let aside = PathBuf::from(aside);
+    let copied = std::fs::copy(&path, &aside);
+    let aside = copied.map(|_| aside).map_err(|error| error.to_string());
+    SettingsRead::Broken { settings: Box::new(settings), path, aside }
 }

@@ -33,7 +33,6 @@ pub struct Line<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
     running: Option<Running<D::Doing>>,
-    polling: Option<Duration>,
     /// The device lives in this process.
     pub is_virtual: bool,
 }
@@ -42,7 +41,7 @@ impl Line<Hiperface> {
     /// Takes over what was opened.
     pub(super) fn new(opened: Opened) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
-        Line { worker, trace, running: None, polling: None, is_virtual }
+        Line { worker, trace, running: None, is_virtual }
     }
 }
 
@@ -64,19 +63,17 @@ impl<D: Device> Line<D> {
 
     /// How often samples are taken; `None`: not at all.
     pub fn polling(&self) -> Option<Duration> {
-        self.polling
+        self.worker.polling()
     }
 
     /// Takes samples from now on, or no more.
     pub(super) fn poll(&mut self, interval: Option<Duration>) {
-        self.polling = interval;
         self.worker.poll(interval);
     }
 
     /// Ends what runs, live samples included.
     pub(super) fn stop(&mut self) {
         self.worker.stop();
-        self.polling = None;
         if let Some(running) = &mut self.running {
             running.stopping = true;
         }
@@ -92,10 +89,14 @@ impl<D: Device> Line<D> {
                 }
             }
             Event::Finished(..) | Event::Failed(..) | Event::Cancelled(..) => self.running = None,
-            Event::PollFailed(_) => self.polling = None,
-            Event::Started(_) | Event::Remark(_) | Event::Lost(_) => {}
+            Event::PollFailed(_) | Event::Started(_) | Event::Remark(_) | Event::Lost(_) => {}
         }
         Some(event)
+    }
+
+    /// The thread has ended without being let go, and has told all that it had to.
+    pub(super) fn is_dead(&self) -> bool {
+        self.worker.is_ended() && self.worker.events().is_empty()
     }
 
     /// Samples since the last time, and how many were dropped.

@@ -6,6 +6,7 @@ pub mod connect;
 pub mod explain;
 pub mod hiperface;
 mod keep;
+mod leaving;
 mod line;
 mod look;
 mod notices;
@@ -18,6 +19,8 @@ mod texts;
 mod trace;
 
 pub use action::{Action, Done, FileQuestion, Question};
+pub use keep::SettingsRead;
+pub use leaving::Patience;
 pub use line::{Line, Running};
 pub use look::{Look, Palette, Rgb, Spaces, TextSizes};
 pub use notices::{Log, Notice, Severity};

@@ -45,8 +45,10 @@ impl Log {
 
     /// Adds a notice; it stands in the window until another comes or it is dismissed.
     pub fn add(&mut self, notice: Notice) {
-        // A note is read in passing; it does not push away what somebody has to read.
-        if notice.severity > Severity::Note || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good) {
+        // What went well is read in passing; it does not push away what somebody has to read.
+        if notice.severity >= Severity::Warning
+            || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good)
+        {
             self.standing = Some(notice.clone());
         }
         self.keep(notice);
@@ -75,6 +77,15 @@ impl Log {
         self.standing.as_ref()
     }
 
+    /// What stands in the window is true no more, where it is this text about this session.
+    pub(super) fn settle(&mut self, id: &str, about: &str) {
+        let is_it =
+            |notice: &Notice| notice.about.as_deref() == Some(about) && notice.texts.iter().any(|text| text.id() == id);
+        if self.standing.as_ref().is_some_and(is_it) {
+            self.standing = None;
+        }
+    }
+
     /// It has been read.
     pub fn dismiss(&mut self) {
         self.standing = None;
@@ -86,5 +97,47 @@ fn terminal(notice: &Notice) -> String {
     match &notice.about {
         Some(about) => format!("{about}: {}", words.join(" ")),
         None => words.join(" "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_went_well_does_not_push_away_what_somebody_has_to_read() {
+        let notice = |severity| Notice { at: Zoned::now(), severity, texts: vec![Text::new("x")], about: None };
+        let cases = [
+            (Severity::Note, Severity::Good, true),
+            (Severity::Good, Severity::Note, true),
+            (Severity::Warning, Severity::Good, false),
+            (Severity::Error, Severity::Good, false),
+            (Severity::Error, Severity::Note, false),
+            (Severity::Good, Severity::Warning, true),
+            (Severity::Error, Severity::Warning, true),
+        ];
+        for (old, new, replaced) in cases {
+            let mut log = Log::default();
+            log.add(notice(old));
+            log.add(notice(new));
+            assert_eq!(
+                log.standing().map(|own| own.severity),
+                Some(if replaced { new } else { old }),
+                "{old:?} {new:?}"
+            );
+            assert_eq!(log.notices().len(), 2);
+        }
+    }
+
+    #[test]
+    fn what_is_true_no_more_stands_no_more() {
+        let mut log = Log::default();
+        let texts = vec![Text::new("session.not_connected")];
+        log.add(Notice { at: Zoned::now(), severity: Severity::Warning, texts, about: Some("one".to_owned()) });
+        log.settle("session.busy", "one");
+        log.settle("session.not_connected", "other");
+        assert!(log.standing().is_some());
+        log.settle("session.not_connected", "one");
+        assert!(log.standing().is_none() && log.notices().len() == 1);
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use jiff::Zoned;
 
 use super::action::FileQuestion;
+use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
@@ -32,6 +33,8 @@ pub struct World {
     pub codes: Vec<(CodeNumber, AccessCode)>,
     /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
+    /// How long closing waits.
+    pub patience: Patience,
 }
 
 impl World {
@@ -43,6 +46,7 @@ impl World {
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),
+            patience: Patience::default(),
         }
     }
 }
@@ -88,6 +92,12 @@ pub struct Services {
     jobs: VecDeque<JobRecord>,
     /// A file that the user is asked for.
     pub(super) file_question: Option<FileQuestion>,
+    /// Sessions that were let go and have not ended.
+    pub(super) leaving: Vec<Leaving>,
+    /// Profiles that are being read.
+    pub(super) opening_files: Vec<std::path::PathBuf>,
+    /// Drafts that are on their way to the disk.
+    pub(super) drafts_on_their_way: usize,
 }
 
 impl Services {
@@ -95,7 +105,9 @@ impl Services {
 
     pub(super) fn new(world: World, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
-        Services { world, tasks: Tasks::new(wake), log, jobs, file_question: None }
+        let (tasks, leaving) = (Tasks::new(wake), Vec::new());
+        let opening_files = Vec::new();
+        Services { world, tasks, log, jobs, file_question: None, leaving, opening_files, drafts_on_their_way: 0 }
     }
 
     /// The time of day.

@@ -56,6 +56,42 @@ impl Settings {
         ron::from_str(text).ok()
     }
 
+    /// What can be read of a text that [`parse`](Self::parse) refuses, each entry by itself: a tab that this program does
+    /// not know costs nobody his links.
+    pub(super) fn salvage(text: &str) -> Self {
+        macro_rules! entry {
+            ($name:ident: $type:ty, $usual:expr) => {{
+                #[derive(Deserialize)]
+                struct Own {
+                    $name: $type,
+                }
+                ron::from_str::<Own>(text).map_or($usual, |own| own.$name)
+            }};
+        }
+        let usual = Settings::default();
+        Settings {
+            theme: entry!(theme: Theme, usual.theme),
+            language: entry!(language: Language, usual.language),
+            links: entry!(links: Vec<String>, usual.links),
+            layout: entry!(layout: Option<String>, usual.layout),
+            tab: entry!(tab: Tab, usual.tab),
+            size: entry!(size: Option<(u32, u32)>, usual.size),
+        }
+    }
+
+    /// Takes over what was found on disk wherever nothing was set since the start.
+    pub(super) fn stand_on(&mut self, found: Settings) {
+        let usual = Settings::default();
+        let since = std::mem::replace(self, found);
+        macro_rules! keep {
+            ($($name:ident),*) => { $(if since.$name != usual.$name { self.$name = since.$name; })* };
+        }
+        keep!(theme, language, layout, tab, size);
+        for link in since.links.iter().rev() {
+            self.use_link(link);
+        }
+    }
+
     /// The settings as text.
     pub fn emit(&self) -> String {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
@@ -87,6 +123,31 @@ mod tests {
         assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(Theme::Light));
         assert_eq!(Settings::parse("(theme: Mauve)"), None);
         assert_eq!(Settings::parse(""), None);
+    }
+
+    #[test]
+    fn what_can_be_read_of_broken_settings_is_kept() {
+        let mut settings = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
+        settings.use_link("serial:/dev/ttyUSB0");
+        let broken = settings.emit().replace("tab: Hiperface", "tab: Gearbox");
+        assert_eq!(Settings::parse(&broken), None);
+        assert_eq!(Settings::salvage(&broken), settings);
+        assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, Theme::Light);
+        assert_eq!(Settings::salvage("no settings"), Settings::default());
+    }
+
+    #[test]
+    fn what_was_set_since_the_start_stays() {
+        let mut found = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
+        found.use_link("tcp:host:1");
+        let mut settings = Settings { language: Language::German, ..Settings::default() };
+        settings.use_link("sim:");
+        settings.stand_on(found);
+        assert_eq!(
+            (settings.theme, settings.language, settings.size),
+            (Theme::Light, Language::German, Some((1500, 900)))
+        );
+        assert_eq!(settings.links(), ["sim:", "tcp:host:1"]);
     }
 
     #[test]

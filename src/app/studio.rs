@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Done, FileQuestion, Question, ReadError, Then};
+use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waited};
 use super::connect::{self, Connect};
-use super::hiperface::{self, Encoder, Source};
+use super::hiperface::{self, Encoder, Phase, Source};
 use super::keep::Keeper;
 use super::services::{JobEnd, Services, World};
 use super::tasks::{Mailbox, Wake};
@@ -12,7 +12,7 @@ use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::protocol::hiperface::EncoderTypes;
-use crate::store::{Store, StoreError, read_text};
+use crate::store::{Store, StoreError, read_file};
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -41,7 +41,7 @@ pub struct Studio {
     next_id: u32,
     keeper: Keeper,
     closing: bool,
-    patience_is_over: bool,
+    waited: Option<Waited>,
     path_question: Option<FileQuestion>,
 }
 
@@ -60,7 +60,7 @@ impl Studio {
             next_id: 0,
             keeper,
             closing: false,
-            patience_is_over: false,
+            waited: None,
             path_question: None,
         }
     }
@@ -97,6 +97,7 @@ impl Studio {
             Action::AskOpen => self.services.file_question = Some(FileQuestion::Open),
             Action::Open(path) => {
                 let store = self.services.world.store.clone();
+                self.services.opening_files.push(path.clone());
                 self.services.tasks.run("open", move || read_document(path, &store));
             }
             Action::FileNotChosen => {}
@@ -122,13 +123,14 @@ impl Studio {
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.pump();
         }
+        self.services.pump_leaving();
         self.keep();
     }
 
     fn keep(&mut self) {
         self.keeper.keep(&self.settings, &self.services);
         for encoder in &mut self.encoders {
-            encoder.keep_draft(&self.services);
+            encoder.keep_draft(&mut self.services);
         }
     }
 
@@ -147,6 +149,11 @@ impl Studio {
         self.path_question.take()
     }
 
+    /// Profiles that are being read from the disk.
+    pub fn opening_files(&self) -> &[PathBuf] {
+        &self.services.opening_files
+    }
+
     /// All encoders, in the order in which they came.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
@@ -160,8 +167,11 @@ impl Studio {
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let active =
-            |encoder: &Encoder| encoder.is_busy() || encoder.line().is_some_and(|line| line.polling().is_some());
+        let active = |encoder: &Encoder| {
+            encoder.phase == Phase::Opening
+                || encoder.is_busy()
+                || encoder.line().is_some_and(|line| line.polling().is_some())
+        };
         self.encoders.iter().any(active) || self.search().is_some_and(connect::Search::is_running)
     }
 
@@ -170,10 +180,18 @@ impl Studio {
         self.encoders.iter().any(|encoder| encoder.line().is_some_and(|line| line.polling().is_some()))
     }
 
-    /// The window may close now: nothing runs any more, and what is to be kept is on disk or the disk does not answer.
+    /// The window may close now: nothing runs any more, not even in sessions that were let go, and what is to be kept is
+    /// on disk; or it has had time enough.
     pub fn may_close(&self) -> bool {
-        let kept = self.keeper.is_idle() && self.encoders.iter().all(Encoder::is_draft_kept);
-        self.closing && !self.encoders.iter().any(Encoder::is_busy) && (kept || self.patience_is_over)
+        let services = &self.services;
+        let drafts = services.drafts_on_their_way == 0 && self.encoders.iter().all(Encoder::is_draft_kept);
+        let writes = services.leaves_writing() || self.encoders.iter().any(Encoder::is_writing);
+        let runs = !services.leaving.is_empty() || self.encoders.iter().any(Encoder::is_busy);
+        let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
+        self.closing
+            && over(Waited::Writes, !writes)
+            && over(Waited::Jobs, !runs)
+            && over(Waited::Disk, drafts && self.keeper.is_idle())
     }
 
     fn search(&self) -> Option<&connect::Search> {
@@ -189,7 +207,7 @@ impl Studio {
         SessionId(self.next_id)
     }
 
-    pub(super) fn new_search(&mut self) -> u32 {
+    pub(super) fn new_number(&mut self) -> u32 {
         self.next_id += 1;
         self.next_id
     }
@@ -217,55 +235,78 @@ impl Studio {
 
     fn done(&mut self, done: Done) {
         match done {
-            Done::Opened { session, result } => self.opened(session, result),
+            Done::Opened { session, attempt, result } => self.opened(session, attempt, result),
             Done::OpenedForSearch { number, result } => {
                 let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
-                // One that was ended while it opened has no use for it: dropping ends its thread.
-                if let Some(search) = search.filter(|search| search.number == number && search.is_running()) {
-                    search.opened(result, &self.services);
+                match (search.filter(|search| search.number == number && search.is_running()), result) {
+                    (Some(search), result) => search.opened(result, &self.services),
+                    // One that was ended while it opened has no use for it.
+                    (None, Ok(opened)) => self.turn_away(*opened, SessionId(number)),
+                    (None, Err(_)) => {}
                 }
             }
             Done::Ports(ports) => {
-                let links = self.settings.links();
                 if let Some(connect) = &mut self.connect {
-                    let ports = ports.map(|ports| connect::offered_ports(&ports, links));
                     connect.ports = Some(ports.map_err(|error| explain::link(&error)));
                 }
             }
-            Done::Read { path, result, types } => self.read(path, result, types),
-            Done::ClosingTakesLong => self.patience_is_over = true,
-            Done::Written { session, path, document, result } => {
-                self.with_encoder(session, |encoder, services| encoder.written(path, *document, result, services));
+            Done::Read { path, key, result, types } => self.read(path, key, result, types),
+            Done::Waited(what) => self.waited = self.waited.max(Some(what)),
+            // That was to be looked at.
+            Done::Left => {}
+            Done::Written { session, path, key, document, remarks, result } => {
+                self.with_encoder(session, |encoder, services| {
+                    encoder.written((path, key), *document, remarks, result, services);
+                })
             }
+            Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => {
                 if let Some(text) = self.keeper.kept(result) {
                     self.services.tell(Severity::Warning, vec![text], None);
                 }
             }
-            Done::Hiperface(id, done) => self.with_encoder(id, |encoder, services| encoder.done(done, services)),
+            Done::Hiperface(id, done) => self.done_for_encoder(id, done),
         }
+    }
+
+    fn done_for_encoder(&mut self, id: SessionId, done: hiperface::Done) {
+        if let hiperface::Done::DraftKept { result, .. } = &done {
+            self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
+            if let Err(error) = result
+                && !self.encoders.iter().any(|encoder| encoder.id == id)
+            {
+                let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
+                self.services.tell(Severity::Warning, vec![text], None);
+            }
+        }
+        self.with_encoder(id, |encoder, services| encoder.done(done, services));
     }
 
     fn read(
         &mut self,
         path: PathBuf,
+        key: String,
         result: Result<Box<Document>, ReadError>,
         types: Result<EncoderTypes, StoreError>,
     ) {
+        let opening = &mut self.services.opening_files;
+        if let Some(at) = opening.iter().position(|own| *own == path) {
+            opening.remove(at);
+        }
         match result {
             Ok(document) => {
                 let known = self
                     .encoders
                     .iter()
-                    .find(|encoder| matches!(&encoder.source, Source::File { path: own, .. } if *own == path))
+                    .find(|encoder| matches!(&encoder.source, Source::File { key: own, .. } if *own == key))
                     .map(|encoder| encoder.id);
                 let id = known.unwrap_or_else(|| self.new_id());
                 self.shown = Some(id);
                 if known.is_some() {
-                    self.with_encoder(id, |encoder, _| encoder.take_document(path, *document));
+                    self.with_encoder(id, |encoder, _| encoder.take_document(path, key, *document));
                 } else {
                     let types = self.services.encoder_types(types);
-                    let encoder = Encoder::in_file(id, path, *document, &types, &self.services);
+                    let encoder = Encoder::in_file(id, (path, key), *document, &types, &self.services);
                     self.encoders.push(encoder);
                 }
             }
@@ -275,7 +316,7 @@ impl Studio {
 
     fn stop(&mut self) {
         for encoder in &mut self.encoders {
-            encoder.stop();
+            encoder.stop(&mut self.services);
         }
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.stop();
@@ -290,7 +331,8 @@ impl Studio {
             self.stop();
             return;
         }
-        if self.connect.take().is_some() {
+        if self.connect.is_some() {
+            self.close_dialog();
             return;
         }
         if let Some(id) = self.shown
@@ -315,10 +357,9 @@ impl Studio {
     }
 
     fn remove(&mut self, id: SessionId) {
-        // Dropping its worker ends its thread.
         self.with_encoder(id, |encoder, services| {
             encoder.leave_draft(services);
-            drop(encoder.let_go(JobEnd::Cancelled, services));
+            encoder.let_go(JobEnd::Cancelled, services);
         });
         self.encoders.retain(|encoder| encoder.id != id);
         if self.shown == Some(id) {
@@ -339,11 +380,17 @@ impl Studio {
     }
 
     fn begin_to_close(&mut self) {
-        self.closing = true;
-        self.services.tasks.run("close", || {
-            std::thread::sleep(DISK);
-            Action::Done(Done::ClosingTakesLong)
-        });
+        if std::mem::replace(&mut self.closing, true) {
+            return;
+        }
+        let patience = self.services.world.patience;
+        let limits = [(Waited::Disk, patience.disk), (Waited::Jobs, patience.job), (Waited::Writes, patience.write)];
+        for (what, limit) in limits {
+            self.services.tasks.run("close", move || {
+                std::thread::sleep(limit);
+                Action::Done(Done::Waited(what))
+            });
+        }
     }
 
     fn confirm(&mut self) {
@@ -358,16 +405,17 @@ impl Studio {
     }
 }
 
-/// How long closing waits for the disk.
-const DISK: std::time::Duration = std::time::Duration::from_secs(3);
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
     let result = read_profile(&path).map(Box::new);
-    Action::Done(Done::Read { path, result, types: store.encoder_types() })
+    let key = hiperface::file_key(&path);
+    // Where there is no profile, nobody waits for the table.
+    let types = if result.is_ok() { store.encoder_types() } else { Ok(EncoderTypes::built_in()) };
+    Action::Done(Done::Read { path, key, result, types })
 }
 
 pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
-    let text = read_text(path).map_err(ReadError::File)?;
+    let text = read_file(path).map_err(ReadError::File)?;
     Document::parse(&text).map_err(ReadError::Profile)
 }
 

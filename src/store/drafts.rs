@@ -1,7 +1,7 @@
 //! Drafts: what a user has begun and not yet written into a device, so that neither a crash nor a pulled cable takes it.
 //! One file each; what the text says is the caller's, and access codes are not to be in it.
 
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::PathBuf;
 
 use super::file_error::{FileError, FileProblem, FileTask};
@@ -9,6 +9,12 @@ use super::file_names::{Case, safe_name};
 use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
+
+/// The right to keep a draft, which nobody else has while this lives; the system takes it back from a program that ends.
+#[derive(Debug)]
+pub struct Claim {
+    _locked: File,
+}
 
 /// The folder of drafts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,6 +43,28 @@ impl Drafts {
             Ok(text) => Ok(Some(text)),
             Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
             Err(error) => Err(error),
+        }
+    }
+
+    /// Claims a draft; `None` where it is claimed already, in this program or another.
+    ///
+    /// # Errors
+    /// Where no file can be made to lock.
+    pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
+        // Beside the drafts: whoever lists those finds nothing else.
+        let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
+        create_folder(&folder)?;
+        let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));
+        let failed = |error: std::io::Error| FileProblem::from(error).of(FileTask::Write, &path);
+        let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => Ok(Some(Claim { _locked: file })),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            // A disk that knows no locks.
+            Err(TryLockError::Error(error)) if error.kind() == std::io::ErrorKind::Unsupported => {
+                Ok(Some(Claim { _locked: file }))
+            }
+            Err(TryLockError::Error(error)) => Err(failed(error)),
         }
     }
 
@@ -87,6 +115,17 @@ mod tests {
         drafts.remove("hiperface", "GB0450179").unwrap();
         assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(None));
         assert_eq!(drafts.remove("hiperface", "GB0450179"), Ok(()));
+    }
+
+    #[test]
+    fn a_draft_is_claimed_once() {
+        let (_root, drafts) = drafts();
+        let claim = drafts.claim("hiperface", "1").unwrap();
+        assert!(claim.is_some());
+        assert!(drafts.claim("hiperface", "1").unwrap().is_none());
+        assert!(drafts.claim("hiperface", "2").unwrap().is_some());
+        drop(claim);
+        assert!(drafts.claim("hiperface", "1").unwrap().is_some());
     }
 
     #[test]

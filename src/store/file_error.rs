@@ -58,6 +58,9 @@ pub enum FileProblem {
     /// A folder stands where the file should be.
     #[error("it is a folder")]
     IsFolder,
+    /// It is a pipe or a device.
+    #[error("it is no file but a pipe or a device")]
+    NotAFile,
     /// There is such a file, and it was not to be replaced.
     #[error("it exists already")]
     Exists,

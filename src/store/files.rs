@@ -72,6 +72,17 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
+/// Reads a text as [`read_text`] does, but only from a file: a pipe that nobody fills would be waited for for ever.
+///
+/// # Errors
+/// As [`read_text`]; or it is a pipe or a device.
+pub fn read_file(path: &Path) -> Result<String, FileError> {
+    match fs::metadata(path) {
+        Ok(found) if !found.is_file() && !found.is_dir() => Err(FileProblem::NotAFile.of(FileTask::Read, path)),
+        _ => read_text(path),
+    }
+}
+
 /// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, as some editors leave it, is no part of it.
 ///
 /// # Errors

@@ -131,7 +131,7 @@ fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let (filled, colour) = match &encoder.phase {
         Phase::Connected => (true, palette.good),
         Phase::Opening => (false, palette.accent),
-        Phase::Lost(_) => (false, palette.bad),
+        Phase::Lost(_) | Phase::Silent(_) => (false, palette.bad),
         Phase::Offline => (false, palette.muted),
     };
     dot(ui, filled, colour);
@@ -149,6 +149,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         Phase::Connected => ("shell.connected", palette.good),
         Phase::Opening => ("shell.opening", palette.accent),
         Phase::Lost(_) => ("shell.lost", palette.bad),
+        Phase::Silent(_) => ("shell.silent", palette.bad),
         Phase::Offline => ("shell.offline", palette.muted),
     };
     ui.label(RichText::new(skin.say(id)).color(colour));

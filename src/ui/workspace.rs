@@ -72,7 +72,7 @@ fn running(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
 
 /// Why there is no connection, and the way back.
 fn lost(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Phase::Lost(why) = &encoder.phase else { return };
+    let (Phase::Lost(why) | Phase::Silent(why)) = &encoder.phase else { return };
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal_top(|ui| {
@@ -83,7 +83,19 @@ fn lost(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) 
             if encoder.staged.is_dirty() {
                 ui.label(RichText::new(skin.say("shell.edits_kept")).color(skin.palette.staged));
             }
-            if button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
+            let silent = matches!(encoder.phase, Phase::Silent(_));
+            if silent
+                && super::controls::enabled_button(
+                    ui,
+                    encoder.is_readable(),
+                    icons::ARROW_CLOCKWISE,
+                    &skin.say("memory.read"),
+                )
+                .clicked()
+            {
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
+            }
+            if !silent && button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
                 actions.push(Action::Hiperface(encoder.id, Hiperface::Reconnect));
             }
             if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {

@@ -10,7 +10,7 @@ use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
 use encoder_studio::app::{Action, Severity, Theme};
 use encoder_studio::device::hiperface::find::FindOptions;
 
-use crate::support::{Desk, HANGING, PORT, is_review};
+use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 
 /// A pipe that nobody reads or writes: whoever opens it waits for ever.
 fn pipe(path: &Path) {
@@ -37,6 +37,25 @@ fn a_link_that_hangs_holds_nobody_up() {
     assert_eq!(desk.studio.settings.links(), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.may_close());
+}
+
+#[test]
+fn opening_can_be_cancelled_and_what_comes_late_is_dropped() {
+    for stop in [|| Action::Stop, || Action::Escape] {
+        let mut desk = Desk::fresh("");
+        desk.open(SLOW);
+        desk.settle();
+        assert!(desk.studio.can_stop());
+        desk.act(stop());
+        assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.open_cancelled"));
+        assert!(!desk.studio.can_stop() && desk.told(Severity::Warning).is_empty(), "as the user wished");
+        desk.outside.opens.store(true, std::sync::atomic::Ordering::SeqCst);
+        desk.settle();
+        assert!(matches!(desk.phase(), Phase::Lost(_)));
+        assert_eq!(desk.wire().sent(), 0);
+        desk.ask(Hiperface::Reconnect);
+        desk.until_read();
+    }
 }
 
 #[test]
@@ -77,7 +96,7 @@ fn a_disk_that_does_not_answer_holds_nobody_up() {
     desk.until_ready();
     desk.put(0, 0, b"X");
     desk.write();
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert_eq!(desk.told(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
 /// The settings cannot be kept and nobody says so: closing waits a while, not for ever.
@@ -103,7 +122,7 @@ fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
 #[test]
 fn a_draft_that_does_not_answer_does_not_keep_the_window_open() {
     let mut desk = Desk::fresh("");
-    pipe(&desk.outside.path("data/drafts/virtual/GB0450179.ron"));
+    pipe(&desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron"));
     desk.studio.begin(None, None);
     desk.until_read();
     desk.put(0, 0, b"X");
@@ -119,7 +138,7 @@ fn settings_that_do_not_answer_do_not_hold_up_the_start() {
     let desk = Desk::fresh("");
     pipe(&desk.outside.store().settings_path());
     let mut desk = desk.crash();
-    assert_eq!(desk.told(Severity::Warning), ["session.settings_broken"]);
+    assert_eq!(desk.told(Severity::Warning), ["session.settings_slow"]);
     desk.studio.begin(None, None);
     desk.until_read();
 }
@@ -141,7 +160,7 @@ fn without_a_backup_nothing_is_written() {
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::Review);
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until("it is refused", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
     });

@@ -47,7 +47,7 @@ fn a_write_ends_at_a_safe_point_before_it_closes() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.act(Action::Close);
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
@@ -113,7 +113,7 @@ fn a_review_that_writes_stays_until_it_is_over() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.ask(Hiperface::CloseReview);
     assert!(desk.review().is_writing());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use encoder_studio::app::Action;
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
-use encoder_studio::app::hiperface::{Phase, Source};
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, Source};
 use encoder_studio::device::hiperface::find::FindOptions;
 use encoder_studio::units::{Baud, Parity};
 
@@ -155,4 +155,36 @@ fn closing_the_dialog_ends_its_search() {
     let holders = Arc::strong_count(&wire);
     wire.release();
     desk.until("the wire is free", |_| Arc::strong_count(&wire) < holders);
+}
+
+#[test]
+fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
+    let mut desk = Desk::at_port("");
+    let link = format!("serial:{PORT}");
+    desk.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(2))));
+    desk.connect(Connect::Open);
+    desk.connect(Connect::Use(link.clone()));
+    desk.connect(Connect::Search(FindOptions::default()));
+    assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.let_go_for_search"));
+    assert!(desk.encoder().line().is_none());
+    assert_eq!(desk.times_told("session.let_go_for_search"), 1);
+    desk.until("the search is over", |studio| !studio.can_stop());
+    assert_eq!(search(&desk).found.len(), 1);
+    desk.connect(Connect::Connect);
+    desk.until_read();
+    assert_eq!(desk.studio.encoders().len(), 1);
+
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 1);
+    desk.write_as_shown();
+    desk.wire().wait_until_held();
+    desk.connect(Connect::Open);
+    desk.connect(Connect::Use(link));
+    desk.connect(Connect::Search(FindOptions::default()));
+    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("find.writing"));
+    assert!(dialog(&desk).search.is_none() && desk.encoder().is_writing());
+    desk.wire().release();
+    desk.until_written();
 }

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, ReviewState};
 use encoder_studio::app::{Action, JobEnd, Language, Severity, Studio, Text};
+use encoder_studio::protocol::hiperface::CodeNumber;
 use encoder_studio::store::read_text;
+use encoder_studio::units::{Baud, CharacterFormat, Parity};
 use encoder_studio::worker::hiperface::Change;
 
 use crate::support::{Desk, PORT, is_review};
@@ -43,7 +45,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 4);
     desk.wire().hold_at(0x4B, 2);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.until("it is writing", |studio| studio.encoder().unwrap().is_writing());
     assert!(desk.studio.can_stop());
@@ -73,7 +75,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 2, "what is left");
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[..16], *b"eMd71K-4 3000RpM");
 }
@@ -94,6 +96,7 @@ fn edits_survive_an_unplugged_cable_and_are_written_afterwards() {
     desk.ask(Hiperface::Review);
     assert_eq!(desk.times_told("session.not_connected"), 1);
 
+    assert!(desk.studio.services.log.standing().is_some());
     desk.ask(Hiperface::Reconnect);
     assert_eq!(*desk.phase(), Phase::Opening);
     desk.until("it is still not there", lost);
@@ -116,7 +119,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 2);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.wire().unplug();
     desk.wire().release();
@@ -235,7 +238,7 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x41);
     desk.ask(Hiperface::CloseReview);
@@ -250,6 +253,115 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     assert_eq!(desk.encoder().source, encoder_studio::app::hiperface::Source::Link(link.parse().unwrap()));
 }
 
+/// The cable is pulled after the address was changed and before it is read back.
+#[test]
+fn what_an_interrupted_write_did_is_followed() {
+    let mut desk = Desk::at_port("");
+    let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
+    desk.ask(Hiperface::Plan(Change::SetAddress(address)));
+    desk.until_planned();
+    desk.wire().hold_at(0x52, 2);
+    desk.write_as_shown();
+    desk.wire().wait_until_held();
+    desk.wire().unplug();
+    desk.wire().release();
+    desk.until("it has ended", failed);
+    assert!(lost(&desk.studio));
+    desk.ask(Hiperface::CloseReview);
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until("it is read", |studio| {
+        studio
+            .encoder()
+            .is_some_and(|own| own.is_ready() && own.identity.as_ref().is_some_and(|own| own.address == 0x41))
+    });
+}
+
+#[test]
+fn other_settings_are_followed_from_the_restart_on() {
+    let mut desk = Desk::at_port("");
+    let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
+    let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
+    let settings = encoder_studio::app::hiperface::forms::settings(stored, format, true, true).unwrap();
+    let link = |desk: &Desk| desk.encoder().source.clone();
+    let (old, new) = (format!("serial:{PORT}"), format!("serial:{PORT}?baud=19200&parity=odd"));
+    let at = |link: &str| encoder_studio::app::hiperface::Source::Link(link.parse().unwrap());
+    desk.ask(Hiperface::ConfigureForNow(settings));
+    desk.until("both sides are there", |studio| {
+        studio.services.log.notices().any(|own| own.texts[0].id() == "session.configured")
+    });
+    desk.until_ready();
+    assert_eq!(link(&desk), at(&new), "until the restart");
+    desk.ask(Hiperface::Reset);
+    desk.until("it is restarted", |studio| {
+        studio.services.log.notices().any(|own| own.texts[0].id() == "session.restarted")
+    });
+    desk.until_ready();
+    assert_eq!(link(&desk), at(&format!("{old}?baud=9600&parity=even")));
+
+    desk.ask(Hiperface::Plan(Change::Configure(settings)));
+    desk.until_planned();
+    desk.write_as_shown();
+    desk.until_written();
+    desk.ask(Hiperface::CloseReview);
+    assert_eq!(link(&desk), at(&format!("{old}?baud=9600&parity=even")), "before the restart it talks as before");
+    desk.ask(Hiperface::Reset);
+    desk.until("the link follows", |studio| studio.encoder().unwrap().source == at(&new));
+    desk.until_ready();
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(*desk.phase(), Phase::Connected);
+}
+
+/// The link is open, and nobody answers: that is neither connected nor lost.
+#[test]
+fn an_encoder_that_does_not_answer_is_not_connected() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.wire().exchange("fault=silent-after:0");
+    desk.ask(Hiperface::ReadCounter);
+    let silent = |studio: &Studio| matches!(studio.encoder().unwrap().phase, Phase::Silent(_));
+    desk.until("it is silent", silent);
+    let encoder = desk.encoder();
+    assert!(matches!(&encoder.phase, Phase::Silent(why) if why.id() == "encoder.no_reply"));
+    assert!(!encoder.is_ready() && !encoder.is_savable() && encoder.is_readable() && encoder.line().is_some());
+    desk.ask(Hiperface::Read);
+    desk.until("it was read in vain", |studio| studio.encoder().unwrap().is_readable());
+    assert!(silent(&desk.studio));
+    desk.ask(Hiperface::Review);
+    assert!(desk.encoder().review.is_none());
+    desk.wire().exchange("");
+    desk.ask(Hiperface::Read);
+    desk.until_ready();
+    assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));
+
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+    desk.wire().exchange("fault=silent-after:0");
+    desk.until("it is silent", silent);
+    assert!(!desk.studio.is_live());
+}
+
+#[test]
+fn access_codes_go_to_no_other_encoder_on_the_link() {
+    let mut desk = Desk::at_port("codes=0:9D");
+    let code = encoder_studio::app::hiperface::forms::access_code("9D").unwrap();
+    desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+    desk.until_ready();
+    assert!(desk.encoder().field(0).unwrap().bytes.is_some());
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().exchange("serial=OTHER0001&codes=0:9D");
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
+    desk.until_ready();
+    assert_eq!(desk.encoder().field(0).unwrap().bytes, None, "nobody has given its code");
+}
+
 #[test]
 fn connecting_again_to_a_wire_that_is_written_is_refused() {
     let mut desk = Desk::at_port("");
@@ -257,7 +369,7 @@ fn connecting_again_to_a_wire_that_is_written_is_refused() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.open(&format!("serial:{PORT}?address=0x40"));
     desk.ask(Hiperface::Reconnect);
@@ -304,6 +416,28 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
         std::thread::sleep(Duration::from_millis(10));
     }
     assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+}
+
+/// The failure was on its way when the user wished anew: it is about the wish before.
+#[test]
+fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
+    let mut desk = Desk::at_port("");
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+    desk.wire().exchange("fault=silent-after:0");
+    let began = std::time::Instant::now();
+    while desk.encoder().line().unwrap().polling().is_some() {
+        assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // The event follows at once.
+    std::thread::sleep(Duration::from_millis(50));
+    desk.wire().exchange("");
+    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    let points = desk.encoder().curve.points().len();
+    desk.until("samples go on", |studio| studio.encoder().unwrap().curve.points().len() > points + 3);
+    assert!(desk.studio.is_live());
+    assert_eq!(desk.times_told("session.poll_failed"), 0);
 }
 
 #[test]

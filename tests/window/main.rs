@@ -6,6 +6,7 @@ mod blocking;
 mod closing;
 mod connecting;
 mod drafts;
+mod leaving;
 mod losing;
 mod monkey;
 mod profiles;

@@ -35,6 +35,31 @@ fn a_saved_profile_is_the_encoder() {
 }
 
 #[test]
+fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
+    let mut desk = Desk::at_port("codes=0:9D");
+    let path = desk.outside.path("locked.ron");
+    desk.ask(Hiperface::Save(path.clone()));
+    let saved = |studio: &encoder_studio::app::Studio| studio.services.log.standing().is_some();
+    desk.until("it is saved", saved);
+    let ids = |desk: &Desk| {
+        let standing = desk.studio.services.log.standing().unwrap();
+        (standing.severity, standing.texts.iter().map(encoder_studio::app::Text::id).collect::<Vec<_>>())
+    };
+    assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_locked"]));
+
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"XY");
+    let path = desk.outside.path("mine.ron");
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is saved", saved);
+    assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_without"]));
+    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..2], *b"EM");
+    let words = desk.studio.services.log.standing().unwrap().texts[1].words(encoder_studio::app::Language::English);
+    assert!(words.contains('2'), "{words}");
+}
+
+#[test]
 fn saving_asks_for_a_file_named_after_the_encoder() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::AskSave);
@@ -143,7 +168,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     options.allow_other_device = true;
     desk.ask(Hiperface::PlanAgain(options));
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.outside.wire(OTHER_PORT).field(0)[0], b'X', "the edit of the profile is in it");
     assert_eq!(desk.wire().wear(), 0);

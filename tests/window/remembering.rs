@@ -48,19 +48,74 @@ fn a_link_that_did_not_open_is_not_remembered() {
 
 #[test]
 fn broken_settings_are_told_and_left_until_something_changes() {
-    for broken in [b"(theme: Mauve)".as_slice(), b"\xFF\xFE", b""] {
+    for broken in [b"(theme: Mauve, language: German)".as_slice(), b"\xFF\xFE", b""] {
         let desk = Desk::fresh("");
         let path = desk.outside.store().settings_path();
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, broken).unwrap();
         let mut desk = desk.crash();
         desk.settle();
-        assert_eq!(desk.told(Severity::Warning).len(), 1);
-        assert_eq!(desk.studio.settings, Settings::default());
+        assert_eq!(desk.told(Severity::Warning), ["session.settings_broken"]);
+        let aside = desk.outside.path("config/settings.ron.broken");
+        let words = desk.studio.services.log.standing().unwrap().texts[0].words(Language::English);
+        assert!(words.contains(&path.display().to_string()) && words.contains(&aside.display().to_string()), "{words}");
+        let language = if broken.starts_with(b"(") { Language::German } else { Language::English };
+        let mut expected = Settings::default();
+        expected.language = language;
+        assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
         desk.act(Action::SetTheme(Theme::Light));
         kept(&mut desk);
+        assert_eq!(fs::read(&aside).unwrap(), broken);
     }
+}
+
+#[test]
+fn settings_that_cannot_be_read_are_left() {
+    let desk = Desk::fresh("");
+    let path = desk.outside.store().settings_path();
+    fs::create_dir_all(&path).unwrap();
+    let mut desk = desk.crash();
+    assert_eq!(desk.told(Severity::Warning), ["session.settings_unread"]);
+    desk.act(Action::SetTheme(Theme::Light));
+    desk.settle();
+    assert!(path.is_dir());
+    assert_eq!(desk.told(Severity::Warning).len(), 1);
+}
+
+/// The disk wakes up late: what it has holds, but for what the user has set meanwhile.
+#[cfg(unix)]
+#[test]
+fn settings_that_come_late_hold_and_are_not_overwritten_before() {
+    let desk = Desk::fresh("");
+    let path = desk.outside.store().settings_path();
+    let mut settings = Settings::default();
+    (settings.theme, settings.size) = (Theme::Light, Some((1500, 900)));
+    settings.use_link("tcp:host:1");
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+    let mut desk = desk.crash();
+    assert_eq!(desk.told(Severity::Warning), ["session.settings_slow"]);
+    desk.act(Action::SetLanguage(Language::German));
+    desk.settle();
+    assert!(!path.is_file(), "nothing was written in its place");
+    fs::write(&path, settings.emit()).unwrap();
+    fs::remove_file(&path).unwrap();
+    desk.until("they are read", |studio| studio.settings.theme == Theme::Light);
+    settings.language = Language::German;
+    assert_eq!(desk.studio.settings, settings);
+    kept(&mut desk);
+}
+
+#[test]
+fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
+    let mut desk = Desk::fresh("codes=0:9D");
+    desk.open("sim:?codes=0:9D&margin=21");
+    desk.until_read();
+    assert_eq!(desk.studio.settings.links(), ["sim:?margin=21"]);
+    kept(&mut desk);
+    let log = crate::support::log(&desk.studio);
+    assert!(!log.contains("9D"), "{log}");
 }
 
 #[test]

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, Review, ReviewState};
-use encoder_studio::app::{Action, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
+use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
@@ -27,6 +28,9 @@ pub(crate) struct Outside {
     pub(crate) folder: tempfile::TempDir,
     wires: BTreeMap<String, Arc<Wire>>,
     pub(crate) wakes: Arc<AtomicUsize>,
+    /// [`SLOW`] opens from now on.
+    pub(crate) opens: Arc<AtomicBool>,
+    pub(crate) patience: Patience,
 }
 
 /// The port at which the encoder stands that `begin` finds; `sim:` leads to it too.
@@ -35,13 +39,16 @@ pub(crate) const PORT: &str = "/dev/enc0";
 pub(crate) const OTHER_PORT: &str = "/dev/enc1";
 /// A link that never opens.
 pub(crate) const HANGING: &str = "tcp:hanging:1";
+/// A link to the encoder at [`PORT`] that opens only when it is told to; with another address at once.
+pub(crate) const SLOW: &str = "tcp:slow:1";
 
 impl Outside {
     /// Encoders at [`PORT`] as `query` describes them, and an SKS36 at [`OTHER_PORT`].
     pub(crate) fn new(query: &str) -> Self {
         let wires = [Wire::new(PORT, query), Wire::new(OTHER_PORT, "model=sks36")];
         let wires = wires.into_iter().map(|wire| (wire.target().to_owned(), wire)).collect();
-        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes: Arc::default() }
+        let (wakes, opens, patience) = (Arc::default(), Arc::default(), Patience::default());
+        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes, opens, patience }
     }
 
     pub(crate) fn store(&self) -> Store {
@@ -57,7 +64,7 @@ impl Outside {
     }
 
     pub(crate) fn world(&self) -> World {
-        let wires = self.wires.clone();
+        let (wires, opens) = (self.wires.clone(), self.opens.clone());
         World {
             open: Arc::new(move |url, store| {
                 if url.to_string() == HANGING {
@@ -65,7 +72,11 @@ impl Outside {
                         std::thread::park();
                     }
                 }
-                let target = if url.scheme == Scheme::Sim { PORT } else { &url.target };
+                while url.to_string() == SLOW && !opens.load(Ordering::SeqCst) {
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+                let leads_to_port = url.scheme == Scheme::Sim || url.target == SLOW.trim_start_matches("tcp:");
+                let target = if leads_to_port { PORT } else { &url.target };
                 let wire = wires.get(target).ok_or_else(|| LinkError::new(target, LinkErrorKind::NotFound))?;
                 let station = Station::from_query(&url.query, MARGIN)?;
                 let mut link = TestLink::plug_into(wire)?;
@@ -74,6 +85,7 @@ impl Outside {
                 Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
             }),
             ports: Arc::new(|| Ok(Vec::new())),
+            patience: self.patience,
             ..World::real(self.store())
         }
     }
@@ -98,6 +110,17 @@ impl Desk {
     pub(crate) fn fresh(query: &str) -> Self {
         let outside = Outside::new(query);
         Desk { studio: outside.studio(), outside }
+    }
+
+    /// Connected to [`PORT`], which is read, in a world where nobody waits for long.
+    pub(crate) fn impatient(query: &str) -> Self {
+        let mut outside = Outside::new(query);
+        let milliseconds = Duration::from_millis;
+        outside.patience = Patience { disk: milliseconds(50), job: milliseconds(100), write: milliseconds(1_500) };
+        let mut desk = Desk { studio: outside.studio(), outside };
+        desk.open(&format!("serial:{PORT}"));
+        desk.until_read();
+        desk
     }
 
     /// Connected to the virtual encoder, which is read.
@@ -241,12 +264,20 @@ impl Desk {
         self.settle();
     }
 
+    /// Consents to the plan that is shown.
+    pub(crate) fn write_as_shown(&mut self) {
+        let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
+        let shown = self.encoder().review.as_ref().and_then(Review::prepared);
+        let id = shown.map_or(nothing.id(), |prepared| prepared.plan.id());
+        self.ask(Hiperface::Write(id));
+    }
+
     /// Reviews and writes what is edited.
     #[track_caller]
     pub(crate) fn write(&mut self) {
         self.ask(Hiperface::Review);
         self.until_planned();
-        self.ask(Hiperface::Write);
+        self.write_as_shown();
         self.until_written();
     }
 

@@ -68,7 +68,7 @@ pub(crate) fn check_all(studio: &Studio) {
 }
 
 fn check_encoder(encoder: &Encoder) {
-    if let Phase::Lost(why) = &encoder.phase {
+    if let Phase::Lost(why) | Phase::Silent(why) = &encoder.phase {
         check(why);
     }
     for why in encoder.analogue.values().filter_map(|value| value.as_ref().err()) {

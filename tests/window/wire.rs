@@ -20,6 +20,8 @@ pub(crate) struct Wire {
 #[derive(Default)]
 struct State {
     unplugged: bool,
+    /// Whoever sends dies.
+    deadly: bool,
     /// Every frame that was handed to the line.
     sent: Vec<Vec<u8>>,
     /// Hold before the request of this command that has so many before it.
@@ -66,6 +68,11 @@ impl Wire {
 
     pub(crate) fn plug(&self) {
         self.state().unplugged = false;
+    }
+
+    /// The thread that sends next dies without a word.
+    pub(crate) fn kill(&self) {
+        self.state().deadly = true;
     }
 
     /// Holds the line before the `number`th request of a command from now on, 1 first.
@@ -119,6 +126,10 @@ impl Wire {
 
     fn pass(&self, frame: &[u8]) {
         let mut state = self.state();
+        if std::mem::take(&mut state.deadly) {
+            drop(state);
+            panic!("as the test wants it");
+        }
         state.sent.push(frame.to_vec());
         match &mut state.hold {
             Some((command, 0)) if *command == frame[1] => {}

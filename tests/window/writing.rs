@@ -1,11 +1,11 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, review, rules};
-use encoder_studio::app::{Language, Severity, Text};
+use encoder_studio::app::hiperface::{Action as Hiperface, Done as Late, ReviewState, forms, review, rules};
+use encoder_studio::app::{Action, Done, Language, Severity, Text};
 use encoder_studio::profile::hiperface::{FieldRange, Op};
 use encoder_studio::profile::{Body, Document};
 use encoder_studio::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
-use encoder_studio::store::{Outcome, read_text};
+use encoder_studio::store::{DeviceKey, Outcome, read_text};
 use encoder_studio::worker::hiperface::Change;
 
 use crate::support::{Desk, is_review};
@@ -33,7 +33,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     assert_eq!(words, ["Datenfeld 0, Byte 19", "22", "23"]);
     assert_eq!(desk.wire().wear(), 0, "looking is no writing");
 
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     assert!(desk.encoder().is_writing());
     desk.until_written();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
@@ -73,7 +73,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.cycles_seen, Some(1));
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[RATED], 0x22);
 }
@@ -83,14 +83,14 @@ fn nothing_is_written_without_consent() {
     let mut desk = Desk::begun("");
     let before = desk.wire().field(0);
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     assert!(!desk.encoder().is_busy(), "there is no plan");
     desk.ask(Hiperface::Review);
     // Before the plan is shown there is nothing to consent to.
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_planned();
     desk.ask(Hiperface::CloseReview);
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.settle();
     assert!(!desk.encoder().is_busy() && desk.encoder().review.is_none());
     assert_eq!((desk.wire().field(0), desk.wire().wear()), (before, 0));
@@ -105,10 +105,10 @@ fn write_pressed_twice_writes_once() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     for _ in 0..3 {
-        desk.ask(Hiperface::Write);
+        desk.write_as_shown();
     }
     desk.until_written();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.settle();
     assert_eq!((desk.wire().count(0x4B), desk.wire().wear()), (1, 1));
     assert!(!desk.told(Severity::Note).contains(&"session.busy"));
@@ -123,7 +123,7 @@ fn what_is_there_already_is_not_written() {
     assert!(!desk.encoder().staged.is_dirty(), "E stands there");
     desk.ask(Hiperface::Plan(Change::Store(vec![(FieldRange::new(0, 0, 1), b"E".to_vec())])));
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().wear(), 0);
 }
@@ -135,7 +135,7 @@ fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.put(0, 1, b"Y");
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[..2], *b"XM");
     assert_eq!(desk.edits(), [(0, 1, b'Y')]);
@@ -148,11 +148,128 @@ fn an_encoder_that_changed_since_the_plan_is_not_written() {
     desk.ask(Hiperface::Review);
     desk.until_planned();
     desk.wire().exchange("model=skm36&serial=AA1");
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until("it is refused", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: false, .. }))
     });
     assert_eq!(desk.wire().wear(), 0);
+}
+
+#[test]
+fn consent_is_to_the_plan_that_was_drawn_and_to_no_other() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    let drawn = desk.review().prepared().unwrap().plan.id();
+    desk.ask(Hiperface::CloseReview);
+    desk.put(0, 1, b"Y");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.ask(Hiperface::Write(drawn));
+    desk.settle();
+    assert!(!desk.encoder().is_busy() && matches!(desk.review().state, ReviewState::Ready(_)));
+    assert_eq!(desk.wire().wear(), 0);
+    desk.write_as_shown();
+    desk.until_written();
+    assert_eq!(desk.wire().field(0)[..2], *b"XY");
+}
+
+#[test]
+fn another_plan_is_not_forced_onto_a_worn_encoder_by_an_earlier_wish() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.write();
+    let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
+    let backup = committed.backup.clone().unwrap();
+    desk.ask(Hiperface::Restore(backup));
+    desk.until_planned();
+    desk.ask(Hiperface::ForceWear(true));
+    assert!(desk.review().force_wear);
+    let options = desk.review().options().unwrap();
+    desk.ask(Hiperface::PlanAgain(options));
+    assert!(!desk.review().force_wear);
+    desk.until_planned();
+}
+
+#[test]
+fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 20, b"X");
+    let (memory, first) = (desk.encoder().identity.as_ref().unwrap().memory.unwrap(), desk.encoder().field(0).unwrap());
+    let offered = rules::delete(memory, first, &desk.encoder().staged);
+    let small = FieldSize::from_bytes(16).unwrap();
+    let why = Text::new("rules.edits").with("field", 0).with("count", 1);
+    assert_eq!(offered, Err(why.clone()));
+    assert_eq!(rules::resize(memory, first, small, &desk.encoder().staged), Err(why.clone()));
+    assert_eq!(refused(&mut desk, Change::DeleteField { number: 0 }), why);
+    assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: small }), why);
+    desk.ask(Hiperface::RevertAll);
+    change(&mut desk, Change::ResizeField { number: 0, size: small });
+    desk.put(0, 0, b"X");
+    change(&mut desk, Change::LockField { number: 0, lock: true });
+    assert_eq!(desk.edits(), [(0, 0, b'X')], "what keeps the bytes keeps the edits");
+}
+
+#[test]
+fn a_field_whose_access_code_is_not_known_is_left_as_it_is() {
+    let mut desk = Desk::at_port("codes=0:9D");
+    let why = Text::new("rules.code_unknown").with("field", 0).with("number", CodeNumber::ZERO);
+    let small = FieldSize::from_bytes(16).unwrap();
+    let sent = desk.wire().sent();
+    for change in [
+        Change::LockField { number: 0, lock: true },
+        Change::DeleteField { number: 0 },
+        Change::ResizeField { number: 0, size: small },
+        Change::ChangeCode { number: CodeNumber::ZERO, new: forms::access_code("11").unwrap() },
+    ] {
+        assert_eq!(refused(&mut desk, change), why);
+    }
+    assert_eq!(desk.wire().sent(), sent, "nobody is asked");
+    assert_eq!(rules::status(desk.encoder().field(0).unwrap()), Err(why));
+}
+
+#[test]
+fn whether_an_access_code_fits_is_told_and_never_the_code() {
+    let mut desk = Desk::at_port("codes=0:9D");
+    for (code, id) in [("1C", "session.code_wrong"), ("9D", "session.code_fits")] {
+        let code = forms::access_code(code).unwrap();
+        desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
+        desk.until_ready();
+        assert_eq!(*desk.told(Severity::Note).last().unwrap(), id);
+    }
+    let log = crate::support::log(&desk.studio);
+    assert!(!log.contains("9D") && !log.contains("1C"), "{log}");
+    desk.ask(Hiperface::UseCode { number: CodeNumber::new(2).unwrap(), code: forms::access_code("11").unwrap() });
+    desk.until_ready();
+    assert_eq!(*desk.told(Severity::Note).last().unwrap(), "session.code_unused");
+}
+
+/// Lists and backups that were asked for before the encoder was exchanged.
+#[test]
+fn what_comes_late_for_another_encoder_is_dropped() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.write();
+    desk.ask(Hiperface::CloseReview);
+    desk.until(
+        "the list is read",
+        |studio| matches!(&studio.encoder().unwrap().backups, Some(Ok(own)) if own.len() == 1),
+    );
+    let id = desk.encoder().id;
+    let other = DeviceKey {
+        kind: "hiperface".to_owned(),
+        device_type: "37h".to_owned(),
+        serial_number: "OTHER0001".to_owned(),
+        is_virtual: true,
+    };
+    let late = Late::Backups { of: other.clone(), backups: Ok(Vec::new()), writes: Ok(Vec::new()) };
+    desk.act(Action::Done(Done::Hiperface(id, late)));
+    assert_eq!(desk.encoder().backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
+    let path = desk.encoder().backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
+    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    desk.act(Action::Done(Done::Hiperface(id, Late::Backup { of: other, path, result: Ok(Box::new(profile)) })));
+    assert!(desk.encoder().review.is_none() && !desk.encoder().is_busy());
 }
 
 /// A second field, so that the first is no longer the last.
@@ -167,7 +284,7 @@ fn with_two_fields() -> Desk {
 fn change(desk: &mut Desk, change: Change) {
     desk.ask(Hiperface::Plan(change));
     desk.until_planned();
-    desk.ask(Hiperface::Write);
+    desk.write_as_shown();
     desk.until_written();
     desk.ask(Hiperface::CloseReview);
 }
@@ -196,11 +313,15 @@ fn what_the_rules_of_the_fields_forbid_is_refused_with_the_reason() {
     let larger = FieldSize::from_bytes(64).unwrap();
 
     let not_last = refused(&mut desk, Change::DeleteField { number: 0 });
-    assert_eq!(rules::delete(memory, &first), Err(not_last.clone()), "the button says the same");
+    assert_eq!(
+        rules::delete(memory, &first, &desk.encoder().staged),
+        Err(not_last.clone()),
+        "the button says the same"
+    );
     assert_eq!(not_last, Text::new("plan.not_last").with("field", 0).with("last", 1));
     assert_ne!(not_last.words(Language::English), not_last.words(Language::German));
     assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: larger }), not_last);
-    assert_eq!(rules::resize(memory, &first, larger), Err(not_last));
+    assert_eq!(rules::resize(memory, &first, larger, &desk.encoder().staged), Err(not_last));
 
     let status = DataFieldStatus::new(larger, CodeNumber::ZERO, true);
     assert_eq!(refused(&mut desk, Change::CreateField { number: 5, status }).id(), "plan.not_next");

@@ -1,10 +1,14 @@
 //! The connection dialog, carried out.
 
+use crossbeam_channel::Receiver;
+
 use super::{Action, Connect, LinkForm, Search, list_ports};
-use crate::app::Text;
 use crate::app::action::Done;
-use crate::app::line::Line;
-use crate::app::studio::Studio;
+use crate::app::hiperface::{Encoder, Phase, Source};
+use crate::app::leaving::{Leaver, same_wire};
+use crate::app::services::JobEnd;
+use crate::app::studio::{SessionId, Studio};
+use crate::app::{Severity, Text};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 
@@ -15,13 +19,13 @@ impl Studio {
                 // What was used before comes first.
                 let last = self.settings.links().first().and_then(|link| link.parse().ok());
                 self.connect = Some(Connect::new(LinkForm::from_url(&last.unwrap_or_else(LinkUrl::sim))));
-                list_ports(&self.services);
+                list_ports(&self.services, self.settings.links());
             }
-            Action::Close => self.connect = None,
+            Action::Close => self.close_dialog(),
             Action::ListPorts => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = None;
-                    list_ports(&self.services);
+                    list_ports(&self.services, self.settings.links());
                 }
             }
             Action::Edit(form) => self.edit(*form),
@@ -34,9 +38,8 @@ impl Studio {
                 match connect.form.url() {
                     Ok(url) => {
                         // A search may still hold the wire.
-                        let holder = connect.search.take().and_then(|search| search.line).map(Line::into_worker);
-                        self.connect = None;
-                        self.open_link_after(url, holder);
+                        self.close_dialog();
+                        self.open_link(url);
                     }
                     Err(problem) => self.refuse(problem),
                 }
@@ -73,20 +76,60 @@ impl Studio {
                 return;
             }
         };
-        let old = connect.search.take().and_then(|search| search.line).map(Line::into_worker);
-        let number = self.new_search();
-        let search = Search { number, url: url.clone(), options, line: None, found: Vec::new(), end: None };
+        let earlier = match self.free_for_search(&url) {
+            Ok(earlier) => self.end_search().or(earlier),
+            Err(problem) => return self.refuse(problem),
+        };
+        let number = self.new_number();
+        let done = move |result| Done::OpenedForSearch { number, result };
+        let over = self.open_task(url.clone(), earlier, Vec::new(), done);
+        let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);
         }
-        let done = move |result| Done::OpenedForSearch { number, result };
-        self.open_task(url, old.into_iter().collect(), Vec::new(), done);
+    }
+
+    /// Lets the session on this wire go, unless it writes; one whose link is still being opened is over when what is given
+    /// tells so.
+    fn free_for_search(&mut self, url: &LinkUrl) -> Result<Option<Receiver<()>>, Text> {
+        let holds = |encoder: &&mut Encoder| {
+            let held = encoder.line().is_some() || encoder.opening.is_some();
+            held && matches!(&encoder.source, Source::Link(own) if same_wire(own, url))
+        };
+        let Some(encoder) = self.encoders.iter_mut().find(holds) else { return Ok(None) };
+        let name = encoder.name();
+        if encoder.is_writing() {
+            return Err(Text::new("find.writing").with("name", name));
+        }
+        encoder.let_go(JobEnd::Cancelled, &mut self.services);
+        let why = Text::new("session.let_go_for_search");
+        encoder.phase = Phase::Lost(why.clone());
+        let earlier = encoder.opening.take().map(|opening| opening.over);
+        self.services.tell(Severity::Note, vec![why], Some(&name));
+        Ok(earlier)
+    }
+
+    /// Closes the dialog; its search ends.
+    pub(in crate::app) fn close_dialog(&mut self) {
+        self.end_search();
+        self.connect = None;
+    }
+
+    /// Ends the search and forgets it. Where its link was still being opened, that is over when what is given tells so.
+    fn end_search(&mut self) -> Option<Receiver<()>> {
+        let search = self.connect.as_mut()?.search.take()?;
+        if let Some(line) = search.line {
+            let (session, about) = (SessionId(search.number), search.url.to_string());
+            let who = Leaver { session, about, url: search.url, write: None };
+            self.services.leave(line.into_worker(), who, None);
+        }
+        Some(search.over)
     }
 
     fn choose(&mut self, at: usize) {
-        let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.take()) else { return };
+        let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
         let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
-        self.connect = None;
-        self.open_link_after(url, search.line.map(Line::into_worker));
+        self.close_dialog();
+        self.open_link(url);
     }
 }

@@ -59,6 +59,8 @@ pub struct Search {
     pub(super) url: LinkUrl,
     pub(super) options: FindOptions,
     pub(super) line: Option<Line<Hiperface>>,
+    /// Ends when its link is open or cannot be opened.
+    pub(super) over: crossbeam_channel::Receiver<()>,
     /// All that answered so far.
     pub found: Vec<Found>,
     /// How it ended; `None` while it goes on.
@@ -106,6 +108,7 @@ impl Search {
     }
 
     pub(super) fn pump(&mut self) {
+        let dead = self.line.as_ref().is_some_and(Line::is_dead);
         while let Some(event) = self.line.as_mut().and_then(Line::next) {
             match event {
                 Event::Remark(Remark::Found(found)) => self.found.push(found),
@@ -116,6 +119,9 @@ impl Search {
                 Event::Lost(error) => self.end = Some(explain::link(&error)),
                 Event::Started(_) | Event::Progress(..) | Event::Remark(Remark::Codes(_)) | Event::PollFailed(_) => {}
             }
+        }
+        if dead && self.end.is_none() {
+            self.end = Some(Text::new("session.ended"));
         }
     }
 
@@ -147,8 +153,11 @@ impl Search {
     }
 }
 
-/// The serial ports, as a task's result.
-pub(super) fn list_ports(services: &Services) {
-    let ports = services.world.ports.clone();
-    services.tasks.run("ports", move || super::Action::Done(Done::Ports(ports())));
+/// The serial ports, as a task's result; `links` are the links used, the latest first.
+pub(super) fn list_ports(services: &Services, links: &[String]) {
+    let (ports, links) = (services.world.ports.clone(), links.to_vec());
+    services.tasks.run("ports", move || {
+        let exists = |path: &str| std::path::Path::new(path).exists();
+        super::Action::Done(Done::Ports(ports().map(|ports| offered_ports(&ports, &links, exists))))
+    });
 }

@@ -11,18 +11,21 @@ pub struct Offer {
     pub description: String,
     /// It was used before.
     pub used: bool,
-    /// The system lists it now. A port used before may be unplugged; a pseudo-terminal is never listed.
+    /// It is there now: the system lists it, or it is a path that exists, as that of a pseudo-terminal does, which is never
+    /// listed. A port used before may be unplugged.
     pub listed: bool,
 }
 
-/// Ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest first.
-pub fn offered_ports(ports: &[PortInfo], links: &[String]) -> Vec<Offer> {
+/// Ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest first;
+/// `exists` looks for a path that the system does not list.
+pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<Offer> {
     let mut offers: Vec<Offer> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {
         if url.scheme == Scheme::Serial && offers.iter().all(|offer| offer.path != url.target) {
             let known = ports.iter().find(|port| port.path == url.target);
             let description = known.map(|port| port.description.clone()).unwrap_or_default();
-            offers.push(Offer { path: url.target, description, used: true, listed: known.is_some() });
+            let listed = known.is_some() || exists(&url.target);
+            offers.push(Offer { path: url.target, description, used: true, listed });
         }
     }
     let (usb, others): (Vec<&PortInfo>, Vec<&PortInfo>) =
@@ -58,23 +61,25 @@ mod tests {
             "serial:/dev/ttyUSB1?baud=19200",
             "no link",
             "serial:/tmp/enc0",
+            "serial:/tmp/enc1",
             "serial:/dev/ttyUSB1",
             "serial:/dev/ttyS1",
         ]
         .map(str::to_owned);
-        let offers = offered_ports(&ports, &links);
+        let offers = offered_ports(&ports, &links, |path| path == "/tmp/enc0");
         let shown: Vec<(&str, &str, bool, bool)> =
             offers.iter().map(|o| (o.path.as_str(), o.description.as_str(), o.used, o.listed)).collect();
         assert_eq!(
             shown,
             [
                 ("/dev/ttyUSB1", "FTDI FT4232H", true, true),
-                ("/tmp/enc0", "", true, false),
+                ("/tmp/enc0", "", true, true),
+                ("/tmp/enc1", "", true, false),
                 ("/dev/ttyS1", "", true, true),
                 ("/dev/ttyUSB0", "FTDI FT232R", false, true),
                 ("/dev/ttyS0", "", false, true),
             ]
         );
-        assert!(offered_ports(&[], &[]).is_empty());
+        assert!(offered_ports(&[], &[], |_| false).is_empty());
     }
 }

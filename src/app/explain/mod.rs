@@ -55,6 +55,7 @@ pub fn open_failed(failed: &OpenFailed) -> Text {
     match failed {
         OpenFailed::Link(error) => open(error),
         OpenFailed::Thread(why) => Text::new("session.no_thread").with("why", why),
+        OpenFailed::Held => Text::new("session.held"),
     }
 }
 
@@ -66,6 +67,7 @@ pub fn file(error: &FileError) -> Text {
         FileProblem::NoFolder => Text::new("file.no_folder").with("path", path),
         FileProblem::NotFolder => Text::new("file.not_a_folder").with("path", path),
         FileProblem::IsFolder => Text::new("file.is_folder").with("path", path),
+        FileProblem::NotAFile => Text::new("file.no_file").with("path", path),
         FileProblem::Exists => Text::new("file.exists").with("path", path),
         FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
         FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),

@@ -10,15 +10,16 @@ use super::encoder::{Encoder, Phase, Source};
 use super::review::{Review, ReviewState};
 use super::rules;
 use crate::app::action::{self, FileQuestion};
+use crate::app::leaving::Leaver;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
 use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
-use crate::profile::{Body, Consent, Document};
+use crate::profile::{Body, Consent, Document, PlanId};
 use crate::store::write_atomically;
-use crate::worker::hiperface::{Change, Commit, Hiperface, HiperfaceJob};
-use crate::worker::{SubmitError, Worker};
+use crate::worker::SubmitError;
+use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
 
 impl Encoder {
     /// Does what is asked.
@@ -42,9 +43,14 @@ impl Encoder {
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             Action::Check { restart } => self.submit(HiperfaceJob::Check { restart }, services),
             Action::Reset => self.submit(HiperfaceJob::Reset, services),
-            Action::ConfigureForNow(settings) => self.submit(HiperfaceJob::ConfigureForNow(settings), services),
+            Action::ConfigureForNow(settings) => {
+                if self.try_submit(HiperfaceJob::ConfigureForNow(settings), services) {
+                    self.configured = Some(settings);
+                }
+            }
             Action::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
+                    self.tried_code = Some(number);
                     self.know_code(number, code);
                 }
             }
@@ -65,7 +71,7 @@ impl Encoder {
                     review.force_wear = force;
                 }
             }
-            Action::Write => self.write(services),
+            Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
             Action::AskSave => {
                 services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
@@ -111,8 +117,11 @@ impl Encoder {
     }
 
     fn read_again(&mut self, services: &mut Services) {
+        if let Source::File { path, .. } = &self.source {
+            services.opening_files.push(path.clone());
+        }
         match &self.source {
-            Source::Link(_) => self.submit(HiperfaceJob::Survey, services),
+            Source::Link(_) => self.read_encoder(services),
             Source::File { path, .. } => {
                 let (path, store) = (path.clone(), services.world.store.clone());
                 services.tasks.run("read", move || crate::app::studio::read_document(path, &store));
@@ -147,11 +156,21 @@ impl Encoder {
 
     pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
         if !self.is_ready() {
-            let text = if self.is_busy() { "session.busy" } else { "session.not_connected" };
-            services.tell(Severity::Warning, vec![Text::new(text)], Some(&self.name()));
+            let text = match &self.phase {
+                _ if self.is_busy() => Text::new("session.busy"),
+                Phase::Silent(why) => why.clone(),
+                _ => Text::new("session.not_connected"),
+            };
+            services.tell(Severity::Warning, vec![text], Some(&self.name()));
             return;
         }
-        self.review = Some(Review::new(explain::hiperface::change(&change), change.clone()));
+        let mut review = Review::new(explain::hiperface::change(&change), change.clone());
+        if let Err(why) = rules::change(&self.staged, &change) {
+            review.state = ReviewState::Failed { texts: vec![why], begun: false };
+            self.review = Some(review);
+            return;
+        }
+        self.review = Some(review);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.review = None;
         }
@@ -163,6 +182,7 @@ impl Encoder {
         }
         let Some(review) = &mut self.review else { return };
         review.set_options(options);
+        review.force_wear = false;
         review.state = ReviewState::Planning;
         let change = review.change.clone();
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
@@ -175,19 +195,19 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// The consent: the plan as it stands in the review, and no other.
-    fn write(&mut self, services: &mut Services) {
+    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
+    fn write(&mut self, shown: PlanId, services: &mut Services) {
         if !self.is_ready() {
             return;
         }
         let Some(review) = &mut self.review else { return };
         let ReviewState::Ready(prepared) = &review.state else { return };
+        if prepared.plan.id() != shown {
+            return;
+        }
         let prepared = prepared.clone();
-        let commit = Commit {
-            prepared: (*prepared).clone(),
-            consent: Consent::to(prepared.plan.id()),
-            force_wear: review.force_wear,
-        };
+        let commit =
+            Commit { prepared: (*prepared).clone(), consent: Consent::to(shown), force_wear: review.force_wear };
         review.state = ReviewState::Writing(prepared.clone());
         if !self.try_submit(HiperfaceJob::Commit(Box::new(commit)), services)
             && let Some(review) = &mut self.review
@@ -233,30 +253,40 @@ impl Encoder {
                 let mut document = (**document).clone();
                 let Body::Hiperface(profile) = &mut document.body;
                 profile.fields = self.staged.wanted();
-                self.write_document(path, document, services);
+                self.write_document(path, document, Vec::new(), services);
             }
         }
     }
 
-    /// Writes a profile on a thread.
-    pub(super) fn write_document(&mut self, path: PathBuf, document: Document, services: &Services) {
+    /// Writes a profile on a thread; `remarks` say what is not in it.
+    pub(super) fn write_document(
+        &mut self,
+        path: PathBuf,
+        document: Document,
+        remarks: Vec<Text>,
+        services: &Services,
+    ) {
         let id = self.id;
         services.tasks.run("save", move || {
             let result = write_atomically(&path, document.emit().as_bytes());
-            crate::app::Action::Done(action::Done::Written { session: id, path, document: Box::new(document), result })
+            let key = super::file_key(&path);
+            let document = Box::new(document);
+            crate::app::Action::Done(action::Done::Written { session: id, path, key, document, remarks, result })
         });
     }
 
-    fn read_backup(&mut self, path: PathBuf, services: &Services) {
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
         let id = self.id;
+        let Some(of) = self.key() else {
+            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&self.name()));
+            return;
+        };
         services.tasks.run("backup", move || {
-            let done = match crate::app::studio::read_profile(&path) {
-                Ok(document) => {
-                    let Body::Hiperface(profile) = document.body;
-                    Done::Backup(Box::new(profile))
-                }
-                Err(error) => Done::NoBackup(path, error),
-            };
+            let result = crate::app::studio::read_profile(&path).map(|document| {
+                let Body::Hiperface(profile) = document.body;
+                Box::new(profile)
+            });
+            let done = Done::Backup { of, path, result };
             crate::app::Action::Done(action::Done::Hiperface(id, done))
         });
     }
@@ -267,23 +297,30 @@ impl Encoder {
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         // What passed at last says most about why it was the last.
         self.take_samples_and_frames();
-        drop(self.let_go(JobEnd::Failed(why.clone()), services));
+        self.let_go(JobEnd::Failed(why.clone()), services);
+        self.opening = None;
+        if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
+            review.state = ReviewState::Failed { texts: vec![why.clone()], begun: true };
+        }
         self.phase = Phase::Lost(why);
     }
 
-    /// Gives its thread away, to be closed where nobody waits for it; what runs ends as `end` says, and a plan is none
-    /// any more.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) -> Option<Worker<Hiperface>> {
+    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more. A write that was cancelled ends by
+    /// itself, and tells how.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         (self.asked, self.save_to) = (None, None);
         let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
         if self.review.as_ref().is_some_and(is_plan) {
             self.review = None;
         }
-        let line = self.line.take()?;
-        if let Some(running) = line.running() {
+        let Source::Link(url) = &self.source else { return };
+        let (url, about) = (url.clone(), self.name());
+        let Some(line) = self.line.take() else { return };
+        let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
+        if let Some(running) = line.running().filter(|_| write.is_none()) {
             services.job_ends(self.id, running.id, end);
         }
-        Some(line.into_worker())
+        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
     }
 }
 

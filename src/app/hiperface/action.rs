@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::DraftKey;
 use crate::app::studio::SessionId;
+use crate::profile::PlanId;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
-use crate::store::{Backup, Entry, FileError};
+use crate::store::{Backup, Claim, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::Change;
 
 /// Something in the HIPERFACE tab.
@@ -68,8 +70,8 @@ pub enum Action {
     PlanAgain(RestoreOptions),
     /// Write although the encoder counts as worn.
     ForceWear(bool),
-    /// Write what is shown.
-    Write,
+    /// Write the plan that was shown, and no other.
+    Write(PlanId),
     /// Close the review.
     CloseReview,
     /// Ask where to save the profile.
@@ -89,26 +91,35 @@ pub enum Done {
     /// Edits of an earlier time.
     Draft {
         /// Whose they are.
-        key: String,
+        key: DraftKey,
+        /// The right to keep them; `None`: it belongs to another window or session.
+        claim: Result<Option<Claim>, FileError>,
         /// The edits.
         result: Result<Option<String>, FileError>,
     },
     /// A draft was kept or removed.
     DraftKept {
         /// Whose it is.
-        key: String,
+        key: DraftKey,
         /// How it went.
         result: Result<(), FileError>,
     },
     /// Backups and writes of this encoder.
     Backups {
+        /// Of which encoder.
+        of: DeviceKey,
         /// Backups, the newest first.
         backups: Result<Vec<Backup>, FileError>,
         /// Writes, the newest first, or why the logbook does not tell.
         writes: Result<Vec<Entry>, String>,
     },
-    /// A backup was read.
-    Backup(Box<HiperfaceProfile>),
-    /// A backup cannot be read.
-    NoBackup(PathBuf, crate::app::action::ReadError),
+    /// A backup was read, or not.
+    Backup {
+        /// For which encoder.
+        of: DeviceKey,
+        /// The file.
+        path: PathBuf,
+        /// What is in it.
+        result: Result<Box<HiperfaceProfile>, crate::app::action::ReadError>,
+    },
 }

@@ -18,8 +18,8 @@ use crate::device::hiperface::{Identity, Survey, profile_of};
 use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
-use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, KIND, StatusCode};
-use crate::store::{Backup, Entry, FileError};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, KIND, LineSettings, StatusCode};
+use crate::store::{Backup, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
 
 /// Where the data come from.
@@ -31,6 +31,8 @@ pub enum Source {
     File {
         /// The file.
         path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
         /// What is in it, without the edits.
         document: Box<Document>,
     },
@@ -41,12 +43,30 @@ pub enum Source {
 pub enum Phase {
     /// The link is being opened.
     Opening,
-    /// Connected.
+    /// Connected, and the encoder answers.
     Connected,
+    /// The link is open, and the encoder does not answer: why, and what to do.
+    Silent(Text),
     /// It was connected, or could not be: why, and what to do.
     Lost(Text),
     /// A profile: there is no connection.
     Offline,
+}
+
+/// A link that is being opened.
+pub(in crate::app) struct Opening {
+    /// Which attempt of the session it is.
+    pub(in crate::app) attempt: Option<u32>,
+    /// Ends when it is over.
+    pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+}
+
+/// A link as it may be shown and kept: the access codes of a virtual encoder are no part of that.
+pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
+    let query: Vec<String> =
+        url.query.without(&["codes"]).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let question = if query.is_empty() { "" } else { "?" };
+    format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
 }
 
 /// An encoder, or a profile of one.
@@ -58,6 +78,7 @@ pub struct Encoder {
     /// How it stands with the connection.
     pub phase: Phase,
     pub(super) line: Option<Line<Hiperface>>,
+    pub(in crate::app) opening: Option<Opening>,
     /// Who it is.
     pub identity: Option<Identity>,
     /// Its memory and the edits beside it.
@@ -88,6 +109,14 @@ pub struct Encoder {
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     /// What was asked for by the job that reads a single value.
     pub(super) asked: Option<Item>,
+    /// Access codes that are given to the session again, once it is known who is connected.
+    pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
+    /// Interface settings that are being taken up until the next restart.
+    pub(super) configured: Option<LineSettings>,
+    /// Nothing has been read since the link was opened.
+    pub(super) just_connected: bool,
+    /// The access code that the user gave last: whether it fits shows when the fields are read.
+    pub(super) tried_code: Option<CodeNumber>,
     /// Where the profile goes that is being read.
     pub(super) save_to: Option<PathBuf>,
 }
@@ -100,6 +129,7 @@ impl Encoder {
             source: Source::Link(url),
             phase: Phase::Opening,
             line: None,
+            opening: None,
             identity: None,
             staged: Staged::default(),
             codes: None,
@@ -116,6 +146,10 @@ impl Encoder {
             drafting: Drafting::default(),
             access_codes: Vec::new(),
             asked: None,
+            codes_due: Vec::new(),
+            configured: None,
+            just_connected: false,
+            tried_code: None,
             save_to: None,
         }
     }
@@ -123,7 +157,7 @@ impl Encoder {
     /// A profile of an encoder.
     pub(in crate::app) fn in_file(
         id: SessionId,
-        path: PathBuf,
+        (path, key): (PathBuf, String),
         document: Document,
         types: &EncoderTypes,
         services: &Services,
@@ -132,7 +166,7 @@ impl Encoder {
         let fields = profile.fields.clone();
         let identity = crate::device::hiperface::identity_of(profile, types);
         let counter = profile.recorded.counter;
-        let source = Source::File { path, document: Box::new(document) };
+        let source = Source::File { path, key, document: Box::new(document) };
         // A link is needed to make the rest; a profile has none.
         let mut encoder = Encoder::at_link(id, LinkUrl::sim());
         encoder.source = source;
@@ -155,6 +189,11 @@ impl Encoder {
             || matches!(&self.source, Source::Link(url) if url.scheme == crate::link::Scheme::Sim)
     }
 
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
+    }
+
     /// Something runs on its line.
     pub fn is_busy(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.running().is_some())
@@ -168,6 +207,11 @@ impl Encoder {
     /// Connected and nothing runs: a job may begin.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
+    }
+
+    /// It can be read again: also an encoder that did not answer, and a profile.
+    pub fn is_readable(&self) -> bool {
+        self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }
 
     /// A profile of it can be saved now.
@@ -185,7 +229,7 @@ impl Encoder {
                 format!("{} · {}", identity.name, identity.serial.serial_number)
             }
             (Source::Link(_), Some(identity)) => identity.name.clone(),
-            (Source::Link(url), None) => url.to_string(),
+            (Source::Link(url), None) => without_codes(url),
         }
     }
 
@@ -217,40 +261,50 @@ impl Encoder {
         }
     }
 
-    /// Access codes for the next session with it.
-    pub(in crate::app) fn access_codes(&self) -> &[(CodeNumber, AccessCode)] {
-        &self.access_codes
-    }
-
-    /// Ends what runs.
-    pub(in crate::app) fn stop(&mut self) {
+    /// Ends what runs, and gives up a link that is being opened.
+    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+        if self.phase == Phase::Opening {
+            let why = Text::new("session.open_cancelled");
+            services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
+            self.phase = Phase::Lost(why);
+            if let Some(opening) = &mut self.opening {
+                // What it still gives is for nobody; the next attempt waits until it is over.
+                opening.attempt = None;
+            }
+        }
         if let Some(line) = &mut self.line {
             line.stop();
         }
     }
 
     /// A profile was read again from its file; edits stay.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, document: Document) {
+    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
         let Body::Hiperface(profile) = &document.body;
         self.staged.refresh(profile.fields.clone());
-        self.source = Source::File { path, document: Box::new(document) };
+        self.source = Source::File { path, key, document: Box::new(document) };
     }
 
     /// A profile was written, or not.
     pub(in crate::app) fn written(
         &mut self,
-        path: PathBuf,
+        (path, key): (PathBuf, String),
         document: Document,
+        remarks: Vec<Text>,
         result: Result<(), FileError>,
         services: &mut Services,
     ) {
         match result {
             Ok(()) => {
-                let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.name()));
+                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
+                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
+                texts.extend(remarks);
+                services.tell(severity, texts, Some(&self.name()));
                 if self.phase == Phase::Offline {
-                    self.forget_draft_unless(&path, services);
-                    self.take_document(path, document);
+                    let moved = self.forget_draft_unless(&key, services);
+                    self.take_document(path, key, document);
+                    if moved {
+                        self.begin_draft(services);
+                    }
                 }
             }
             Err(error) => services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name())),
@@ -260,9 +314,14 @@ impl Encoder {
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, counter, position } = survey;
-        if self.is_another(&identity) {
+        let fresh = std::mem::take(&mut self.just_connected);
+        // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
+        let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
+        if self.is_another(&identity) || (self.identity.is_some() && unproven) {
             if self.staged.is_dirty() {
-                let text = Text::new("session.other_encoder").with("serial", &identity.serial.serial_number);
+                let kept = self.identity.as_ref().is_some_and(|known| !known.serial.serial_number.is_empty());
+                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
+                let text = text.with("serial", &identity.serial.serial_number);
                 services.tell(Severity::Warning, vec![text], Some(&self.name()));
             }
             self.forget_encoder(services);
@@ -278,16 +337,35 @@ impl Encoder {
         if first {
             self.load_draft(services);
         }
+        self.tell_of_code(services);
         self.list_backups(services);
+    }
+
+    /// Whether the access code that the user gave opens the fields that it guards; never the code itself.
+    fn tell_of_code(&mut self, services: &mut Services) {
+        let Some(number) = self.tried_code.take() else { return };
+        let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
+        let fields: Vec<&FieldImage> = self.staged.device().iter().filter(own).collect();
+        let shut: Vec<String> =
+            fields.iter().filter(|field| field.bytes.is_none()).map(|field| field.number.to_string()).collect();
+        let (severity, text) = match (fields.is_empty(), shut.is_empty()) {
+            (true, _) => (Severity::Note, Text::new("session.code_unused")),
+            (false, true) => (Severity::Good, Text::new("session.code_fits")),
+            (false, false) => (Severity::Warning, Text::new("session.code_wrong").with("fields", shut.join(", "))),
+        };
+        if severity == Severity::Warning {
+            self.access_codes.retain(|(own, _)| *own != number);
+        }
+        services.tell(severity, vec![text.with("number", number)], Some(&self.name()));
     }
 
     /// Another encoder than the one that was read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
-        let known = self.identity.as_ref().map(|identity| &identity.serial.serial_number);
-        known.is_some_and(|known| *known != identity.serial.serial_number)
+        let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
+        self.identity.as_ref().is_some_and(|known| who(known) != who(identity))
     }
 
-    fn forget_encoder(&mut self, services: &Services) {
+    fn forget_encoder(&mut self, services: &mut Services) {
         self.leave_draft(services);
         self.identity = None;
         self.staged.clear();
@@ -308,7 +386,7 @@ impl Encoder {
             return;
         }
         let (store, id, serial) = (services.world.store.clone(), self.id, identity.serial.serial_number.clone());
-        let key = device_key(identity, self.is_virtual());
+        let key = self.key_of(identity);
         services.tasks.run("backups", move || {
             let backups = store.backups().list(KIND, &serial);
             let writes = match store.logbook_path() {
@@ -317,21 +395,34 @@ impl Encoder {
                     .and_then(|logbook| logbook.history(&key, 200))
                     .map_err(|error| error.to_string()),
             };
-            crate::app::Action::Done(crate::app::action::Done::Hiperface(id, Done::Backups { backups, writes }))
+            let done = Done::Backups { of: key, backups, writes };
+            crate::app::Action::Done(crate::app::action::Done::Hiperface(id, done))
         });
+    }
+
+    /// How the logbook knows an encoder on this line.
+    fn key_of(&self, identity: &Identity) -> DeviceKey {
+        device_key(identity, self.is_virtual())
+    }
+
+    /// How the logbook knows it.
+    pub(super) fn key(&self) -> Option<DeviceKey> {
+        self.identity.as_ref().map(|identity| self.key_of(identity))
     }
 
     /// Takes over what a task came back with.
     pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
-            Done::Draft { key, result } => self.take_draft(&key, result, services),
+            Done::Draft { key, claim, result } => self.take_draft(&key, claim, result, services),
             Done::DraftKept { key, result } => self.draft_kept(&key, result, services),
-            Done::Backups { backups, writes } => {
+            // About another encoder than the one that is connected by now.
+            Done::Backups { of, .. } | Done::Backup { of, .. } if self.key().as_ref() != Some(&of) => {}
+            Done::Backups { backups, writes, .. } => {
                 self.backups = Some(backups.map_err(|error| explain::file(&error)));
                 self.writes = Some(writes.map_err(|why| Text::new("backups.no_logbook").with("why", why)));
             }
-            Done::Backup(profile) => self.plan_restore(*profile, services),
-            Done::NoBackup(path, error) => {
+            Done::Backup { result: Ok(profile), .. } => self.plan_restore(*profile, services),
+            Done::Backup { path, result: Err(error), .. } => {
                 let text = crate::app::studio::read_error(&path, &error);
                 services.tell(Severity::Error, vec![text], Some(&self.name()));
             }

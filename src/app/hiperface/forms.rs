@@ -39,7 +39,8 @@ pub fn channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| Text::new("entry.channel").with("entry", text))
 }
 
-/// A position in steps, decimal or with `0x` in front; or degrees within the first turn with `°` behind.
+/// A position in steps, decimal or with `0x` in front; or degrees within the first turn with `°` or `deg`
+/// behind. No sign, no exponent, no words.
 ///
 /// # Errors
 /// In words, with the range where it is known.
@@ -47,9 +48,15 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
     let refused = || Text::new("entry.position").with("entry", text).with("last", last);
-    let steps = match (text.strip_suffix('°'), text.strip_prefix("0x")) {
+    let degrees = text.strip_suffix('°').or_else(|| text.strip_suffix("deg"));
+    let steps = match (degrees, text.strip_prefix("0x")) {
         (Some(degrees), _) => {
-            let degrees: f64 = degrees.trim().replace(',', ".").parse().map_err(|_| refused())?;
+            let degrees = degrees.trim().replace(',', ".");
+            // The parser would take a sign, an exponent, and numbers that are none.
+            if !degrees.bytes().all(|c| c.is_ascii_digit() || c == b'.') {
+                return Err(refused());
+            }
+            let degrees: f64 = degrees.parse().map_err(|_| refused())?;
             let per_turn = geometry.and_then(Geometry::steps_per_turn).ok_or_else(refused)?;
             let steps = (degrees / 360.0 * per_turn as f64).round();
             if steps < 0.0 || steps > last as f64 {
@@ -57,8 +64,11 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
             }
             steps as u64
         }
-        (None, Some(hex)) => u64::from_str_radix(hex, 16).map_err(|_| refused())?,
-        (None, None) => text.parse().map_err(|_| refused())?,
+        (None, Some(hex)) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => {
+            u64::from_str_radix(hex, 16).map_err(|_| refused())?
+        }
+        (None, None) if text.bytes().all(|c| c.is_ascii_digit()) => text.parse().map_err(|_| refused())?,
+        (None, _) => return Err(refused()),
     };
     u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
 }
@@ -98,12 +108,36 @@ mod tests {
     #[test]
     fn positions_are_steps_or_degrees_within_the_range() {
         // 128 periods × 32 steps = 4096 steps a turn; 90° are 1024 of them; 4096 turns are 16 777 216 steps.
-        for (text, steps) in
-            [("0", 0), (" 1024 ", 1024), ("0x10", 16), ("90°", 1024), ("0,5 °", 6), ("16777215", 16_777_215)]
-        {
+        for (text, steps) in [
+            ("0", 0),
+            (" 1024 ", 1024),
+            ("0x10", 16),
+            ("90°", 1024),
+            ("90 deg", 1024),
+            ("90deg", 1024),
+            ("0,5 °", 6),
+            ("16777215", 16_777_215),
+        ] {
             assert_eq!(position(text, Some(SKM36)), Ok(steps), "{text}");
         }
-        for text in ["", "-1", "16777216", "x", "1.5", "-90°", "°", "4294967296"] {
+        for text in [
+            "",
+            "-1",
+            "16777216",
+            "x",
+            "1.5",
+            "-90°",
+            "°",
+            "deg",
+            "NaN°",
+            "inf°",
+            "+5",
+            "+5°",
+            "0x+5",
+            "1e2°",
+            "5 h",
+            "4294967296",
+        ] {
             assert!(position(text, Some(SKM36)).is_err(), "{text}");
         }
         assert_eq!(position("4294967295", None), Ok(u32::MAX));

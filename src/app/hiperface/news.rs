@@ -3,24 +3,47 @@
 use super::act::document_of;
 use super::encoder::{Encoder, Phase, Source};
 use super::review::ReviewState;
+use super::rules;
 use crate::app::action::Opened;
 use crate::app::line::Line;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
-use crate::device::hiperface::{Error, Sample};
-use crate::profile::hiperface::{HiperfacePlan, Op};
-use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value};
+use crate::device::hiperface::{Error, Sample, Station};
+use crate::profile::hiperface::Op;
+use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings, StatusCode};
+use crate::worker::hiperface::{
+    Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+};
 use crate::worker::{Event, JobId};
 
 impl Encoder {
     /// The link is open: the encoder is read.
     pub(in crate::app) fn connect(&mut self, opened: Opened, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.opening = None;
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
+        services.log.settle("session.not_connected", &self.name());
         self.curve.forget();
-        self.submit(HiperfaceJob::Survey, services);
+        self.just_connected = true;
+        self.codes_due.clear();
+        self.read_encoder(services);
+    }
+
+    /// Reads the encoder. After connecting, who is there comes before the access codes: they are for one encoder and no
+    /// other.
+    pub(super) fn read_encoder(&mut self, services: &mut Services) {
+        let identify = self.just_connected && !self.access_codes.is_empty();
+        self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
+    }
+
+    /// Gives the session the next access code of the encoder that is connected again; after the last it is read.
+    fn give_codes(&mut self, services: &mut Services) {
+        match self.codes_due.pop() {
+            Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
+            None => self.submit(HiperfaceJob::Survey, services),
+        }
     }
 
     /// Takes what has come over the line since the last time.
@@ -29,6 +52,9 @@ impl Encoder {
             self.take(event, services);
         }
         self.take_samples_and_frames();
+        if self.line.as_ref().is_some_and(Line::is_dead) {
+            self.lose(Text::new("session.ended"), services);
+        }
     }
 
     pub(super) fn take_samples_and_frames(&mut self) {
@@ -51,19 +77,34 @@ impl Encoder {
             Event::Remark(Remark::Found(_)) => {}
             Event::Finished(id, output) => {
                 services.job_ends(self.id, id, JobEnd::Done);
+                self.answers(&output);
                 self.finished(*output, services);
             }
             Event::Failed(id, error) => self.failed(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
-            Event::PollFailed(error) => match explain::hiperface::loss(&error) {
-                Some(why) => self.lose(why, services),
-                None => {
-                    let mut texts = vec![Text::new("session.poll_failed")];
-                    texts.extend(explain::hiperface::job(&error));
-                    services.tell(Severity::Error, texts, Some(&self.name()));
+            Event::PollFailed(error) if explain::hiperface::loss(&error).is_some() => {
+                let why = explain::hiperface::loss(&error);
+                self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
+            }
+            // Of an earlier wish: the one in force now goes on.
+            Event::PollFailed(_) if self.line.as_ref().is_some_and(|line| line.polling().is_some()) => {}
+            Event::PollFailed(error) => {
+                let mut texts = vec![Text::new("session.poll_failed")];
+                let why = explain::hiperface::job(&error);
+                if let Some(first) = why.first().filter(|_| self.is_silence(&error) && !self.is_busy()) {
+                    self.phase = Phase::Silent(first.clone());
                 }
-            },
+                texts.extend(why);
+                services.tell(Severity::Error, texts, Some(&self.name()));
+            }
             Event::Lost(error) => self.lose(explain::link(&error), services),
+        }
+    }
+
+    /// The encoder has answered, unless the job asked it nothing.
+    fn answers(&mut self, output: &HiperfaceOutput) {
+        if matches!(self.phase, Phase::Silent(_)) && !matches!(output, HiperfaceOutput::CodeNoted) {
+            self.phase = Phase::Connected;
         }
     }
 
@@ -76,21 +117,35 @@ impl Encoder {
     fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
         match output {
             HiperfaceOutput::Surveyed(survey) => self.take_survey(*survey, services),
-            HiperfaceOutput::Identity(identity) => self.identity = Some(identity),
+            HiperfaceOutput::Identity(identity) => {
+                let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
+                if proven {
+                    self.codes_due.clone_from(&self.access_codes);
+                } else {
+                    self.access_codes.clear();
+                }
+                self.give_codes(services);
+            }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.curve.add(vec![Sample::Position(reading)], 0),
             HiperfaceOutput::Value(value) => self.take_value(value),
             HiperfaceOutput::Check(lines) => self.check = Some(lines),
             HiperfaceOutput::Reset(codes) => {
                 self.codes = Some(codes);
+                if let Some(stored) = self.identity.as_ref().map(|identity| identity.label.settings) {
+                    self.follow_settings(stored);
+                }
                 services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Configured => {
+                if let Some(settings) = self.configured.take() {
+                    self.follow_settings(settings);
+                }
                 services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
-            HiperfaceOutput::CodeNoted => self.submit(HiperfaceJob::Survey, services),
+            HiperfaceOutput::CodeNoted => self.give_codes(services),
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
             HiperfaceOutput::Prepared(prepared) if self.is_another(&prepared.identity) => {
                 // Exchanged behind our adapter: what was edited for the one before is not for it.
@@ -98,16 +153,16 @@ impl Encoder {
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Prepared(prepared) => {
+                let allowed = rules::keeps_edits(&self.staged, &prepared.plan);
                 if let Some(review) = &mut self.review {
-                    review.state = ReviewState::Ready(prepared);
+                    review.state = match allowed {
+                        Ok(()) => ReviewState::Ready(prepared),
+                        Err(why) => ReviewState::Failed { texts: vec![why], begun: false },
+                    };
                 }
             }
             HiperfaceOutput::Committed(committed) => {
-                let mut texts = vec![explain::hiperface::written(&committed.written)];
-                if let Some(why) = &committed.logbook_warning {
-                    texts.push(explain::logbook(why));
-                }
-                let severity = if texts.len() > 1 { Severity::Warning } else { Severity::Good };
+                let (severity, texts) = written(&committed);
                 services.tell(severity, texts, Some(&self.name()));
                 self.staged.forget_steps();
                 if let Some(review) = &mut self.review
@@ -115,7 +170,7 @@ impl Encoder {
                 {
                     let prepared = prepared.clone();
                     review.state = ReviewState::Done(prepared.clone(), committed);
-                    self.follow(&prepared.plan, services);
+                    self.follow(&prepared.plan.ops, services);
                 }
                 self.submit(HiperfaceJob::Survey, services);
             }
@@ -126,8 +181,8 @@ impl Encoder {
 
     /// After a write, the session talks to another address or with other codes: so will the next one. What a position was
     /// before it was set is nowhere but here: the encoder does not tell its offset.
-    fn follow(&mut self, plan: &HiperfacePlan, services: &mut Services) {
-        for op in &plan.ops {
+    fn follow(&mut self, ops: &[Op], services: &mut Services) {
+        for op in ops {
             match op {
                 Op::ChangeCode { number, new, .. } => self.know_code(*number, *new),
                 Op::SetAddress { to, .. } => {
@@ -143,6 +198,21 @@ impl Encoder {
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// From now on the encoder talks like that, in the next session too.
+    fn follow_settings(&mut self, settings: LineSettings) {
+        let (Source::Link(url), Some(format)) = (&mut self.source, settings.format()) else { return };
+        let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
+        if now.format.baud != format.baud {
+            url.query.set("baud", &format.baud.to_string());
+        }
+        if now.format.parity != format.parity {
+            url.query.set("parity", format.parity.word());
+        }
+        if now.long_timeout != settings.long_timeout() {
+            url.query.set("timeout", if settings.long_timeout() { "44" } else { "11" });
         }
     }
 
@@ -164,13 +234,18 @@ impl Encoder {
     }
 
     fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
-        for (field, number) in &saved.locked {
-            let text = Text::new("session.saved_locked").with("field", field).with("number", number);
-            services.tell(Severity::Warning, vec![text], Some(&self.name()));
+        let Some(path) = self.save_to.take() else { return };
+        let mut remarks = Vec::new();
+        // The profile holds what the encoder has.
+        let edits = self.staged.edits().count();
+        if edits > 0 {
+            remarks.push(Text::new("session.saved_without").with("count", edits));
         }
-        if let Some(path) = self.save_to.take() {
-            self.write_document(path, document_of(saved.profile), services);
-        }
+        let locked = saved.locked.iter();
+        remarks.extend(
+            locked.map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number)),
+        );
+        self.write_document(path, document_of(saved.profile), remarks, services);
     }
 
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
@@ -187,6 +262,12 @@ impl Encoder {
         self.save_to = None;
         let gone = explain::hiperface::loss(error);
         let begun = matches!(error, JobError::Interrupted { .. });
+        self.follow_what_was_done(error, services);
+        let silent = gone.is_none() && self.is_silence(error);
+        if silent {
+            self.phase = Phase::Silent(first.clone());
+            services.log.settle("session.not_connected", &self.name());
+        }
         match &mut self.review {
             Some(review) if matches!(review.state, ReviewState::Planning | ReviewState::Writing(_)) => {
                 review.state = ReviewState::Failed { texts: texts.clone(), begun };
@@ -194,24 +275,51 @@ impl Encoder {
             }
             // That is told below.
             _ if gone.is_some() => {}
+            // It stands where the session is shown.
+            _ if silent => services.note(Severity::Error, texts, Some(&self.name())),
             _ => services.tell(Severity::Error, texts, Some(&self.name())),
         }
         if let Some(why) = gone {
             self.lose(why, services);
-        } else if begun {
+        } else if begun && !silent {
             self.submit(HiperfaceJob::Survey, services);
         }
     }
 
+    /// The link is open and the encoder does not answer; or nothing has been read at all since it was opened, because what
+    /// comes makes no sense.
+    fn is_silence(&self, error: &JobError) -> bool {
+        let cause = match error {
+            JobError::Device(cause) => cause,
+            JobError::Interrupted { interrupted, .. } => &interrupted.cause,
+            _ => return false,
+        };
+        cause.is_lost() || (self.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
+    }
+
+    /// After a write that ended early, the session follows those operations that were carried out.
+    fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
+        let JobError::Interrupted { interrupted, .. } = error else { return };
+        let Some(ReviewState::Writing(prepared)) = self.review.as_ref().map(|review| &review.state) else { return };
+        let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
+        self.follow(&done, services);
+    }
+
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         services.job_ends(self.id, id, JobEnd::Cancelled);
+        self.follow_what_was_done(error, services);
         self.asked = None;
         self.save_to = None;
         let texts = explain::hiperface::job(error);
-        services.tell(Severity::Warning, texts.clone(), Some(&self.name()));
         let begun = matches!(error, JobError::Interrupted { .. });
+        // As the user wished; what was written until then is to be looked at.
+        let severity = if begun { Severity::Warning } else { Severity::Note };
+        services.tell(severity, texts.clone(), Some(&self.name()));
+        if self.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Planning)) {
+            self.review = None;
+        }
         if let Some(review) = &mut self.review
-            && matches!(review.state, ReviewState::Planning | ReviewState::Writing(_))
+            && review.is_writing()
         {
             review.state = ReviewState::Failed { texts, begun };
         }
@@ -219,4 +327,39 @@ impl Encoder {
             self.submit(HiperfaceJob::Survey, services);
         }
     }
+}
+
+/// What a write came to.
+fn written(committed: &Committed) -> (Severity, Vec<Text>) {
+    let text = explain::hiperface::written(&committed.written);
+    match &committed.logbook_warning {
+        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
+        None => (Severity::Good, vec![text]),
+    }
+}
+
+/// How the last job of a session that was let go ended.
+pub(in crate::app) struct LastWords {
+    pub(in crate::app) job: JobId,
+    pub(in crate::app) end: JobEnd,
+    pub(in crate::app) severity: Severity,
+    pub(in crate::app) texts: Vec<Text>,
+}
+
+/// What an event of a session that was let go says about the end of its job.
+pub(in crate::app) fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
+    let (job, end, (severity, texts)) = match event {
+        Event::Finished(job, output) => match &**output {
+            HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, written(committed)),
+            _ => (job, JobEnd::Done, (Severity::Note, vec![Text::new("session.ended")])),
+        },
+        Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, explain::hiperface::job(error))),
+        Event::Failed(job, error) => {
+            let texts = explain::hiperface::job(error);
+            let why = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
+            (job, JobEnd::Failed(why), (Severity::Error, texts))
+        }
+        _ => return None,
+    };
+    Some(LastWords { job: *job, end, severity, texts })
 }

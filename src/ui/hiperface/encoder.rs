@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::wiring;
 use crate::app::Action;
 use crate::app::explain::hiperface as words;
-use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::device::hiperface::Identity;
 use crate::device::hiperface::check::Verdict;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
@@ -31,7 +31,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let ready = encoder.is_ready() || encoder.phase == Phase::Offline;
+    let ready = encoder.is_readable();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
             actions.push(Action::Hiperface(encoder.id, Hiperface::Read));

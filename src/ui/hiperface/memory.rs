@@ -4,7 +4,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::explain::hiperface as words;
-use crate::app::hiperface::{Action as Hiperface, Encoder, Phase, Source, forms, rules};
+use crate::app::hiperface::{Action as Hiperface, Encoder, Phase, Source, Staged, forms, rules};
 use crate::app::{Action, Studio, Text};
 use crate::profile::Body;
 use crate::profile::hiperface::{FieldImage, FieldRange};
@@ -51,7 +51,7 @@ pub(super) fn page_ui(
     let wanted = encoder.staged.wanted();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_ready());
+        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_readable());
         if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
         }
@@ -231,13 +231,13 @@ fn field_head(
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
-        if allowed_button(ui, skin, &ready(), icon, &skin.say(word)).clicked() {
+        if allowed_button(ui, skin, &ready().and_then(|()| rules::status(field)), icon, &skin.say(word)).clicked() {
             change = Some(Change::LockField { number: field.number, lock });
         }
-        code_menu(ui, skin, &ready(), field, &mut change);
+        code_menu(ui, skin, &ready().and_then(|()| rules::status(field)), field, &mut change);
         let resizable = ready().and_then(|()| rules::resizable(memory, field));
-        size_menu(ui, skin, &resizable, memory, field, &mut change);
-        let deletable = ready().and_then(|()| rules::delete(memory, field));
+        size_menu(ui, skin, &resizable, memory, (field, &encoder.staged), &mut change);
+        let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
         if allowed_button(ui, skin, &deletable, icons::TRASH, &skin.say("memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
         }
@@ -271,7 +271,7 @@ fn size_menu(
     skin: &Skin,
     allowed: &rules::Allowed,
     memory: FreeMemory,
-    field: &FieldImage,
+    (field, staged): (&FieldImage, &Staged),
     change: &mut Option<Change>,
 ) {
     let word = skin.say("memory.resize");
@@ -281,7 +281,7 @@ fn size_menu(
     }
     let menu = ui.menu_button(format!("{}  {word}", icons::ARROWS_OUT_LINE_HORIZONTAL), |ui| {
         for size in FieldSize::all() {
-            let allowed = rules::resize(memory, field, size);
+            let allowed = rules::resize(memory, field, size, staged);
             let own = egui::Button::selectable(size == field.status.size(), format!("{} B", size.bytes()));
             let response = ui.add_enabled(allowed.is_ok(), own);
             let response = match &allowed {

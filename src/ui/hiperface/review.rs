@@ -45,7 +45,7 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
             ui.label(skin.label(skin.say("review.way")));
             buttons(ui, skin, encoder, actions, "review.cancel", |ui, actions| {
                 if primary(ui, skin, encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("review.write")).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::Write));
+                    actions.push(Action::Hiperface(encoder.id, Hiperface::Write(prepared.plan.id())));
                 }
             });
         }

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, Plot, PlotPoints, Points};
 
 use super::nothing;
-use crate::app::hiperface::{Action as Hiperface, Curve, Encoder, Unit};
+use crate::app::hiperface::{Action as Hiperface, Curve, Encoder, Phase, Unit};
 use crate::app::{Action, Studio};
 use crate::ui::controls::{choice, enabled_button, icon_button, row};
 use crate::ui::{Skin, Views, icons};
@@ -61,7 +61,7 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
 }
 
 fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, actions: &mut Vec<Action>) {
-    let connected = encoder.line().is_some();
+    let connected = encoder.phase == Phase::Connected;
     let polling = encoder.line().and_then(|line| line.polling());
     ui.horizontal_wrapped(|ui| {
         if polling.is_some() {

@@ -1,0 +1,112 @@
+//! Sessions that were let go: what still ends there is told, and neither the window nor the wire is free before.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam_channel::Sender;
+
+use super::action::{Action, Done};
+use super::hiperface;
+use super::services::{JobEnd, Services};
+use super::studio::SessionId;
+use super::{Severity, Text};
+use crate::link::LinkUrl;
+use crate::worker::hiperface::Hiperface;
+use crate::worker::{Ending, JobId, Worker};
+
+/// How long closing waits, and opening for a wire that somebody still holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// For the disk.
+    pub disk: Duration,
+    /// For a job that writes nothing.
+    pub job: Duration,
+    /// For a write: it comes to a point at which it can end, and locks again what it unlocked.
+    pub write: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Patience { disk: Duration::from_secs(3), job: Duration::from_secs(10), write: Duration::from_secs(90) }
+    }
+}
+
+/// Whose thread was let go.
+pub(super) struct Leaver {
+    /// Its number.
+    pub(super) session: SessionId,
+    /// Its name.
+    pub(super) about: String,
+    /// Where it talks.
+    pub(super) url: LinkUrl,
+    /// The write that runs there.
+    pub(super) write: Option<JobId>,
+}
+
+/// A session that was let go and has not ended.
+pub(super) struct Leaving {
+    who: Leaver,
+    ending: Arc<Ending<Hiperface>>,
+}
+
+/// Two links that lead to the same wire.
+pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
+    one.scheme == other.scheme && one.target == other.target && !one.target.is_empty()
+}
+
+impl Services {
+    /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
+    pub(super) fn leave(&mut self, worker: Worker<Hiperface>, who: Leaver, turn: Option<Sender<()>>) {
+        let ending = Arc::new(worker.end());
+        let (watched, patience) = (ending.clone(), self.patience_with(who.write.is_some()));
+        self.tasks.run("leave", move || {
+            watched.wait(patience);
+            drop(turn);
+            Action::Done(Done::Left)
+        });
+        self.leaving.push(Leaving { who, ending });
+    }
+
+    /// Takes what those that were let go still tell.
+    pub(super) fn pump_leaving(&mut self) {
+        let mut told = Vec::new();
+        self.leaving.retain_mut(|leaving| {
+            // In this order: what has ended tells nothing more.
+            let ended = leaving.ending.is_ended();
+            for event in leaving.ending.events().try_iter() {
+                if let Some(end) = hiperface::last_words(&event)
+                    && leaving.who.write == Some(end.job)
+                {
+                    leaving.who.write = None;
+                    told.push((leaving.who.session, leaving.who.about.clone(), end));
+                }
+            }
+            if ended && let Some(job) = leaving.who.write.take() {
+                let why = Text::new("session.ended");
+                let end = JobEnd::Failed(why.clone());
+                let end = hiperface::LastWords { job, end, severity: Severity::Error, texts: vec![why] };
+                told.push((leaving.who.session, leaving.who.about.clone(), end));
+            }
+            !ended
+        });
+        for (session, about, last) in told {
+            self.job_ends(session, last.job, last.end);
+            self.tell(last.severity, last.texts, Some(&about));
+        }
+    }
+
+    /// One that was let go still writes.
+    pub(super) fn leaves_writing(&self) -> bool {
+        self.leaving.iter().any(|leaving| leaving.who.write.is_some())
+    }
+
+    /// Those that still hold a wire, with the time they get.
+    pub(super) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<Ending<Hiperface>>, Duration)> {
+        let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
+        own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()
+    }
+
+    fn patience_with(&self, writes: bool) -> Duration {
+        if writes { self.world.patience.write } else { self.world.patience.job }
+    }
+}

@@ -1,0 +1,130 @@
+//! Sessions that are closed, opened again or dead: what still ends there is told, and waited for within limits.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::{Action, JobEnd, Severity};
+
+use crate::support::{Desk, PORT, SLOW, is_review};
+
+/// Two bytes are being written, held before the first, and the session is closed.
+fn closed_while_writing(mut desk: Desk) -> Desk {
+    desk.put(0, 0, b"X");
+    desk.put(0, 2, b"Y");
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().hold_at(0x4B, 1);
+    desk.write_as_shown();
+    desk.wire().wait_until_held();
+    let id = desk.encoder().id;
+    desk.act(Action::CloseSession(id));
+    desk.act(Action::Confirm);
+    assert!(desk.studio.encoders().is_empty());
+    desk
+}
+
+#[test]
+fn a_write_whose_session_is_closed_is_waited_for_and_told() {
+    let mut desk = closed_while_writing(Desk::at_port(""));
+    desk.act(Action::Close);
+    desk.settle();
+    assert!(!desk.studio.may_close(), "it still writes");
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Running);
+    desk.wire().release();
+    desk.until("it may close", |studio| studio.may_close());
+    assert!(desk.told(Severity::Warning).contains(&"write.cancelled"));
+    assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+    assert_eq!(desk.wire().field(0)[..3], *b"XMD");
+}
+
+#[test]
+fn a_wire_is_opened_again_only_after_the_write_on_it_has_ended() {
+    let mut desk = closed_while_writing(Desk::at_port(""));
+    let sent = desk.wire().sent();
+    desk.open(&format!("serial:{PORT}"));
+    desk.settle();
+    assert_eq!((desk.phase(), desk.wire().sent()), (&Phase::Opening, sent));
+    desk.wire().release();
+    desk.until_read();
+    assert!(desk.told(Severity::Warning).contains(&"write.cancelled"));
+    assert_eq!(desk.encoder().staged.on_device(0, 0), Some(b'X'));
+}
+
+#[test]
+fn the_draft_of_a_closed_session_is_waited_for() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    let id = desk.encoder().id;
+    desk.act(Action::CloseSession(id));
+    desk.act(Action::Confirm);
+    desk.act(Action::Close);
+    desk.until("it may close", |studio| studio.may_close());
+    assert!(desk.outside.path("data/drafts").exists(), "as soon as it may close, the edit is on disk");
+}
+
+/// The first attempt comes late, after another one has connected.
+#[test]
+fn what_an_earlier_attempt_opened_is_not_used() {
+    let mut desk = Desk::fresh("");
+    desk.outside.patience.job = Duration::from_millis(50);
+    desk.studio = desk.outside.studio();
+    desk.open(SLOW);
+    desk.settle();
+    desk.open(&format!("{SLOW}?margin=21"));
+    desk.until_read();
+    let surveys = desk.wire().count(0x52);
+    desk.outside.opens.store(true, Ordering::SeqCst);
+    std::thread::sleep(Duration::from_millis(50));
+    desk.settle();
+    assert_eq!(desk.wire().count(0x52), surveys, "nobody reads it a second time");
+    assert_eq!((desk.studio.encoders().len(), desk.phase()), (1, &Phase::Connected));
+    desk.act(Action::Close);
+    desk.until("its thread has ended", |studio| studio.may_close());
+}
+
+#[test]
+fn a_session_whose_thread_is_dead_is_lost_with_what_it_did() {
+    let mut desk = Desk::at_port("");
+    desk.put(0, 0, b"X");
+    desk.wire().kill();
+    let wakes = desk.outside.wakes.load(Ordering::SeqCst);
+    desk.ask(Hiperface::ReadCounter);
+    desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+    assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.ended"));
+    assert!(desk.outside.wakes.load(Ordering::SeqCst) > wakes, "the window is told to look");
+    assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Failed(_)));
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+
+    desk.ask(Hiperface::Review);
+    desk.until_planned();
+    desk.wire().kill();
+    desk.write_as_shown();
+    desk.until("it has ended", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))
+    });
+}
+
+#[test]
+fn closing_does_not_wait_for_ever_for_a_job_and_longer_for_a_write() {
+    let mut desk = Desk::impatient("");
+    desk.wire().hold_at(0x46, 1);
+    desk.ask(Hiperface::ReadCounter);
+    desk.wire().wait_until_held();
+    let patience = desk.outside.patience;
+    let began = Instant::now();
+    desk.act(Action::Close);
+    desk.act(Action::Confirm);
+    desk.until("it may close", |studio| studio.may_close());
+    assert!(began.elapsed() >= patience.job && began.elapsed() < patience.write);
+    desk.wire().release();
+
+    let mut desk = closed_while_writing(Desk::impatient(""));
+    let began = Instant::now();
+    desk.act(Action::Close);
+    desk.until("it may close", |studio| studio.may_close());
+    assert!(began.elapsed() >= patience.write);
+    desk.wire().release();
+}
