@@ -1,5 +1,6 @@
-//! What sine and cosine samples mean: the angle inside a period, the ellipse they draw and how to make it a circle, their
-//! quality, and how they go together with the absolute position. Pure numbers: no file, no clock, no thread, no drawing.
+//! What samples mean: their time, positions without a wrap, speed and acceleration; of sine and cosine the angle inside
+//! a period, the ellipse they draw and how to make it a circle, their quality, and how they go together with the absolute
+//! position. Pure: samples and their times are handed in; nothing here waits, reads a clock or a file, or draws.
 //!
 //! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
 
@@ -11,8 +12,15 @@ pub mod coverage;
 pub mod ellipse;
 pub mod input_circuit;
 pub mod moments;
+mod motion;
 pub mod nonlinearity;
 pub mod position_error;
 pub mod quality;
 pub mod spectrum;
 pub mod synchronise;
+mod time;
+mod unwrap;
+
+pub use motion::{Motion, Rates};
+pub use time::Time;
+pub use unwrap::{Unwrap, Unwrapped};
