@@ -1,4 +1,4 @@
-//! What samples mean: their time, positions without a wrap, speed and acceleration; of sine and cosine the angle inside
+//! What samples mean: their time, positions without a wrap, speed and acceleration; hours of them and pictures of any stretch; of sine and cosine the angle inside
 //! a period, the ellipse they draw and how to make it a circle, their quality, and how they go together with the absolute
 //! position. Pure: samples and their times are handed in; nothing here waits, reads a clock or a file, or draws.
 //!
@@ -10,6 +10,7 @@ pub mod capture;
 pub mod commutation;
 pub mod coverage;
 pub mod ellipse;
+pub mod history;
 pub mod input_circuit;
 pub mod moments;
 mod motion;
