@@ -1,10 +1,10 @@
 //! The connection dialog, carried out.
 
 use super::{Action, Connect, LinkForm, Search, list_ports};
-use crate::app::Text;
 use crate::app::action::Done;
 use crate::app::line::Line;
 use crate::app::studio::Studio;
+use crate::app::{Text, explain};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 
@@ -27,7 +27,7 @@ impl Studio {
             Action::Edit(form) => self.edit(*form),
             Action::Use(link) => match link.parse::<LinkUrl>() {
                 Ok(url) => self.edit(LinkForm::from_url(&url)),
-                Err(error) => self.refuse(Text::new("link.url").with("why", error)),
+                Err(error) => self.refuse(Text::new("link.url").with_text("why", explain::url(&error))),
             },
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };

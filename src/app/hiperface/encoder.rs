@@ -313,9 +313,7 @@ impl Encoder {
             let backups = store.backups().list(KIND, &serial);
             let writes = match store.logbook_path() {
                 path if !path.exists() => Ok(Vec::new()),
-                path => crate::store::Logbook::open(&path)
-                    .and_then(|logbook| logbook.history(&key, 200))
-                    .map_err(|error| error.to_string()),
+                path => crate::store::Logbook::open(&path).and_then(|logbook| logbook.history(&key, 200)),
             };
             crate::app::Action::Done(crate::app::action::Done::Hiperface(id, Done::Backups { backups, writes }))
         });
@@ -328,7 +326,9 @@ impl Encoder {
             Done::DraftKept { key, result } => self.draft_kept(&key, result, services),
             Done::Backups { backups, writes } => {
                 self.backups = Some(backups.map_err(|error| explain::file(&error)));
-                self.writes = Some(writes.map_err(|why| Text::new("backups.no_logbook").with("why", why)));
+                self.writes = Some(writes.map_err(|error| {
+                    Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))
+                }));
             }
             Done::Backup(profile) => self.plan_restore(*profile, services),
             Done::NoBackup(path, error) => {
