@@ -347,7 +347,11 @@ impl Studio {
     fn close_session(&mut self, id: SessionId) {
         let Some(encoder) = self.encoder_mut(id) else { return };
         if encoder.is_busy() || encoder.staged.is_dirty() {
-            let text = if encoder.is_busy() { "question.session_busy" } else { "question.session_edits" };
+            let text = match &encoder.source {
+                _ if encoder.is_busy() => "question.session_busy",
+                Source::Link(_) => "question.session_edits",
+                Source::File { .. } => "question.profile_edits",
+            };
             let text = Text::new(text).with("name", encoder.name());
             let confirm = Text::new("question.close_session");
             self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
@@ -369,9 +373,9 @@ impl Studio {
 
     fn close(&mut self) {
         let busy = self.encoders.iter().any(Encoder::is_busy);
-        let edits = self.encoders.iter().filter(|encoder| encoder.staged.is_dirty()).count();
-        if busy || edits > 0 {
-            let text = if busy { Text::new("question.busy") } else { Text::new("question.edits").with("count", edits) };
+        let edits = self.encoders.iter().any(|encoder| encoder.staged.is_dirty());
+        if busy || edits {
+            let text = Text::new(if busy { "question.busy" } else { "question.edits" });
             let confirm = Text::new("question.close_window");
             self.question = Some(Question { text, confirm, then: Then::CloseWindow });
         } else {

@@ -178,8 +178,10 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
-    Text::new("encoder.out_of_field").with("field", field).with("last", last).with("start", start).with("count", count)
+/// Bytes that a field does not have.
+pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
+    let text = Text::new(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
+    text.with("field", field).with("last", last).with("start", start).with("count", count)
 }
 
 fn code_unknown(field: u8, number: impl ToString) -> Text {

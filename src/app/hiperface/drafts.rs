@@ -148,7 +148,7 @@ impl Encoder {
                 self.staged.take_draft(edits);
                 self.drafting.kept = self.staged.edits().collect();
                 if self.staged.is_dirty() {
-                    let text = Text::new("session.draft_back").with("bytes", self.drafting.kept.len());
+                    let text = Text::new("session.draft_back");
                     services.tell(Severity::Warning, vec![text], Some(&self.name()));
                 }
             }

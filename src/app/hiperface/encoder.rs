@@ -391,9 +391,7 @@ impl Encoder {
             let backups = store.backups().list(KIND, &serial);
             let writes = match store.logbook_path() {
                 path if !path.exists() => Ok(Vec::new()),
-                path => crate::store::Logbook::open(&path)
-                    .and_then(|logbook| logbook.history(&key, 200))
-                    .map_err(|error| error.to_string()),
+                path => crate::store::Logbook::open(&path).and_then(|logbook| logbook.history(&key, 200)),
             };
             let done = Done::Backups { of: key, backups, writes };
             crate::app::Action::Done(crate::app::action::Done::Hiperface(id, done))
@@ -419,7 +417,9 @@ impl Encoder {
             Done::Backups { of, .. } | Done::Backup { of, .. } if self.key().as_ref() != Some(&of) => {}
             Done::Backups { backups, writes, .. } => {
                 self.backups = Some(backups.map_err(|error| explain::file(&error)));
-                self.writes = Some(writes.map_err(|why| Text::new("backups.no_logbook").with("why", why)));
+                self.writes = Some(writes.map_err(|error| {
+                    Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))
+                }));
             }
             Done::Backup { result: Ok(profile), .. } => self.plan_restore(*profile, services),
             Done::Backup { path, result: Err(error), .. } => {

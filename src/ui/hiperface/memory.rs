@@ -351,12 +351,13 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
             }
             if dirty {
                 let count = encoder.staged.edits().count();
-                let id = match (&encoder.phase, count) {
-                    (Phase::Offline, _) => "memory.edited_offline",
-                    (_, 1) => "memory.edited_one",
-                    (_, _) => "memory.edited",
-                };
-                let text = Text::new(id).with("count", count);
+                let text = Text::new(match (&encoder.source, count) {
+                    (Source::Link(_), 1) => "memory.edited_one",
+                    (Source::Link(_), _) => "memory.edited",
+                    (Source::File { .. }, 1) => "memory.unsaved_one",
+                    (Source::File { .. }, _) => "memory.unsaved",
+                })
+                .with("count", count);
                 let words = RichText::new(skin.words(&text)).color(skin.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
             }
