@@ -9,8 +9,9 @@ use crate::protocol::hiperface::TypeTableError;
 use crate::sim::hiperface::ConfigError;
 use crate::store::{LogbookError, LogbookProblem};
 
-/// What lower floors say in phrases: what a value may be, what is wrong with an entry. The first that fits counts.
-const PHRASES: [&str; 60] = [
+/// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
+/// what can be read. The first that fits counts.
+const PHRASES: [&str; 73] = [
     "phrase.no_link",
     "phrase.no_parameter",
     "phrase.unknown_parameter",
@@ -71,6 +72,19 @@ const PHRASES: [&str; 60] = [
     "phrase.log_damaged",
     "phrase.log_newer",
     "phrase.log_entry",
+    "phrase.item_range",
+    "phrase.item_rest",
+    "phrase.item_field",
+    "phrase.item_status",
+    "phrase.item_analogue",
+    "phrase.item_counter",
+    "phrase.item_address",
+    "phrase.item_settings",
+    "phrase.item_position",
+    "phrase.item_code",
+    "phrase.item_encoder",
+    "phrase.item_fields",
+    "phrase.another_status",
 ];
 
 /// A phrase of a lower floor, which speaks English: recognised by its words.
@@ -260,6 +274,25 @@ mod tests {
         for (from, to) in cases {
             let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
             check(&document(&error), &error);
+        }
+    }
+
+    #[test]
+    fn what_can_be_read_is_named_in_both_languages() {
+        let cases = [
+            ("field:1@3+2", "Datenfeld 1 ab 3 (2 Bytes)"),
+            ("field:255@16", "Datenfeld 255 ab 16"),
+            ("field:0", "Datenfeld 0"),
+            ("status:2", "Status von Datenfeld 2"),
+            ("analogue:0x48", "Analogkanal 0x48"),
+            ("code 2", "Zugriffsschlüssel 2"),
+            ("settings", "Schnittstelleneinstellung"),
+        ];
+        for (words, german) in cases {
+            assert_eq!(
+                (phrase(words).words(English), phrase(words).words(German)),
+                (words.to_owned(), german.to_owned())
+            );
         }
     }
 

@@ -25,7 +25,7 @@ pub use words::{
     status_with_number,
 };
 
-use super::{file, link};
+use super::{file, link, phrase};
 use crate::app::Text;
 use crate::device::hiperface::Error;
 use crate::device::hiperface::write::{Interrupted, Written};
@@ -142,10 +142,11 @@ pub fn encoder(error: &Error) -> Text {
             out_of_field(*field, size.saturating_sub(1), *address, *count)
         }
         Error::CodeUnknown { field, number } => code_unknown(*field, number),
-        Error::Changed { item } => Text::new("encoder.changed").with("item", item),
-        Error::NotVerified { item, expected, got } => {
-            Text::new("encoder.not_verified").with("item", item).with("expected", expected).with("got", got)
-        }
+        Error::Changed { item } => Text::new("encoder.changed").with_text("item", phrase(item)),
+        Error::NotVerified { item, expected, got } => Text::new("encoder.not_verified")
+            .with_text("item", phrase(item))
+            .with("expected", expected)
+            .with_text("got", phrase(got)),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
 }
