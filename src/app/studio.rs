@@ -102,6 +102,7 @@ impl Studio {
             }
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),
+            Action::Typed(question, path) => self.typed(question, path),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -252,6 +253,14 @@ impl Studio {
             }
             Done::Read { path, key, result, types } => self.read(path, key, result, types),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
+            Done::Looked { session, path, exists: true } => {
+                let text = Text::new("question.replace").with("path", path.display());
+                let confirm = Text::new("question.replace_it");
+                self.question = Some(Question { text, confirm, then: Then::Save(session, path) });
+            }
+            Done::Looked { session, path, exists: false } => {
+                self.act_hiperface(session, hiperface::Action::Save(path));
+            }
             // That was to be looked at.
             Done::Left => {}
             Done::Written { session, path, key, document, remarks, result } => {
@@ -266,6 +275,16 @@ impl Studio {
                 }
             }
             Done::Hiperface(id, done) => self.done_for_encoder(id, done),
+        }
+    }
+
+    fn typed(&mut self, question: FileQuestion, path: PathBuf) {
+        match question {
+            FileQuestion::Open => self.act(Action::Open(path)),
+            FileQuestion::Save { session, .. } => self.services.tasks.run("look", move || {
+                let exists = path.exists();
+                Action::Done(Done::Looked { session, path, exists })
+            }),
         }
     }
 
@@ -404,6 +423,7 @@ impl Studio {
                 self.begin_to_close();
             }
             Some(Then::CloseSession(id)) => self.remove(id),
+            Some(Then::Save(id, path)) => self.act_hiperface(id, hiperface::Action::Save(path)),
             None => {}
         }
     }

@@ -106,7 +106,7 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let named = !view.path.trim().is_empty();
             if primary(ui, skin, named, icon, &skin.say(confirm)).clicked() || (enter && named) {
-                actions.push(answer(&view.question, PathBuf::from(view.path.trim())));
+                actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));
                 done = true;
             }
             if button(ui, "", &skin.say("file.cancel")).clicked() {
