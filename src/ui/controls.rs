@@ -161,7 +161,7 @@ pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str,
     let mut pressed = false;
     ui.vertical_centered(|ui| {
         ui.add_space(skin.space.groups);
-        ui.label(skin.label(words));
+        ui.add(egui::Label::new(skin.label(words)).wrap());
         if let Some((icon, word, enabled)) = action {
             ui.add_space(skin.space.inside);
             pressed = enabled_button(ui, enabled, icon, word).clicked();

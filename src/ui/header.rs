@@ -18,7 +18,7 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
         // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
         let width_id = ui.scope_id().with("tools");
         let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);
-        let room = (ui.available_width() - width).max(0.0);
+        let room = (ui.available_width() - width - ui.spacing().item_spacing.x).max(0.0);
         ui.allocate_ui_with_layout(
             egui::vec2(room, ui.available_height()),
             egui::Layout::right_to_left(egui::Align::Center),
