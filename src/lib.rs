@@ -4,6 +4,7 @@
 
 // floor 1: words and numbers
 pub mod bits;
+pub mod signal;
 pub mod units;
 
 // floor 2: bytes ↔ meaning, and what is saved

@@ -50,6 +50,9 @@ pub enum Action {
     FileNotChosen,
     /// The system has no dialog for files: the path is to be typed.
     TypePath(FileQuestion),
+    /// A path was typed. What is there already is not replaced without a question, which the system's dialogs ask
+    /// themselves.
+    Typed(FileQuestion, PathBuf),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
     Hiperface(SessionId, hiperface::Action),
     /// A task has come back.
@@ -60,6 +63,15 @@ pub enum Action {
 
 /// What tasks come back with.
 pub enum Done {
+    /// Whether there is something at the place where a profile is to be saved.
+    Looked {
+        /// Whose profile it is.
+        session: SessionId,
+        /// The place.
+        path: PathBuf,
+        /// There is.
+        exists: bool,
+    },
     /// A link was opened, or not.
     Opened {
         /// For whom.
@@ -188,8 +200,9 @@ pub struct Question {
 }
 
 /// What a confirmed question leads to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
     CloseWindow,
     CloseSession(SessionId),
+    Save(SessionId, PathBuf),
 }

@@ -13,7 +13,7 @@ use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker};
 
 /// A job that runs.
 #[derive(Clone, Debug)]
-pub struct Running {
+pub struct Running<W> {
     /// Its number in this session.
     pub id: JobId,
     /// What it is.
@@ -21,7 +21,7 @@ pub struct Running {
     /// Since when.
     pub since: Zoned,
     /// How far it is.
-    pub progress: Option<Progress>,
+    pub progress: Option<Progress<W>>,
     /// It changes the device's memory.
     pub writes: bool,
     /// It has been asked to end.
@@ -32,7 +32,7 @@ pub struct Running {
 pub struct Line<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
-    running: Option<Running>,
+    running: Option<Running<D::Doing>>,
     /// The device lives in this process.
     pub is_virtual: bool,
 }
@@ -57,7 +57,7 @@ impl<D: Device> Line<D> {
     }
 
     /// The job that runs.
-    pub fn running(&self) -> Option<&Running> {
+    pub fn running(&self) -> Option<&Running<D::Doing>> {
         self.running.as_ref()
     }
 

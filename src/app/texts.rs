@@ -101,6 +101,25 @@ impl Text {
         self
     }
 
+    /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
+    pub(super) fn recognised(id: &'static str, words: &str) -> Option<Self> {
+        let mut text = Text::new(id);
+        let (mut template, mut rest) = (BUILT_IN.0.get(id)?.en.as_str(), words);
+        while let Some((before, after)) = template.split_once('{') {
+            let (name, behind) = after.split_once('}')?;
+            rest = rest.strip_prefix(before)?;
+            // An argument ends where what stands behind it begins; the last one, where that is the end.
+            let length = match behind.split_once('{') {
+                Some((literal, _)) => rest.find(literal)?,
+                None => rest.strip_suffix(behind)?.len(),
+            };
+            let (argument, remaining) = rest.split_at_checked(length)?;
+            text = text.with(name, argument);
+            (template, rest) = (behind, remaining);
+        }
+        (template == rest).then_some(text)
+    }
+
     /// The text's name in the table.
     pub fn id(&self) -> &'static str {
         self.id
@@ -216,6 +235,17 @@ mod tests {
         assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
         assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
         assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
+    }
+
+    #[test]
+    fn a_text_is_recognised_by_its_english_words() {
+        let recognised = |id, words| Text::recognised(id, words).map(|text| text.words(Language::German));
+        assert_eq!(recognised("phrase.number", "a number from 1 to 8").unwrap(), "eine Zahl von 1 bis 8");
+        assert_eq!(recognised("phrase.text", "a text").unwrap(), "ein Text");
+        assert_eq!(recognised("phrase.twice", "a {b} stands twice").unwrap(), "a {b} steht zweimal da");
+        for (id, words) in [("phrase.text", "a text such"), ("phrase.number", "a number"), ("phrase.twice", "twice")] {
+            assert_eq!(recognised(id, words), None, "{words}");
+        }
     }
 
     #[test]

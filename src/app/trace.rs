@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 
 use jiff::Zoned;
 
+use super::{Language, Text};
 use crate::link::{Direction, TraceEntry};
 use crate::units::Moment;
 
@@ -18,7 +19,14 @@ pub struct TraceLine {
     /// Its bytes; `**` is a masked one.
     pub bytes: String,
     /// What it says.
-    pub meaning: String,
+    pub meaning: Vec<Text>,
+}
+
+impl TraceLine {
+    /// What it says, in one line.
+    pub fn words(&self, language: Language) -> String {
+        self.meaning.iter().map(|text| text.words(language)).collect::<Vec<_>>().join(" · ")
+    }
 }
 
 /// The newest frames of a line.
@@ -37,7 +45,7 @@ impl TraceLog {
         &mut self,
         entries: Vec<TraceEntry>,
         dropped: u64,
-        mut explain: impl FnMut(&TraceEntry) -> String,
+        mut explain: impl FnMut(&TraceEntry) -> Vec<Text>,
     ) {
         self.dropped += dropped;
         for entry in entries {

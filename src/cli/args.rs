@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
+use crate::signal::capture::Columns;
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
 /// window.
@@ -67,6 +68,8 @@ pub(super) enum Command {
     Do(Do),
     /// Explain captured bytes, offline.
     Decode(Decode),
+    /// Quality of a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error.
+    Analyse(Analyse),
     /// Be a device, on a pseudo-terminal or a TCP port.
     Simulate(Simulate),
 }
@@ -233,6 +236,19 @@ pub(super) struct Decode {
 }
 
 #[derive(Args)]
+pub(super) struct Analyse {
+    /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
+    #[arg(value_name = "FILE.csv")]
+    pub(super) file: PathBuf,
+    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS.
+    #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
+    pub(super) columns: Option<Columns>,
+    /// Volts in one unit of the sine and cosine columns.
+    #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
+    pub(super) volts_per_unit: Option<f64>,
+}
+
+#[derive(Args)]
 pub(super) struct Simulate {
     pub(super) device: DeviceKind,
     /// Make a pseudo-terminal and a symbolic link to it here.
@@ -269,6 +285,31 @@ impl FromStr for Code {
         let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
         Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
     }
+}
+
+fn parse_columns(text: &str) -> Result<Columns, String> {
+    let numbers: Vec<usize> = text
+        .split(',')
+        .map(|word| word.trim().parse().ok().filter(|n| *n > 0))
+        .collect::<Option<_>>()
+        .unwrap_or_default();
+    let columns = match *numbers.as_slice() {
+        [time, sine, cosine] => Columns { time: Some(time), sine, cosine, references: None },
+        [time, sine, refsin, cosine, refcos] => {
+            Columns { time: Some(time), sine, cosine, references: Some((refsin, refcos)) }
+        }
+        _ => return Err("three or five column numbers from 1 are needed, as in 1,2,3".to_owned()),
+    };
+    let different: std::collections::BTreeSet<&usize> = numbers.iter().collect();
+    if different.len() < numbers.len() {
+        return Err("a column stands there twice".to_owned());
+    }
+    Ok(columns)
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+    factor.ok_or_else(|| "a number above 0 is needed, as in 0.001".to_owned())
 }
 
 /// An access code: one or two hex digits, with or without `0x` or a final `h`.

@@ -1,6 +1,7 @@
 //! The command line: the same jobs without a window. It parses, asks for consent and prints; the work is done by the
 //! worker.
 
+mod analyse;
 mod args;
 mod hiperface;
 mod output;
@@ -152,6 +153,7 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Decode(decode) => match decode.protocol {
             DeviceKind::Hiperface => hiperface::decode(&output, &decode.hex),
         },
+        Command::Analyse(capture) => analyse::analyse(&output, &capture),
         Command::Simulate(simulate) => match simulate.device {
             DeviceKind::Hiperface => simulate::simulate(&simulate),
         },

@@ -21,7 +21,7 @@ use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
 use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, open};
-use crate::worker::{Event, OpenError, Progress, Session, Worker};
+use crate::worker::{Event, OpenError, Session, Worker};
 
 /// A session on its thread.
 pub(super) struct Runner {
@@ -96,7 +96,7 @@ impl Runner {
         let bar = Bar::default();
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
-                Event::Progress(of, progress) if of == id => bar.show(&progress),
+                Event::Progress(of, progress) if of == id => bar.show(progress.done, progress.total, &progress.what),
                 Event::Remark(Remark::Codes(codes)) => {
                     name_codes(&codes);
                     self.codes_met.extend(codes);
@@ -194,7 +194,7 @@ fn record(session: &mut Session<Hiperface>, path: &Path) -> Result<()> {
 }
 
 /// Progress on a terminal; silence elsewhere.
-struct Bar(ProgressBar);
+pub(super) struct Bar(ProgressBar);
 
 impl Default for Bar {
     fn default() -> Self {
@@ -208,10 +208,10 @@ impl Default for Bar {
 }
 
 impl Bar {
-    fn show(&self, progress: &Progress) {
-        self.0.set_length(progress.total);
-        self.0.set_position(progress.done);
-        self.0.set_message(progress.what.clone());
+    pub(super) fn show(&self, done: u64, total: u64, what: &impl ToString) {
+        self.0.set_length(total);
+        self.0.set_position(done);
+        self.0.set_message(what.to_string());
     }
 }
 

@@ -6,6 +6,7 @@ use ron::error::SpannedError;
 use super::hiperface::HiperfaceProfile;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::unique_names::UniqueNames;
+use crate::protocol::hiperface::KIND;
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -109,7 +110,7 @@ impl Document {
         let saved = entries.optional("saved", "a text")?;
         let note = entries.optional("note", "a text")?;
         let body = match device.as_str() {
-            "hiperface" => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
+            KIND => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
             _ => return Err(ProfileError::Device(device)),
         };
         Ok(Document { saved, note, body, unknown: entries.rest() })
@@ -138,7 +139,7 @@ impl Document {
     /// The word for the kind of device, as on the command line.
     pub fn device(&self) -> &'static str {
         match self.body {
-            Body::Hiperface(_) => "hiperface",
+            Body::Hiperface(_) => KIND,
         }
     }
 }

@@ -3,10 +3,12 @@
 //! No folder is made before something is written into it, and no access code is ever written.
 
 mod backups;
+mod captures;
 mod drafts;
 mod file_error;
 mod file_names;
 mod files;
+mod log_file;
 mod logbook;
 
 use std::path::{Path, PathBuf};
@@ -14,9 +16,11 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 
 pub use backups::{Backup, Backups};
+pub use captures::{OnProgress, ReadCaptureError, read_capture};
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_in_folder};
+pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
 
 use crate::protocol::hiperface::{EncoderTypes, TypeTableError};

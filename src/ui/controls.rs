@@ -3,24 +3,38 @@
 
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use super::Skin;
+use super::{Skin, icons};
 
+/// Inside a line of text, so that it is as high as a button.
+const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
+/// The least width of a dialog.
+const MODAL: f32 = 240.0;
 /// Width of the column of labels.
 pub(super) const LABELS: f32 = 132.0;
 
+/// Takes the whole width; in a window that is too small for anything there may be less than none.
+pub(super) fn fill(ui: &mut Ui) {
+    ui.set_width(ui.available_width().max(0.0));
+}
+
+/// A card with a heading.
+pub(super) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    card_with(ui, skin, title, |_| {}, content)
+}
+
 /// A card with a heading; what stands at the right of the heading comes from `aside`.
-pub(super) fn card<R>(
+pub(super) fn card_with<R>(
     ui: &mut Ui,
     skin: &Skin,
-    title: &str,
+    title: &'static str,
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     skin.card()
         .show(ui, |ui| {
-            ui.set_width(ui.available_width());
+            fill(ui);
             ui.horizontal(|ui| {
-                ui.label(skin.heading(title));
+                ui.label(skin.heading(skin.say(title)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
             ui.add_space(skin.space.inside);
@@ -52,7 +66,7 @@ pub(super) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOn
 }
 
 fn label_ui(ui: &mut Ui, skin: &Skin, label: &str) {
-    let width = LABELS.min(ui.available_width() * 0.4);
+    let width = LABELS.min(ui.available_width() * 0.4).max(0.0);
     ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
         ui.set_min_width(width);
         ui.add(egui::Label::new(skin.label(label)).truncate());
@@ -76,7 +90,7 @@ pub(super) fn modal<R>(
     egui::Modal::new(egui::Id::unique(name))
         .frame(frame)
         .show(ctx, |ui| {
-            ui.set_width(width);
+            ui.set_width(width.max(MODAL));
             content(ui)
         })
         .inner
@@ -147,7 +161,7 @@ pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str,
     let mut pressed = false;
     ui.vertical_centered(|ui| {
         ui.add_space(skin.space.groups);
-        ui.label(skin.label(words));
+        ui.add(egui::Label::new(skin.label(words)).wrap());
         if let Some((icon, word, enabled)) = action {
             ui.add_space(skin.space.inside);
             pressed = enabled_button(ui, enabled, icon, word).clicked();
@@ -159,8 +173,7 @@ pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str,
 
 /// A one-line entry with a name for screen readers.
 pub(super) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
-    let edit =
-        egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(egui::Margin::symmetric(8, 6));
+    let edit = egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(FIELD);
     let response = ui.add(edit);
     let value = text.clone();
     response.widget_info(|| {
@@ -192,6 +205,74 @@ pub(super) fn choice<T: PartialEq + Copy>(
         info
     });
     *value != before
+}
+
+/// A one-line entry for what is not to be seen: not on the screen, not by a screen reader, not by undoing.
+pub(super) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
+    let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
+    let response = ui.add(edit);
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::PasswordInput, true, label));
+    response
+}
+
+/// Empties a secret entry, with all that could bring it back.
+pub(super) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
+    text.clear();
+    egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
+}
+
+/// Something is being done. It turns slowly enough to cost nothing.
+pub(super) fn spinner(ui: &mut Ui, skin: &Skin) {
+    const STEPS: f64 = 8.0;
+    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
+    let step = (ui.input(|input| input.time) * STEPS).floor();
+    for dot in 0..8_u8 {
+        let angle = f64::from(dot) * std::f64::consts::TAU / STEPS;
+        let age = (f64::from(dot) - step).rem_euclid(STEPS) / STEPS;
+        let place = rect.center() + vec2(angle.cos() as f32, angle.sin() as f32) * 6.0;
+        let colour = egui::Color32::from(skin.palette.accent).gamma_multiply(0.2 + 0.8 * age as f32);
+        ui.painter().circle_filled(place, 1.5, colour);
+    }
+    ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
+}
+
+/// How much a notice matters: icon and colour.
+pub(super) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
+    use crate::app::Severity;
+    let palette = skin.palette;
+    match severity {
+        Severity::Note => (icons::INFO, palette.accent),
+        Severity::Good => (icons::CHECK_CIRCLE, palette.good),
+        Severity::Warning => (icons::WARNING, palette.warn),
+        Severity::Error => (icons::X_CIRCLE, palette.bad),
+    }
+}
+
+/// Two columns of cards where there is room, else one below the other.
+pub(super) fn two_columns<C>(
+    ui: &mut Ui,
+    skin: &Skin,
+    mut context: C,
+    left: impl FnOnce(&mut Ui, &mut C),
+    right: impl FnOnce(&mut Ui, &mut C),
+) {
+    if ui.available_width() < 640.0 {
+        left(ui, &mut context);
+        ui.add_space(skin.space.groups);
+        right(ui, &mut context);
+        return;
+    }
+    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor().max(0.0);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = skin.space.between;
+        ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+            left(ui, &mut context);
+        });
+        ui.add_space(skin.space.groups - skin.space.between);
+        ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+            right(ui, &mut context);
+        });
+    });
 }
 
 /// A dot: filled for a connection, hollow for none.

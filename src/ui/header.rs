@@ -2,11 +2,11 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, button, dot, enabled_button, icon_button, name};
+use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperface::{self, Encoder, Phase, Source};
-use crate::app::{Action, Language, Severity, Studio, Theme};
+use crate::app::{Action, Language, Notice, Studio, Theme};
 
 /// Draws the header.
 pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -15,56 +15,80 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
         if let Some(encoder) = studio.encoder() {
             status(ui, skin, encoder);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let settings = &studio.settings;
-            if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
-                views.about = true;
-            }
-            if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
-                views.help = !views.help;
-            }
-            let (theme_icon, theme) = match settings.theme {
-                Theme::Dark => (icons::SUN, Theme::Light),
-                Theme::Light => (icons::MOON, Theme::Dark),
-            };
-            let theme_word = match theme {
-                Theme::Light => "shell.light",
-                Theme::Dark => "shell.dark",
-            };
-            if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
-                actions.push(Action::SetTheme(theme));
-            }
-            let (other, other_code) = match settings.language {
-                Language::English => (Language::German, "DE"),
-                Language::German => (Language::English, "EN"),
-            };
-            let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
-            if name(response, true, &skin.say("shell.language")).clicked() {
-                actions.push(Action::SetLanguage(other));
-            }
-            stop(ui, skin, studio, actions);
-            if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
-                actions.push(Action::Connect(connect::Action::Open));
-            }
-            let savable = studio.encoder().is_some_and(Encoder::is_savable);
-            if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("shell.save"))
-                .on_hover_text(skin.say("shell.save_hint"))
-                .clicked()
-            {
-                actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
-            }
-            if button(ui, icons::FOLDER_OPEN, &skin.say("shell.open")).clicked() {
-                actions.push(Action::AskOpen);
-            }
-            link(ui, skin, studio);
-        });
+        // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
+        let width_id = ui.scope_id().with("tools");
+        let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);
+        let room = (ui.available_width() - width - ui.spacing().item_spacing.x).max(0.0);
+        ui.allocate_ui_with_layout(
+            egui::vec2(room, ui.available_height()),
+            egui::Layout::right_to_left(egui::Align::Center),
+            |ui| {
+                ui.set_min_width((room - ui.spacing().item_spacing.x).max(0.0));
+                if room > 80.0 {
+                    link(ui, skin, studio);
+                }
+            },
+        );
+        let tools = ui.scope(|ui| tools(ui, skin, studio, views, actions)).response.rect.width();
+        if (tools - width).abs() > 0.5 {
+            ui.data_mut(|data| data.insert_temp(width_id, tools));
+            ui.ctx().request_repaint();
+        }
     });
+}
+
+/// What can be done at any time.
+fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    // In a narrow window the icons have to do; their words are the tooltips.
+    let narrow = ui.ctx().content_rect().width() < 1000.0;
+    let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
+        let word = skin.say(id);
+        if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
+    };
+    if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
+        actions.push(Action::AskOpen);
+    }
+    let savable = studio.encoder().is_some_and(Encoder::is_savable);
+    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(skin.say("shell.save_hint")).clicked() {
+        actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
+    }
+    if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
+        actions.push(Action::Connect(connect::Action::Open));
+    }
+    stop(ui, skin, studio, actions);
+    let settings = &studio.settings;
+    let (other, other_code) = match settings.language {
+        Language::English => (Language::German, "DE"),
+        Language::German => (Language::English, "EN"),
+    };
+    let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
+    if name(response, true, &skin.say("shell.language")).clicked() {
+        actions.push(Action::SetLanguage(other));
+    }
+    let (theme_icon, theme) = match settings.theme {
+        Theme::Dark => (icons::SUN, Theme::Light),
+        Theme::Light => (icons::MOON, Theme::Dark),
+    };
+    let theme_word = match theme {
+        Theme::Light => "shell.light",
+        Theme::Dark => "shell.dark",
+    };
+    if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
+        actions.push(Action::SetTheme(theme));
+    }
+    if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
+        views.help = !views.help;
+    }
+    if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
+        views.about = true;
+    }
 }
 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.encoder().map_or_else(|| skin.say("shell.no_session"), Encoder::name);
-    let text = RichText::new(format!("{shown}  {}", icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
+    let text =
+        RichText::new(format!("{}  {}", shortened(&shown), icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
         ui.label(skin.caption(skin.say("shell.sessions")));
@@ -94,6 +118,12 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
         }
     });
     name(menu.response, true, &skin.say("shell.sessions"));
+}
+
+/// A name that leaves room for the rest of the header.
+fn shortened(name: &str) -> String {
+    const MOST: usize = 28;
+    if name.chars().count() <= MOST { name.to_owned() } else { name.chars().take(MOST - 1).chain(['…']).collect() }
 }
 
 fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
@@ -155,27 +185,27 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     }
 }
 
-/// The notice that stands in the window until it is read.
-pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let Some(notice) = studio.services.log.standing() else { return };
-    let palette = skin.palette;
-    let (icon, colour) = match notice.severity {
-        Severity::Note => (icons::INFO, palette.accent),
-        Severity::Good => (icons::CHECK_CIRCLE, palette.good),
-        Severity::Warning => (icons::WARNING, palette.warn),
-        Severity::Error => (icons::X_CIRCLE, palette.bad),
-    };
-    ui.horizontal(|ui| {
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
-                actions.push(Action::Dismiss);
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
-                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
-                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
+/// The notice that stands in the window until it is read, at its foot, over everything.
+pub(super) fn notice_ui(ctx: &egui::Context, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
+    let (icon, colour) = severity(skin, notice.severity);
+    let width = (ctx.content_rect().width() - 320.0).clamp(240.0, 760.0);
+    egui::Area::new(egui::Id::unique("notice"))
+        .order(egui::Order::Tooltip)
+        .anchor(egui::Align2::CENTER_BOTTOM, [0.0, -skin.space.groups])
+        .show(ctx, |ui| {
+            let frame = skin.card().stroke(Stroke::new(1.0, colour)).inner_margin(egui::Margin::symmetric(12, 8));
+            frame.show(ui, |ui| {
+                ui.set_width(width);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
+                    let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
+                    let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                    let text = egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true);
+                    ui.add_sized([width - 76.0, 0.0], text.halign(egui::Align::Min));
+                    if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
+                        actions.push(Action::Dismiss);
+                    }
+                });
             });
         });
-    });
 }

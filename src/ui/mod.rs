@@ -7,7 +7,6 @@ mod docks;
 mod header;
 mod hiperface;
 pub mod icons;
-mod log_file;
 mod panels;
 mod run;
 mod skin;

@@ -3,10 +3,10 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::{Window, install_fonts, log_file};
+use super::{Window, install_fonts};
 use crate::app::{Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
-use crate::store::Store;
+use crate::store::{LogFile, Store};
 
 /// Opens the window and returns when it is closed.
 ///
@@ -18,7 +18,7 @@ pub fn run(start: Start) -> Result<(), String> {
         return Err(NO_DISPLAY.to_owned());
     }
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
-    log_file::begin(&store.log_path());
+    let log = LogFile::begin(&store.log_path());
     let look = Look::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
     // The window exists only after the studio: until then nobody has to be woken.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
@@ -36,7 +36,7 @@ pub fn run(start: Start) -> Result<(), String> {
             .with_title("encoder-studio")
             .with_app_id("encoder-studio")
             .with_inner_size([width as f32, height as f32])
-            .with_min_inner_size([1024.0, 640.0])
+            .with_min_inner_size([880.0, 500.0])
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Glow,
         ..eframe::NativeOptions::default()
@@ -50,7 +50,15 @@ pub fn run(start: Start) -> Result<(), String> {
             Ok(Box::new(Shown { window: Window::new(studio, look), began: Some(began) }))
         }),
     );
-    result.map_err(|error| format!("The window cannot be opened: {error}. {PACKAGES}"))
+    let result = result.map_err(|error| {
+        // The words of the libraries are for programmers, with paths of the machine that built them.
+        tracing::error!("{error}");
+        NOT_OPENED.to_owned()
+    });
+    if let Ok(log) = log {
+        log.wait();
+    }
+    result
 }
 
 /// The window as eframe runs it.
@@ -78,8 +86,8 @@ impl eframe::App for Shown {
 const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
                           encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
                           find, decode, simulate, ports (see encoder-studio help).";
-const PACKAGES: &str =
-    "The README lists the run-time packages that the window needs; every other command works without.";
+const NOT_OPENED: &str = "The window cannot be opened: the display does not answer, or a run-time package is missing (the \
+                          README lists them; the log file says more). Without a window: encoder-studio help.";
 
 fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

@@ -1,5 +1,6 @@
 //! The window: header, navigation, panels, dialogs and the keyboard; what eframe asks of an application.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -8,21 +9,30 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
-use super::{Skin, header};
-use crate::app::hiperface::Action as Hiperface;
-use crate::app::{Action, Look, Studio, Tab};
+use super::{Skin, header, icons};
+use crate::app::hiperface::{Action as Hiperface, Encoder};
+use crate::app::{Action, Look, SessionId, Severity, Studio, Tab};
 
 /// What views remember while the window is open: text buffers and selections, nothing of the state.
 #[derive(Default)]
 pub struct Views {
-    /// The HIPERFACE tab.
-    pub hiperface: hiperface::View,
+    /// The HIPERFACE tab, for each session.
+    hiperface: BTreeMap<SessionId, hiperface::View>,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
     /// How often the position is read, in milliseconds.
     pub(super) rate: u64,
+}
+
+impl Views {
+    /// The HIPERFACE tab of a session.
+    pub(super) fn hiperface(&mut self, encoder: &Encoder) -> &mut hiperface::View {
+        let view = self.hiperface.entry(encoder.id).or_default();
+        view.follow(encoder);
+        view
+    }
 }
 
 /// The window.
@@ -32,14 +42,19 @@ pub struct Window {
     docks: Docks,
     look: &'static Look,
     dressed: Option<crate::app::Theme>,
+    /// Which notice stands, and since when on the window's clock.
+    notice_since: Option<(jiff::Zoned, f64)>,
 }
+
+/// Seconds for which good news stands.
+const GOOD_NEWS: f64 = 6.0;
 
 impl Window {
     /// A window on a studio.
     pub fn new(studio: Studio, look: &'static Look) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views { rate: 50, ..Views::default() };
-        Window { studio, views, docks, look, dressed: None }
+        Window { studio, views, docks, look, dressed: None, notice_since: None }
     }
 
     /// All state.
@@ -91,15 +106,12 @@ impl Window {
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
         writing_bar(ui, skin, studio);
-        if studio.services.log.standing().is_some() {
-            let margin = egui::Margin::symmetric(12, 4);
-            Panel::top("notice").frame(flat(palette.sunken).inner_margin(margin)).show(ui, |ui| {
-                header::notice_ui(ui, skin, studio, actions);
+        Panel::left("navigation")
+            .exact_size(if ui.available_width() < 1000.0 { 124.0 } else { 148.0 })
+            .frame(flat(palette.surface).inner_margin(8))
+            .show(ui, |ui| {
+                navigation(ui, skin, studio, views, docks, actions);
             });
-        }
-        Panel::left("navigation").exact_size(148.0).frame(flat(palette.surface).inner_margin(8)).show(ui, |ui| {
-            navigation(ui, skin, studio, views, docks, actions);
-        });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
             docks.ui(ui, skin, studio, views, actions);
         });
@@ -121,10 +133,35 @@ impl Window {
         if self.views.about && dialogs::about_ui(ctx, skin) {
             self.views.about = false;
         }
-        if self.views.help && dialogs::help_ui(ctx, skin, self.views.hiperface.page) {
+        let page = self.studio.encoder().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
+        if self.views.help && dialogs::help_ui(ctx, skin, page) {
             self.views.help = false;
         }
         dialogs::question_ui(ctx, skin, &self.studio, actions);
+        self.notice(ctx, skin, actions);
+    }
+
+    /// The standing notice lies over the window and moves nothing. Good news goes by itself, the rest waits to be read.
+    fn notice(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
+        let Some(notice) = self.studio.services.log.standing() else {
+            self.notice_since = None;
+            return;
+        };
+        let now = ctx.input(|input| input.time);
+        let since = match &self.notice_since {
+            Some((at, since)) if *at == notice.at => *since,
+            _ => now,
+        };
+        self.notice_since = Some((notice.at.clone(), since));
+        header::notice_ui(ctx, skin, notice, actions);
+        if notice.severity <= Severity::Good {
+            let left = GOOD_NEWS - (now - since);
+            if left <= 0.0 {
+                actions.push(Action::Dismiss);
+            } else {
+                ctx.request_repaint_after(Duration::from_secs_f64(left));
+            }
+        }
     }
 
     /// The keyboard, and files that are dropped on the window.
@@ -190,6 +227,7 @@ impl Window {
         if self.studio.may_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
+        self.views.hiperface.retain(|id, _| self.studio.encoders().iter().any(|encoder| encoder.id == *id));
         if self.studio.is_live() {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
@@ -225,23 +263,26 @@ fn navigation(
     if entry(ui, false, tab, "HIPERFACE").clicked() {
         actions.push(Action::ShowTab(Tab::Hiperface));
     }
+    // At the foot, so that it is drawn wherever the rest ends.
+    let foot = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
+    let mut foot = ui.new_child(egui::UiBuilder::new().max_rect(foot));
+    if super::controls::icon_button(&mut foot, true, icons::ARROWS_CLOCKWISE, &skin.say("shell.reset_layout")).clicked()
+    {
+        docks.reset();
+    }
+    let Some(encoder) = studio.encoder() else { return };
+    let shown = views.hiperface(encoder).page;
     for page in Page::ALL {
         let word = skin.say(page.word());
         let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
-        let edited = page == Page::Memory && studio.encoder().is_some_and(|encoder| encoder.staged.is_dirty());
+        let edited = page == Page::Memory && encoder.staged.is_dirty();
         if edited {
             text = text.color(skin.palette.staged);
         }
-        if entry(ui, views.hiperface.page == page, text, &word).clicked() {
-            views.hiperface.page = page;
+        if entry(ui, shown == page, text, &word).clicked() {
+            views.hiperface(encoder).page = page;
         }
     }
-    ui.with_layout(egui::Layout::bottom_up(egui::Align::Min), |ui| {
-        let reset = super::controls::button(ui, "", &skin.say("shell.reset_layout"));
-        if reset.on_hover_text(skin.say("shell.reset_layout_hint")).clicked() {
-            docks.reset();
-        }
-    });
 }
 
 /// An entry of the navigation, as wide as it.

@@ -2,11 +2,11 @@
 
 use egui::{RichText, Ui};
 
-use super::controls::{button, empty, paragraph};
+use super::controls::{button, empty, paragraph, spinner};
 use super::{Skin, Views, hiperface, icons};
-use crate::app::connect;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Studio, Tab};
+use crate::app::{connect, explain};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -14,13 +14,18 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
             actions.push(Action::Connect(connect::Action::Open));
         }
+        ui.vertical_centered(|ui| {
+            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+                actions.push(Action::AskOpen);
+            }
+        });
         return;
     };
     match studio.settings.tab {
         Tab::Hiperface => {
             running(ui, skin, encoder, actions);
             lost(ui, skin, encoder, actions);
-            hiperface::page_ui(ui, skin, studio, encoder, &mut views.hiperface, actions);
+            hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);
         }
     }
 }
@@ -35,13 +40,14 @@ fn running(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(14.0));
+            spinner(ui, skin);
             let words = match running {
                 Some(running) => {
                     let what = skin.words(&running.what);
                     match &running.progress {
                         Some(progress) => {
-                            format!("{what}  {}/{}  {}", progress.done, progress.total, progress.what)
+                            let doing = skin.words(&explain::hiperface::doing(&progress.what));
+                            format!("{what}  {}/{}  {doing}", progress.done, progress.total)
                         }
                         None => what,
                     }

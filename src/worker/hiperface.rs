@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 pub use commit::device_key;
 pub use job::{
-    Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark, SavedProfile, Value,
-    WEAR_LIMIT,
+    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark,
+    SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::open;
 
@@ -79,12 +79,13 @@ impl Device for Hiperface {
     type Error = JobError;
     type Remark = Remark;
     type Sample = Sample;
+    type Doing = Doing;
 
     fn run(
         &mut self,
         desk: &mut Desk,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<Remark>),
+        tell: &mut dyn FnMut(Tell<Remark, Doing>),
     ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
         let steps = &mut |progress| tell(Tell::Progress(progress));
@@ -94,7 +95,7 @@ impl Device for Hiperface {
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
             HiperfaceJob::Survey => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: format!("field:{done}") });
+                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
                 let survey = device::survey(&mut self.master(desk), &types, progress)?;
                 self.geometry = survey.identity.geometry;
                 HiperfaceOutput::Surveyed(Box::new(survey))
@@ -114,7 +115,7 @@ impl Device for Hiperface {
             }
             HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
             HiperfaceJob::Save(options) => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: format!("field:{done}") });
+                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
                 let profile = device::save(&mut self.master(desk), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
@@ -161,9 +162,11 @@ impl Device for Hiperface {
     }
 }
 
-fn told(news: News<'_>) -> Tell<Remark> {
+fn told(news: News<'_>) -> Tell<Remark, Doing> {
     match news {
-        News::Trying { done, total, attempt } => Tell::Progress(Progress { done, total, what: attempt.to_string() }),
+        News::Trying { done, total, attempt } => {
+            Tell::Progress(Progress { done, total, what: Doing::Attempt(attempt.clone()) })
+        }
         News::Found(found) => Tell::Remark(Remark::Found(found.clone())),
     }
 }

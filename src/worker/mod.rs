@@ -7,6 +7,7 @@
 //! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
+mod commit;
 pub mod hiperface;
 mod live;
 mod open;
@@ -44,6 +45,8 @@ pub trait Device: Send + 'static {
     type Remark: Send + fmt::Debug;
     /// What is taken again and again while it is polled.
     type Sample: Send + fmt::Debug + 'static;
+    /// The steps that its jobs tell.
+    type Doing: Clone + Send + fmt::Debug;
 
     /// Carries out a job.
     ///
@@ -53,7 +56,7 @@ pub trait Device: Send + 'static {
         &mut self,
         desk: &mut Desk,
         job: Self::Job,
-        tell: &mut dyn FnMut(Tell<Self::Remark>),
+        tell: &mut dyn FnMut(Tell<Self::Remark, Self::Doing>),
     ) -> Result<Self::Output, Self::Error>;
 
     /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
@@ -81,20 +84,20 @@ pub struct JobId(u64);
 
 /// How far a job is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct Progress<W> {
     /// Steps done.
     pub done: u64,
     /// Steps in all.
     pub total: u64,
-    /// What is being done: an item, an address.
-    pub what: String,
+    /// What is being done.
+    pub what: W,
 }
 
 /// What a job tells on its way.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tell<R> {
+pub enum Tell<R, W> {
     /// How far it is.
-    Progress(Progress),
+    Progress(Progress<W>),
     /// What the device said; each is passed on.
     Remark(R),
 }
@@ -105,7 +108,7 @@ pub enum Event<D: Device> {
     /// A job has begun.
     Started(JobId),
     /// How far it is.
-    Progress(JobId, Progress),
+    Progress(JobId, Progress<D::Doing>),
     /// What the device said on the way, while the job runs or at its end.
     Remark(D::Remark),
     /// It is done.

@@ -8,6 +8,7 @@ use crate::link::{
     ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceFileError, UrlError,
     read_trace,
 };
+use crate::sim::hiperface::ConfigError;
 use crate::store::{FileError, StoreError, read_text};
 use crate::units::CharacterFormat;
 
@@ -17,9 +18,9 @@ pub enum OpenError {
     /// A parameter.
     #[error(transparent)]
     Url(#[from] UrlError),
-    /// A parameter of the virtual device, in words.
-    #[error("{0}")]
-    Sim(String),
+    /// A parameter of the virtual encoder.
+    #[error(transparent)]
+    Sim(#[from] ConfigError),
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),

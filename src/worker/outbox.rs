@@ -79,11 +79,11 @@ mod tests {
     use crossbeam_channel::bounded;
 
     use super::*;
-    use crate::worker::hiperface::Hiperface;
+    use crate::worker::hiperface::{Doing, Hiperface};
     use crate::worker::{JobId, Progress};
 
     fn progress(job: u64) -> Event<Hiperface> {
-        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: String::new() })
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: Doing::Field(0) })
     }
 
     #[test]

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod cli_actions;
+mod cli_analyse;
 mod cli_bad_input;
 mod cli_codes;
 mod cli_consent;

@@ -174,7 +174,7 @@ fn disturbed(
             assert_eq!(desk.wear() - worn_before, 12, "{context}");
             return true;
         }
-        Err(JobError::Interrupted { interrupted, backup: path, planned: 12 }) => {
+        Err(JobError::Interrupted { interrupted, backup: path, planned: 12, .. }) => {
             judge(&Ending { desk: &desk, prepared: &prepared, before: &before, worn_before, context }, &interrupted);
             let kept = backup(&path);
             assert_can_be_completed(&reconnected, wanted, &before, Some(&kept));
@@ -307,7 +307,7 @@ fn power_lost_in_the_middle_of_every_store() {
         let stores = desk.bus().encoders()[0].wear().writes(encoder_studio::protocol::hiperface::Command::StoreData);
         desk.bus().set_faults(&format!("die-in-store:{}", stores + store).parse().unwrap());
         let error = desk.commit(&prepared).unwrap_err();
-        let JobError::Interrupted { interrupted, backup: path, planned: 12 } = error else { panic!("{error:?}") };
+        let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
         assert!(interrupted.cause.is_lost(), "store {store}: {interrupted:?}");
         // Three stores into field 1, between unlocking and locking, and one into field 4, created and yet to be locked.
         let expected = match store {

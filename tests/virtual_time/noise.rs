@@ -175,7 +175,7 @@ fn a_restore_ends_verified_or_described_and_a_second_one_completes_it() {
                     assert_eq!(done.written.verified, done.written.written, "{context}");
                     assert!(done.written.write_cycles >= desk.wear() - worn, "{context}");
                 }
-                Err(JobError::Interrupted { interrupted, backup: path, planned }) => {
+                Err(JobError::Interrupted { interrupted, backup: path, planned, .. }) => {
                     described += 1;
                     assert!(interrupted.done.ops <= planned, "{context}");
                     assert!(interrupted.done.write_cycles >= desk.wear() - worn, "{context}: {interrupted:?}");

@@ -8,6 +8,7 @@ mod connecting;
 mod drafts;
 mod leaving;
 mod losing;
+mod monkey;
 mod profiles;
 mod remembering;
 mod screen;

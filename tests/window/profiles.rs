@@ -173,3 +173,28 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     assert_eq!(desk.outside.wire(OTHER_PORT).field(0)[0], b'X', "the edit of the profile is in it");
     assert_eq!(desk.wire().wear(), 0);
 }
+
+/// A typed path replaces nothing without a question.
+#[test]
+fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
+    let mut desk = Desk::begun("");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept.ron");
+    std::fs::write(&path, "dear").unwrap();
+    let session = desk.studio.encoder().unwrap().id;
+    let typed = |path: &std::path::Path| {
+        Action::Typed(FileQuestion::Save { session, suggested: "x.ron".into() }, path.to_owned())
+    };
+    desk.act(typed(&path));
+    desk.until("the question", |studio| studio.question.is_some());
+    desk.act(Action::Escape);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "dear");
+    desk.act(typed(&path));
+    desk.until("the question again", |studio| studio.question.is_some());
+    desk.act(Action::Confirm);
+    desk.until("it is saved", |_| std::fs::read_to_string(&path).unwrap() != "dear");
+    let new = folder.path().join("new.ron");
+    desk.act(typed(&new));
+    desk.until("a new file needs no question", |_| new.exists());
+    assert!(desk.studio.question.is_none());
+}

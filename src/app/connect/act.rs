@@ -8,7 +8,7 @@ use crate::app::hiperface::{Encoder, Phase, Source};
 use crate::app::leaving::{Leaver, same_wire};
 use crate::app::services::JobEnd;
 use crate::app::studio::{SessionId, Studio};
-use crate::app::{Severity, Text};
+use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 
@@ -31,7 +31,7 @@ impl Studio {
             Action::Edit(form) => self.edit(*form),
             Action::Use(link) => match link.parse::<LinkUrl>() {
                 Ok(url) => self.edit(LinkForm::from_url(&url)),
-                Err(error) => self.refuse(Text::new("link.url").with("why", error)),
+                Err(error) => self.refuse(Text::new("link.url").with_text("why", explain::url(&error))),
             },
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };

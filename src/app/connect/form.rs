@@ -5,7 +5,7 @@ use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
 use std::time::Duration;
 
-use crate::app::Text;
+use crate::app::{Text, explain};
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::hiperface::{BROADCAST, DeviceAddress};
@@ -259,7 +259,9 @@ impl LinkForm {
     }
 
     fn refused(&self, error: UrlError) -> Text {
-        let UrlError::Value { name, value, allowed } = error else { return Text::new("form.other").with("why", error) };
+        let UrlError::Value { name, value, allowed } = error else {
+            return Text::new("form.other").with_text("why", explain::url(&error));
+        };
         let id = match name.as_str() {
             "address" => return Text::new("form.address").with("value", self.address.trim()),
             "margin" => "form.margin",
@@ -274,7 +276,7 @@ impl LinkForm {
     fn refused_virtual(&self, error: ConfigError) -> Text {
         match error {
             ConfigError::Fault(_) => Text::new("form.fault").with("value", self.fault.trim()),
-            ConfigError::Key { .. } => Text::new("form.other").with("why", error),
+            ConfigError::Key { .. } => Text::new("form.other").with_text("why", explain::setting(&error)),
             ConfigError::Value { key, value, allowed } => match key.as_str() {
                 "address" => Text::new("form.address_virtual").with("value", self.address.trim()),
                 "rpm" => Text::new("form.rpm").with("value", self.rpm.trim()),
@@ -289,7 +291,7 @@ impl LinkForm {
 }
 
 fn parameter(name: &str, value: &str, why: &str) -> Text {
-    Text::new("form.parameter").with("name", name).with("value", value).with("why", why)
+    Text::new("form.parameter").with("name", name).with("value", value).with_text("why", explain::phrase(why))
 }
 
 fn address_words(address: u8) -> String {

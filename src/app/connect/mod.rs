@@ -14,7 +14,7 @@ use super::{Text, explain};
 use crate::app::action::{Done, OpenFailed, Opened};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::link::LinkUrl;
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
+use crate::worker::hiperface::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
 use crate::worker::{Event, Progress};
 
 /// What can be done in the dialog.
@@ -75,7 +75,7 @@ impl Connect {
 
 impl Search {
     /// How far it is.
-    pub fn progress(&self) -> Option<&Progress> {
+    pub fn progress(&self) -> Option<&Progress<Doing>> {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
 

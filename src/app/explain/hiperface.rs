@@ -2,7 +2,10 @@
 
 mod change;
 mod check;
+mod command;
 mod damage;
+mod doing;
+mod frame;
 mod label;
 mod op;
 mod words;
@@ -11,7 +14,10 @@ use std::path::Path;
 
 pub use change::{change, staged};
 pub use check::{finding, step, verdict};
+pub use command::command;
 pub use damage::damage;
+pub use doing::doing;
+pub use frame::frame;
 pub use label::{LabelRow, label};
 pub use op::{OpWords, op};
 pub use words::{
@@ -19,13 +25,13 @@ pub use words::{
     status_with_number,
 };
 
-use super::{file, link};
+use super::{file, link, phrase};
 use crate::app::Text;
 use crate::device::hiperface::Error;
-use crate::device::hiperface::write::Interrupted;
+use crate::device::hiperface::write::{Interrupted, Written};
 use crate::profile::hiperface::PlanError;
 use crate::protocol::hiperface::StatusCode;
-use crate::worker::hiperface::JobError;
+use crate::worker::hiperface::{ChangeKind, JobError};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
@@ -36,17 +42,19 @@ pub fn job(error: &JobError) -> Vec<Text> {
         JobError::Worn { used, cost, limit } => {
             vec![Text::new("write.worn").with("used", used).with("cost", cost).with("limit", limit)]
         }
-        JobError::Interrupted { interrupted, backup, planned } => interruption(interrupted, backup, *planned),
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            interruption(interrupted, backup, *planned, *kind)
+        }
     }
 }
 
-/// A write that was cut off: how far it came, and where the state before is.
-pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) -> Vec<Text> {
-    let done = interrupted.done.ops;
+/// A write that was cut off: how far it came, what became of it, and where the state before is.
+pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+    let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
-        Error::Cancelled => Text::new("write.cancelled").with("done", done).with("planned", planned),
+        Error::Cancelled => Text::new("write.cancelled").with("done", done.ops).with("planned", planned),
         cause => {
-            let text = Text::new("write.interrupted").with("done", done).with("planned", planned);
+            let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
             text.with_text("cause", encoder(cause))
         }
     }];
@@ -54,8 +62,42 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize) ->
         let fields: Vec<String> = interrupted.left_unlocked.iter().map(ToString::to_string).collect();
         texts.push(Text::new("write.left_unlocked").with("fields", fields.join(", ")));
     }
-    texts.push(Text::new("write.backup").with("backup", backup.display()));
+    // An operation that may have been carried out counts as a write cycle.
+    let id = match kind {
+        _ if done.write_cycles == 0 => "write.untouched",
+        ChangeKind::Restore => "write.backup",
+        ChangeKind::Bytes => "write.backup_bytes",
+        ChangeKind::Single => "write.backup_single",
+    };
+    texts.push(Text::new(id).with("backup", backup.display()));
     texts
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    let cause = match error {
+        JobError::Device(error) => error,
+        JobError::Interrupted { interrupted, .. } => &interrupted.cause,
+        _ => return None,
+    };
+    match cause {
+        Error::Link(error) => Some(link(error)),
+        _ => None,
+    }
+}
+
+/// A write that is done. What cannot be read back was acknowledged by the encoder, and that is all there is.
+pub fn written(written: &Written) -> Text {
+    let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
+    Text::new(id).with("cycles", written.write_cycles)
+}
+
+/// The same for the end of a review.
+pub fn verified(written: &Written) -> Text {
+    match written.verified {
+        0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
+        verified => Text::new("review.verified").with("verified", verified).with("cycles", written.write_cycles),
+    }
 }
 
 /// An exchange with a HIPERFACE encoder that failed.
@@ -66,11 +108,12 @@ pub fn encoder(error: &Error) -> Text {
             let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
             Text::new(id)
                 .with("address", format!("{address:02X}h"))
-                .with("command", command.row().name)
+                .with_text("command", command::command(*command))
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
-            let text = Text::new("encoder.damaged").with("command", command.row().name).with("tries", tries);
+            let text =
+                Text::new("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
             text.with_text("why", damage(cause))
         }
         Error::NeverSilent => Text::new("encoder.never_silent"),
@@ -78,11 +121,11 @@ pub fn encoder(error: &Error) -> Text {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
             let codes = codes.iter().copied().map(status_with_number);
-            Text::new(id).with("command", command.row().name).with_list("codes", codes)
+            Text::new(id).with_text("command", command::command(*command)).with_list("codes", codes)
         }
-        Error::Unclear { command, cause } => {
-            Text::new("encoder.unclear").with("command", command.row().name).with_text("cause", encoder(cause))
-        }
+        Error::Unclear { command, cause } => Text::new("encoder.unclear")
+            .with_text("command", command::command(*command))
+            .with_text("cause", encoder(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Moving { readings } => {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
@@ -99,10 +142,11 @@ pub fn encoder(error: &Error) -> Text {
             out_of_field(*field, size.saturating_sub(1), *address, *count)
         }
         Error::CodeUnknown { field, number } => code_unknown(*field, number),
-        Error::Changed { item } => Text::new("encoder.changed").with("item", item),
-        Error::NotVerified { item, expected, got } => {
-            Text::new("encoder.not_verified").with("item", item).with("expected", expected).with("got", got)
-        }
+        Error::Changed { item } => Text::new("encoder.changed").with_text("item", phrase(item)),
+        Error::NotVerified { item, expected, got } => Text::new("encoder.not_verified")
+            .with_text("item", phrase(item))
+            .with("expected", expected)
+            .with_text("got", phrase(got)),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
 }
@@ -135,10 +179,68 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
-    Text::new("encoder.out_of_field").with("field", field).with("last", last).with("start", start).with("count", count)
+/// Bytes that a field does not have.
+pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
+    let text = Text::new(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
+    text.with("field", field).with("last", last).with("start", start).with("count", count)
 }
 
 fn code_unknown(field: u8, number: impl ToString) -> Text {
     Text::new("encoder.code_unknown").with("field", field).with("number", number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::link::{LinkError, LinkErrorKind};
+
+    fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
+        let ops = usize::try_from(write_cycles).unwrap();
+        Interrupted { done: Written { ops, write_cycles, ..Written::default() }, cause, left_unlocked: Vec::new() }
+    }
+
+    #[test]
+    fn what_is_said_of_a_write_that_was_cut_off_fits_its_kind() {
+        let path = Path::new("b.ron");
+        let words = |cycles, kind| {
+            let texts = interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind);
+            texts.last().unwrap().words(Language::English)
+        };
+        let cases = [
+            (ChangeKind::Restore, "Restoring the profile again completes it"),
+            (ChangeKind::Bytes, "stay edited"),
+            (ChangeKind::Single, "make the change again"),
+        ];
+        for (kind, part) in cases {
+            assert!(words(2, kind).contains(part), "{}", words(2, kind));
+            assert!(words(0, kind).contains("nothing needs undoing"), "{}", words(0, kind));
+            let terminal = interruption(&cut_off(Error::Cancelled, 0), path, 4, kind).pop().unwrap().terminal();
+            assert_eq!(
+                terminal,
+                "The state before is in b.ron; restoring the profile again completes it, restoring that file undoes it."
+            );
+        }
+    }
+
+    #[test]
+    fn a_line_that_was_lost_in_a_write_is_lost_and_no_more() {
+        let gone = || Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        let interrupted = Box::new(cut_off(gone(), 1));
+        let backup = Path::new("b.ron").to_owned();
+        let error = JobError::Interrupted { interrupted, backup, planned: 4, kind: ChangeKind::Restore };
+        assert_eq!(loss(&error).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Device(gone())).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+    }
+
+    #[test]
+    fn an_access_code_is_acknowledged_and_not_read_back() {
+        let of = |verified| Written { ops: 1, written: 1, verified, write_cycles: 1 };
+        assert!(verified(&of(3)).words(Language::English).starts_with("Read back and equal"));
+        for text in [written(&of(0)), verified(&of(0))] {
+            assert_eq!(text.id(), "session.acknowledged");
+        }
+        assert_eq!(written(&of(1)).id(), "session.written");
+    }
 }

@@ -1,15 +1,20 @@
 //! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
 //! device stands in a module of its own.
 
+mod detail;
 pub mod hiperface;
+pub mod signal;
 
 use std::path::Path;
+
+pub use detail::{document, logbook_problem, phrase, recording, setting, type_table, url};
 
 use super::Text;
 use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::ProfileError;
-use crate::store::{FileError, FileProblem, StoreError};
+use crate::protocol::hiperface::KIND;
+use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::worker::OpenError;
 
 /// A wire.
@@ -39,11 +44,13 @@ pub fn link(error: &LinkError) -> Text {
 /// A link that cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
-        OpenError::Url(why) => Text::new("link.url").with("why", why),
-        OpenError::Sim(why) => Text::new("link.url").with("why", why),
+        OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
+        OpenError::Sim(why) => Text::new("link.url").with_text("why", setting(why)),
         OpenError::Link(error) => link(error),
         OpenError::File(error) => file(error),
-        OpenError::Recording { path, cause } => Text::new("link.recording").with("path", path).with("why", cause),
+        OpenError::Recording { path, cause } => {
+            Text::new("link.recording").with("path", path).with_text("why", recording(cause))
+        }
         OpenError::Store(error) => store(error),
     }
 }
@@ -82,7 +89,7 @@ pub fn store(error: &StoreError) -> Text {
         StoreError::NoHome => Text::new("store.no_home"),
         StoreError::File(error) => file(error),
         StoreError::EncoderTypes { path, cause } => {
-            Text::new("store.encoder_types").with("path", path.display()).with("why", cause)
+            Text::new("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
         }
     }
 }
@@ -95,15 +102,15 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
             Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
         }
         ProfileError::Device(found) => {
-            Text::new("profile.device").with("path", path).with("found", found).with("known", "hiperface")
+            Text::new("profile.device").with("path", path).with("found", found).with("known", KIND)
         }
-        error => Text::new("profile.invalid").with("path", path).with("why", error),
+        error => Text::new("profile.invalid").with("path", path).with_text("why", document(error)),
     }
 }
 
 /// What the logbook could not take.
-pub fn logbook(why: &str) -> Text {
-    Text::new("write.logbook").with("why", why)
+pub fn logbook(why: &LogbookError) -> Text {
+    Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
 /// What is the same in every language: a name, a number, bytes.

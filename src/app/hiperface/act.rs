@@ -351,7 +351,7 @@ fn what(job: &HiperfaceJob) -> Text {
         HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
         HiperfaceJob::Status => Text::new("job.status"),
         HiperfaceJob::Position(_) => Text::new("job.position"),
-        HiperfaceJob::Read(item) => Text::new("job.read").with("item", item),
+        HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
         HiperfaceJob::Save(_) => Text::new("job.save"),
         HiperfaceJob::Check { .. } => Text::new("job.check"),
         HiperfaceJob::Reset => Text::new("job.reset"),

@@ -8,7 +8,7 @@ use crate::app::studio::SessionId;
 use crate::profile::PlanId;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
-use crate::store::{Backup, Claim, DeviceKey, Entry, FileError};
+use crate::store::{Backup, Claim, DeviceKey, Entry, FileError, LogbookError};
 use crate::worker::hiperface::Change;
 
 /// Something in the HIPERFACE tab.
@@ -111,7 +111,7 @@ pub enum Done {
         /// Backups, the newest first.
         backups: Result<Vec<Backup>, FileError>,
         /// Writes, the newest first, or why the logbook does not tell.
-        writes: Result<Vec<Entry>, String>,
+        writes: Result<Vec<Entry>, LogbookError>,
     },
     /// A backup was read, or not.
     Backup {

@@ -11,6 +11,7 @@ use super::encoder::{Encoder, Source};
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
+use crate::protocol::hiperface::KIND;
 use crate::store::{Claim, Drafts, FileError};
 
 type Edits = Vec<(u8, usize, u8)>;
@@ -62,7 +63,7 @@ impl Encoder {
             Source::Link(_) => {
                 let identity = self.identity.as_ref()?;
                 let serial = &identity.serial.serial_number;
-                let kind = if self.is_virtual() { "hiperface-virtual" } else { "hiperface" };
+                let kind = if self.is_virtual() { "hiperface-virtual" } else { KIND };
                 let name = format!("{:02X}-{serial}", identity.label.encoder_type);
                 (!serial.is_empty()).then_some(DraftKey { kind, name })
             }
@@ -147,7 +148,7 @@ impl Encoder {
                 self.staged.take_draft(edits);
                 self.drafting.kept = self.staged.edits().collect();
                 if self.staged.is_dirty() {
-                    let text = Text::new("session.draft_back").with("bytes", self.drafting.kept.len());
+                    let text = Text::new("session.draft_back");
                     services.tell(Severity::Warning, vec![text], Some(&self.name()));
                 }
             }

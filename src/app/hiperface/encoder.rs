@@ -18,7 +18,7 @@ use crate::device::hiperface::{Identity, Survey, profile_of};
 use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
-use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::store::{Backup, DeviceKey, Entry, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
 
@@ -389,12 +389,10 @@ impl Encoder {
         let (store, id, serial) = (services.world.store.clone(), self.id, identity.serial.serial_number.clone());
         let key = self.key_of(identity);
         services.tasks.run("backups", move || {
-            let backups = store.backups().list("hiperface", &serial);
+            let backups = store.backups().list(KIND, &serial);
             let writes = match store.logbook_path() {
                 path if !path.exists() => Ok(Vec::new()),
-                path => crate::store::Logbook::open(&path)
-                    .and_then(|logbook| logbook.history(&key, 200))
-                    .map_err(|error| error.to_string()),
+                path => crate::store::Logbook::open(&path).and_then(|logbook| logbook.history(&key, 200)),
             };
             let done = Done::Backups { of: key, backups, writes };
             crate::app::Action::Done(crate::app::action::Done::Hiperface(id, done))
@@ -420,7 +418,9 @@ impl Encoder {
             Done::Backups { of, .. } | Done::Backup { of, .. } if self.key().as_ref() != Some(&of) => {}
             Done::Backups { backups, writes, .. } => {
                 self.backups = Some(backups.map_err(|error| explain::file(&error)));
-                self.writes = Some(writes.map_err(|why| Text::new("backups.no_logbook").with("why", why)));
+                self.writes = Some(writes.map_err(|error| {
+                    Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))
+                }));
             }
             Done::Backup { result: Ok(profile), .. } => self.plan_restore(*profile, services),
             Done::Backup { path, result: Err(error), .. } => {

@@ -14,6 +14,15 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| Text::new("entry.code"))
 }
 
+/// A new access code, typed twice, because nobody can read it back.
+///
+/// # Errors
+/// In words; the entries are not repeated.
+pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
+    let code = access_code(text)?;
+    if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(Text::new("entry.codes_differ")) }
+}
+
 /// An address, 40h…5Fh in hexadecimal.
 ///
 /// # Errors
@@ -145,6 +154,8 @@ mod tests {
             assert!(channel(text).is_err(), "{text}");
         }
         assert!(address("3F").is_err() && address("60").is_err());
+        assert_eq!(new_access_code("1A", "0x1a").map(AccessCode::byte), Ok(0x1A));
+        assert!(new_access_code("1A", "1B").is_err() && new_access_code("1A", "").is_err());
         let text = access_code("secret").unwrap_err().words(crate::app::Language::English);
         assert!(!text.contains("secret"));
     }

@@ -1,7 +1,8 @@
-//! Frames of the trace in words: a reply is read with the request before it.
+//! What the frames of the trace say: a reply is read with the request before it.
 
+use crate::app::{Text, explain};
 use crate::link::{Direction, TraceEntry};
-use crate::protocol::hiperface::{Frame, Request, describe};
+use crate::protocol::hiperface::{Frame, Request, Said, describe};
 
 /// Reads frames in the order in which they went over the line.
 #[derive(Debug, Default)]
@@ -10,14 +11,14 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// What a frame says, in one line, and nothing for bytes that are no frame. It says nothing of access codes.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> String {
+    /// What a frame says, and nothing for bytes that are no frame. It says nothing of access codes.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Vec<Text> {
         let bytes = match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), _) => bytes,
             (None, Direction::Sent) => with_checksum(entry.bytes.filled(0)),
             (None, Direction::Received) => {
                 self.request = None;
-                return String::new();
+                return Vec::new();
             }
         };
         let request = match entry.direction {
@@ -27,12 +28,10 @@ impl Meaning {
             }
             Direction::Received => self.request.take(),
         };
-        match describe(&bytes, request.as_ref()) {
-            // The heading repeats the request's; of a reply only what it gives is new.
-            Ok(lines) if request.is_some() => lines.get(1..).unwrap_or_default().join(" · "),
-            Ok(lines) => lines.join(" · "),
-            Err(_) => String::new(),
-        }
+        let Ok(said) = describe(&bytes, request.as_ref()) else { return Vec::new() };
+        // The heading repeats the request's; of a reply only what it gives is new.
+        let known = |said: &Said| request.is_some() && matches!(said, Said::Heading { .. });
+        said.iter().filter(|said| !known(said)).map(explain::hiperface::frame).collect()
     }
 }
 

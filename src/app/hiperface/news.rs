@@ -86,8 +86,8 @@ impl Encoder {
             }
             Event::Failed(id, error) => self.failed(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
-            Event::PollFailed(error) if link_is_gone(&error) => {
-                let why = explain::hiperface::job(&error).into_iter().next();
+            Event::PollFailed(error) if explain::hiperface::loss(&error).is_some() => {
+                let why = explain::hiperface::loss(&error);
                 self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
             }
             // Of an earlier wish: the one in force now goes on.
@@ -265,12 +265,12 @@ impl Encoder {
             return;
         }
         self.save_to = None;
-        let gone = link_is_gone(error);
+        let gone = explain::hiperface::loss(error);
         let begun = matches!(error, JobError::Interrupted { .. });
         self.follow_what_was_done(error, services);
-        let silent = !gone && self.is_silence(error);
+        let silent = gone.is_none() && self.is_silence(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
-        if !gone && !silent && !garbled {
+        if gone.is_none() && !silent && !garbled {
             self.answers();
         }
         if silent {
@@ -283,13 +283,13 @@ impl Encoder {
                 services.note(Severity::Error, texts, Some(&self.name()));
             }
             // That is told below.
-            _ if gone => {}
+            _ if gone.is_some() => {}
             // It stands where the session is shown.
             _ if silent => services.note(Severity::Error, texts, Some(&self.name())),
             _ => services.tell(Severity::Error, texts, Some(&self.name())),
         }
-        if gone {
-            self.lose(first, services);
+        if let Some(why) = gone {
+            self.lose(why, services);
         } else if begun && !silent {
             self.submit(HiperfaceJob::Survey, services);
         }
@@ -340,7 +340,7 @@ impl Encoder {
 
 /// What a write came to.
 fn written(committed: &Committed) -> (Severity, Vec<Text>) {
-    let text = Text::new("session.written").with("cycles", committed.written.write_cycles);
+    let text = explain::hiperface::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
         None => (Severity::Good, vec![text]),
@@ -371,13 +371,4 @@ pub(in crate::app) fn last_words(event: &Event<Hiperface>) -> Option<LastWords> 
         _ => return None,
     };
     Some(LastWords { job: *job, end, severity, texts })
-}
-
-/// The wire itself failed, so that nothing more can be asked over it.
-fn link_is_gone(error: &JobError) -> bool {
-    match error {
-        JobError::Device(Error::Link(_)) => true,
-        JobError::Interrupted { interrupted, .. } => matches!(interrupted.cause, Error::Link(_)),
-        _ => false,
-    }
 }

@@ -112,11 +112,13 @@ pub fn warnings(prepared: &Prepared) -> Vec<Text> {
         warnings.push(Text::new("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
     }
     if !prepared.missing.is_empty() {
-        warnings.push(Text::new("review.missing").with("items", prepared.missing.join(", ")));
+        warnings.push(
+            Text::new("review.missing").with_list("items", prepared.missing.iter().map(|item| explain::phrase(item))),
+        );
     }
     if !prepared.mounting_left.is_empty() {
-        let ranges: Vec<String> = prepared.mounting_left.iter().map(ToString::to_string).collect();
-        warnings.push(Text::new("review.mounting_left").with("items", ranges.join(", ")));
+        let ranges = prepared.mounting_left.iter().map(|range| explain::phrase(&range.to_string()));
+        warnings.push(Text::new("review.mounting_left").with_list("items", ranges));
     }
     if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
         warnings.push(Text::new("review.counter"));

@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use crate::app::explain;
 use crate::bits::{hex, hex_compact, parse_hex};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
@@ -15,7 +16,8 @@ pub(in crate::cli) fn decode(output: &Output, words: &[String]) -> Result {
     let mut request: Option<Request> = None;
     for bytes in &frames {
         match describe(bytes, request.as_ref()) {
-            Ok(lines) => {
+            Ok(said) => {
+                let lines: Vec<String> = said.iter().map(|said| explain::hiperface::frame(said).terminal()).collect();
                 text.push_str(&format!("{}\n", hex(bytes)));
                 text.extend(lines.iter().map(|line| format!("  {line}\n")));
                 list.push(json!({"bytes": hex_compact(bytes), "valid": true, "meaning": lines}));

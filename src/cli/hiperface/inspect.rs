@@ -13,7 +13,7 @@ use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Identity, PositionReading};
 use crate::profile::hiperface::Item;
-use crate::protocol::hiperface::{EncoderTypes, LineSettings, StatusCode};
+use crate::protocol::hiperface::{EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Result {
@@ -91,7 +91,7 @@ pub(in crate::cli) fn identify(common: &Common, output: &Output) -> Result {
     let free = identity.memory.map(|memory| memory.bytes());
     let fields = identity.memory.map(|memory| memory.fields);
     let json = json!({
-        "device": "hiperface",
+        "device": KIND,
         "address": identity.address,
         "encoder_type": identity.label.encoder_type,
         "encoder_name": identity.name,

@@ -1,45 +1,100 @@
-//! Frames in words, for `decode` and the trace. It never shows an access code.
+//! What a captured frame says, as facts: for `decode` and the trace. There is never an access code among them.
 
 use super::{
-    BROADCAST, CodeNumber, Command, DataFieldStatus, DeviceAddress, EncoderTypes, Frame, FrameError, LineSettings,
-    Reply, Request, StatusCode,
+    AccessCode, Answer, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings, Reply,
+    Request, RequestError, StatusCode,
 };
-use crate::bits::hex;
 
-/// What a captured frame says, one sentence a line. `request` is the request before it, when the frame may be its reply.
+/// One thing that a frame says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// Whom it concerns, and which command.
+    Heading {
+        /// 40h…5Fh, FFh in a broadcast.
+        address: u8,
+        /// The command byte as it came, error bit included.
+        command: u8,
+    },
+    /// It asks.
+    Request(Arguments),
+    /// It is neither a request nor a reply that can be told without its request.
+    NoRequest(RequestError),
+    /// It refuses, with this code.
+    Refused(StatusCode),
+    /// It tells a code of the encoder's queue.
+    Code(StatusCode),
+    /// It answers; a reply with codes is said code by code.
+    Reply(Reply),
+}
+
+/// What is asked, without its access codes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Arguments {
+    /// Nothing but the command.
+    None,
+    /// A position to be set.
+    Position(u32),
+    /// An analogue channel.
+    Channel(u8),
+    /// Bytes of a data field.
+    Read {
+        /// Data field number.
+        field: u8,
+        /// First byte.
+        address: u8,
+        /// Number of bytes.
+        count: u8,
+    },
+    /// Bytes for a data field.
+    Store {
+        /// Data field number.
+        field: u8,
+        /// First byte.
+        address: u8,
+        /// The bytes.
+        data: Vec<u8>,
+    },
+    /// A data field.
+    Field(u8),
+    /// Another status for a data field.
+    Define {
+        /// Data field number.
+        field: u8,
+        /// Its status from then on.
+        status: DataFieldStatus,
+    },
+    /// The access code of that number.
+    Code(CodeNumber),
+    /// Another address.
+    Address(DeviceAddress),
+    /// Interface settings.
+    Settings(LineSettings),
+}
+
+/// What a captured frame says, the heading first. `request` is the request before it, when the frame may be its reply.
 ///
 /// # Errors
 /// When the bytes are no frame.
-pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<String>, FrameError> {
+pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<Said>, FrameError> {
     let frame = Frame::parse(bytes)?;
-    let mut lines = vec![heading(&frame)];
+    let mut said = vec![Said::Heading { address: frame.address, command: frame.command }];
     if let Some(answer) = request.and_then(|request| request.parse_reply(frame.address, bytes).ok()) {
-        lines.extend(describe_answer(&answer));
-        return Ok(lines);
+        said.extend(answered(answer));
+        return Ok(said);
     }
     match Request::parse(&frame) {
-        Ok(request) => lines.push(describe_request(&request)),
+        Ok(request) => said.push(Said::Request(arguments(request))),
         Err(error) => match guess_reply(&frame, bytes) {
-            Some(answer) => lines.extend(describe_answer(&answer)),
-            None => lines.push(format!("as a request: {error}")),
+            Some(answer) => said.extend(answered(answer)),
+            None => said.push(Said::NoRequest(error)),
         },
     }
-    Ok(lines)
-}
-
-fn heading(frame: &Frame<'_>) -> String {
-    let who = match frame.address {
-        BROADCAST => "broadcast".to_owned(),
-        address => format!("address {address:02X}h"),
-    };
-    let what = Command::from_byte(frame.command).map_or("unknown command", |command| command.row().name);
-    let flag = if frame.command & Frame::ERROR_BIT != 0 { ", error bit set" } else { "" };
-    format!("{who}: {what} ({:02X}h{flag})", frame.command & 0x7F)
+    Ok(said)
 }
 
 /// A reply is recognised without its request wherever its length tells it from one.
-fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<super::Answer> {
-    let code = super::AccessCode::FACTORY;
+fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
+    let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {
         (Command::ReadPosition, _) => Request::ReadPosition,
         (Command::SetPosition, _) => Request::SetPosition { position: 0, code0: code },
@@ -73,66 +128,36 @@ fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<super::Answer> {
     candidate.parse_reply(frame.address, bytes).ok()
 }
 
-fn describe_request(request: &Request) -> String {
+fn arguments(request: Request) -> Arguments {
     match request {
-        Request::SetPosition { position, .. } | Request::Synchronise { position, .. } => {
-            format!("request: position {position} ({position:08X}h)")
-        }
-        Request::ReadAnalogue { channel } => format!("request: channel {channel:02X}h"),
-        Request::ReadData { field, address, count, .. } => {
-            format!("request: field {field:02X}h, {count} bytes from address {address}")
-        }
-        Request::StoreData { field, address, data, .. } => {
-            format!("request: field {field:02X}h, from address {address}: {}", hex(data))
-        }
-        Request::FieldStatus { field } => format!("request: field {field:02X}h"),
-        Request::DefineField { field, status, .. } => format!("request: field {field:02X}h becomes {status:?}"),
-        Request::ChangeCode { number, .. } => format!("request: access code {number}"),
-        Request::SetAddress { new, .. } => format!("request: new address {new}"),
+        Request::SetPosition { position, .. } | Request::Synchronise { position, .. } => Arguments::Position(position),
+        Request::ReadAnalogue { channel } => Arguments::Channel(channel),
+        Request::ReadData { field, address, count, .. } => Arguments::Read { field, address, count },
+        Request::StoreData { field, address, data, .. } => Arguments::Store { field, address, data },
+        Request::FieldStatus { field } => Arguments::Field(field),
+        Request::DefineField { field, status, .. } => Arguments::Define { field, status },
+        Request::ChangeCode { number, .. } => Arguments::Code(number),
+        Request::SetAddress { new, .. } => Arguments::Address(new),
         Request::ConfigureLine { settings, .. } | Request::ConfigureLineTemporarily { settings } => {
-            format!("request: {settings:?}")
+            Arguments::Settings(settings)
         }
-        _ => "request".to_owned(),
+        Request::ReadPosition
+        | Request::ReadCounter
+        | Request::IncrementCounter
+        | Request::ClearCounter { .. }
+        | Request::FreeMemory
+        | Request::ReadStatus
+        | Request::ReadTypeLabel
+        | Request::Reset
+        | Request::ReadSerial => Arguments::None,
     }
 }
 
-fn describe_answer(answer: &super::Answer) -> Vec<String> {
-    let code_line = |code: &StatusCode| {
-        let kind = if code.is_warning() { "warning" } else { "error" };
-        if *code == StatusCode::OK { code.to_string() } else { format!("{kind} {code}") }
-    };
+fn answered(answer: Answer) -> Vec<Said> {
     match answer {
-        super::Answer::Rejected { codes, .. } => codes.iter().map(|c| format!("refused: {}", code_line(c))).collect(),
-        super::Answer::Reply { reply: Reply::Status(codes), .. } => codes.iter().map(code_line).collect(),
-        super::Answer::Reply { reply, .. } => vec![format!("reply: {}", describe_reply(reply))],
-    }
-}
-
-fn describe_reply(reply: &Reply) -> String {
-    match reply {
-        Reply::Done => "done".to_owned(),
-        Reply::Position(raw) => format!("position {raw} ({raw:08X}h)"),
-        Reply::Analogue(value) => format!("value {value}"),
-        Reply::Counter(value) => format!("counter {value}"),
-        Reply::Data(bytes) => format!("data {}", hex(bytes)),
-        Reply::FieldStatus(status) => format!("status {status:?}"),
-        Reply::FreeMemory(free) => format!("{} bytes free, {} data fields", free.bytes(), free.fields),
-        Reply::Status(codes) => codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
-        Reply::TypeLabel(label) => {
-            let types = EncoderTypes::built_in();
-            let name = types.find(label.encoder_type).map_or("unknown type", |row| row.name.as_str());
-            format!(
-                "{:?}; type {:02X}h {name}; EEPROM {} bytes; options {:02X}h",
-                label.settings,
-                label.encoder_type,
-                label.eeprom_bytes(),
-                label.options
-            )
-        }
-        Reply::Serial(label) => format!(
-            "serial number {}, firmware {} of {}",
-            label.serial_number, label.firmware_version, label.firmware_date
-        ),
+        Answer::Rejected { codes, .. } => codes.into_iter().map(Said::Refused).collect(),
+        Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(Said::Code).collect(),
+        Answer::Reply { reply, .. } => vec![Said::Reply(reply)],
     }
 }
 
@@ -142,24 +167,33 @@ mod tests {
     use crate::bits::parse_hex;
 
     #[test]
-    fn frames_in_words() {
+    fn frames_are_told_apart() {
+        let heading = |command| Said::Heading { address: 0x40, command };
         let cases = [
-            ("40 42 02", "address 40h: read position (42h)|request"),
-            ("40 42 00 0E 05 31 38", "address 40h: read position (42h)|reply: position 918833 (000E0531h)"),
-            ("40 D0 0F 9F", "address 40h: read encoder status (50h, error bit set)|error 0Fh wrong access code"),
-            ("40 4E 08 00 06", "address 40h: read available memory (4Eh)|reply: 128 bytes free, 0 data fields"),
-            ("40 4F 02 55 66 3E", "address 40h: change access code (4Fh)|request: access code 2"),
-            ("40 4D 00 C9 C4", "address 40h: create, change or delete a data field (4Dh)|reply: done"),
-            ("40 4F 02 0D", "address 40h: change access code (4Fh)|reply: done"),
-            ("40 4B 01 05 02 0D", "address 40h: store data (4Bh)|reply: done"),
-            ("40 43 03", "address 40h: set position (43h)|reply: done"),
-            ("40 57 E5 F2", "address 40h: configure serial interface (57h)|reply: done"),
-            ("FF 53 AC", "broadcast: reset (53h)|request"),
-            ("40 41 01", "address 40h: unknown command (41h)|as a request: 41h is not a command"),
+            ("40 42 02", 0x42, Said::Request(Arguments::None)),
+            ("40 42 00 0E 05 31 38", 0x42, Said::Reply(Reply::Position(0x000E_0531))),
+            ("40 D0 0F 9F", 0xD0, Said::Code(StatusCode::WRONG_CODE)),
+            ("40 4D 00 C9 C4", 0x4D, Said::Reply(Reply::Done)),
+            ("40 4F 02 0D", 0x4F, Said::Reply(Reply::Done)),
+            ("40 4B 01 05 02 0D", 0x4B, Said::Reply(Reply::Done)),
+            ("40 41 01", 0x41, Said::NoRequest(RequestError::Command(0x41))),
+        ];
+        for (bytes, command, expected) in cases {
+            let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
+            assert_eq!(said, [heading(command), expected], "{bytes}");
+        }
+    }
+
+    #[test]
+    fn the_access_codes_of_a_request_are_no_part_of_what_it_says() {
+        // The manual's examples: code 66h opens field 1, code 2 becomes 66h.
+        let cases = [
+            ("40 4B 01 05 02 66 08 15 76", Arguments::Store { field: 1, address: 5, data: vec![0x08, 0x15] }),
+            ("40 4F 02 55 66 3E", Arguments::Code(CodeNumber::new(2).unwrap())),
         ];
         for (bytes, expected) in cases {
-            let lines = describe(&parse_hex(bytes).unwrap(), None).unwrap();
-            assert_eq!(lines.join("|"), expected);
+            let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
+            assert_eq!(said.last(), Some(&Said::Request(expected)), "{bytes}");
         }
     }
 
@@ -172,7 +206,7 @@ mod tests {
     #[test]
     fn a_refusal_is_told_from_its_request() {
         let request = Request::ReadPosition;
-        let lines = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
-        assert_eq!(lines.last().unwrap(), "refused: error 1Fh speed too high, no position possible");
+        let said = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
+        assert_eq!(said.last(), Some(&Said::Refused(StatusCode::new(0x1F))));
     }
 }

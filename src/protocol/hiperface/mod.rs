@@ -25,12 +25,15 @@ mod type_label;
 #[cfg(test)]
 mod vectors;
 
+/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+pub const KIND: &str = "hiperface";
+
 pub use address::{BROADCAST, DeviceAddress};
 pub use command::{COMMANDS, Command, CommandRow};
 pub use data_field::{
     AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
-pub use describe::describe;
+pub use describe::{Arguments, Said, describe};
 pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};

@@ -12,7 +12,8 @@ use crate::device::hiperface::Echo;
 use crate::device::hiperface::find::FindOptions;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
-    LABELS, button, choice, enabled_button, entry, icon_button, modal, name, paragraph, primary, text_entry,
+    LABELS, button, choice, enabled_button, entry, fill, icon_button, modal, name, paragraph, primary, spinner,
+    text_entry,
 };
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -40,12 +41,13 @@ pub(in crate::ui) fn connect_ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(dialog) = &studio.connect else { return };
-    let height = ctx.content_rect().height() - 190.0;
+    let height = (ctx.content_rect().height() - 190.0).min(560.0);
     let mut form = dialog.form.clone();
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.label(skin.heading(skin.say("connect.title")));
         ui.add_space(skin.space.inside);
-        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        // Always as high: nothing jumps away under the pointer.
+        ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
             used_before(ui, skin, studio, actions);
             kinds(ui, skin, &mut form);
             ui.add_space(skin.space.between);
@@ -246,7 +248,7 @@ fn link_text(ui: &mut Ui, skin: &Skin, form: &LinkForm) {
 fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, actions: &mut Vec<Action>) {
     let running = dialog.search.as_ref().is_some_and(Search::is_running);
     skin.card().show(ui, |ui| {
-        ui.set_width(ui.available_width());
+        fill(ui);
         ui.label(skin.heading(skin.say("find.title")));
         paragraph(ui, skin.label(skin.say("find.words")));
         ui.add_enabled_ui(!running, |ui| {
@@ -260,7 +262,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
                 if button(ui, icons::STOP, &skin.say("find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
-                ui.add(egui::Spinner::new().size(14.0));
+                spinner(ui, skin);
             } else if enabled_button(ui, true, icons::MAGNIFYING_GLASS, &skin.say("find.start")).clicked() {
                 let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
                 let options = FindOptions { one_encoder: view.one_encoder, power_cycle };
@@ -269,7 +271,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
             if let Some(progress) = dialog.search.as_ref().and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(skin.mono(&progress.what).color(skin.palette.muted));
+                ui.label(skin.mono(skin.words(&words::doing(&progress.what))).color(skin.palette.muted));
             }
         });
         if let Some(search) = &dialog.search {

@@ -91,6 +91,14 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         let response = text_entry(ui, &mut view.path, ui.available_width(), &skin.say("file.path"), "");
         if std::mem::take(&mut view.fresh) {
             response.request_focus();
+            // What is typed replaces the name, not the folder.
+            let name = view.path.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or_default().chars().count();
+            let end = view.path.chars().count();
+            let range =
+                egui::text::CCursorRange::two(egui::text::CCursor::new(end - name), egui::text::CCursor::new(end));
+            let mut state = egui::TextEdit::load_state(ui.ctx(), response.id).unwrap_or_default();
+            state.cursor.set_char_range(Some(range));
+            egui::TextEdit::store_state(ui.ctx(), response.id, state);
         }
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         ui.label(skin.caption(skin.say("file.hint")));
@@ -98,7 +106,7 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let named = !view.path.trim().is_empty();
             if primary(ui, skin, named, icon, &skin.say(confirm)).clicked() || (enter && named) {
-                actions.push(answer(&view.question, PathBuf::from(view.path.trim())));
+                actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));
                 done = true;
             }
             if button(ui, "", &skin.say("file.cancel")).clicked() {

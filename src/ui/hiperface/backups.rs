@@ -22,91 +22,73 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
 
 fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let savable = encoder.is_savable();
-    card(
-        ui,
-        skin,
-        &skin.say("profile_card.title"),
-        |_| {},
-        |ui| {
-            paragraph(ui, skin.label(skin.say("profile_card.words")));
-            ui.horizontal(|ui| {
-                if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
-                }
-                if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
-                    actions.push(Action::AskOpen);
-                }
-            });
-        },
-    );
+    card(ui, skin, "profile_card.title", |ui| {
+        paragraph(ui, skin.label(skin.say("profile_card.words")));
+        ui.horizontal(|ui| {
+            if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
+            }
+            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+                actions.push(Action::AskOpen);
+            }
+        });
+    });
 }
 
 fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(
-        ui,
-        skin,
-        &skin.say("backups_card.title"),
-        |_| {},
-        |ui| match &encoder.backups {
-            None => {
-                empty(ui, skin, &skin.say("backups_card.none"), None);
+    card(ui, skin, "backups_card.title", |ui| match &encoder.backups {
+        None => {
+            empty(ui, skin, &skin.say("backups_card.none"), None);
+        }
+        Some(Err(why)) => {
+            ui.label(RichText::new(skin.words(why)).color(skin.palette.warn));
+        }
+        Some(Ok(backups)) if backups.is_empty() => {
+            empty(ui, skin, &skin.say("backups_card.none"), None);
+        }
+        Some(Ok(backups)) => {
+            paragraph(ui, skin.label(skin.say("backups_card.words")));
+            for backup in backups {
+                ui.horizontal(|ui| {
+                    let taken = backup.taken.to_zoned(TimeZone::system());
+                    ui.label(skin.mono(taken.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
+                    let restore = enabled_button(
+                        ui,
+                        encoder.is_ready(),
+                        icons::CLOCK_COUNTER_CLOCKWISE,
+                        &skin.say("backups_card.restore"),
+                    );
+                    if restore.clicked() {
+                        actions.push(Action::Hiperface(encoder.id, Hiperface::Restore(backup.path.clone())));
+                    }
+                    if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
+                        actions.push(Action::Open(backup.path.clone()));
+                    }
+                    let name = backup.path.display().to_string();
+                    ui.add(egui::Label::new(skin.caption(&name)).truncate()).on_hover_text(&name);
+                });
             }
-            Some(Err(why)) => {
-                ui.label(RichText::new(skin.words(why)).color(skin.palette.warn));
-            }
-            Some(Ok(backups)) if backups.is_empty() => {
-                empty(ui, skin, &skin.say("backups_card.none"), None);
-            }
-            Some(Ok(backups)) => {
-                paragraph(ui, skin.label(skin.say("backups_card.words")));
-                for backup in backups {
-                    ui.horizontal(|ui| {
-                        let taken = backup.taken.to_zoned(TimeZone::system());
-                        ui.label(skin.mono(taken.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
-                        let restore = enabled_button(
-                            ui,
-                            encoder.is_ready(),
-                            icons::CLOCK_COUNTER_CLOCKWISE,
-                            &skin.say("backups_card.restore"),
-                        );
-                        if restore.clicked() {
-                            actions.push(Action::Hiperface(encoder.id, Hiperface::Restore(backup.path.clone())));
-                        }
-                        if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
-                            actions.push(Action::Open(backup.path.clone()));
-                        }
-                        let name = backup.path.display().to_string();
-                        ui.add(egui::Label::new(skin.caption(&name)).truncate()).on_hover_text(&name);
-                    });
-                }
-            }
-        },
-    );
+        }
+    });
 }
 
 fn writes(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(
-        ui,
-        skin,
-        &skin.say("writes_card.title"),
-        |_| {},
-        |ui| match &encoder.writes {
-            None => {
-                ui.label(skin.label(skin.say("writes_card.none")));
+    card(ui, skin, "writes_card.title", |ui| match &encoder.writes {
+        None => {
+            ui.label(skin.label(skin.say("writes_card.none")));
+        }
+        Some(Err(why)) => {
+            paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+        }
+        Some(Ok(writes)) if writes.is_empty() => {
+            ui.label(skin.label(skin.say("writes_card.none")));
+        }
+        Some(Ok(writes)) => {
+            for write in writes {
+                write_ui(ui, skin, write);
             }
-            Some(Err(why)) => {
-                paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
-            }
-            Some(Ok(writes)) if writes.is_empty() => {
-                ui.label(skin.label(skin.say("writes_card.none")));
-            }
-            Some(Ok(writes)) => {
-                for write in writes {
-                    write_ui(ui, skin, write);
-                }
-            }
-        },
-    );
+        }
+    });
 }
 
 fn write_ui(ui: &mut Ui, skin: &Skin, write: &Entry) {

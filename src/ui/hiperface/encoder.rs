@@ -8,7 +8,7 @@ use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::device::hiperface::Identity;
 use crate::device::hiperface::check::Verdict;
-use crate::ui::controls::{card, empty, enabled_button, paragraph, row};
+use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
@@ -19,42 +19,15 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut
         |ui, (actions, _)| {
             identity(ui, skin, encoder, actions);
             ui.add_space(skin.space.groups);
+            status(ui, skin, encoder, actions);
             extended_label(ui, skin, encoder);
-            wiring::card_ui(ui, skin);
         },
         |ui, (actions, restart)| {
-            status(ui, skin, encoder, actions);
-            ui.add_space(skin.space.groups);
             check(ui, skin, encoder, restart, actions);
+            ui.add_space(skin.space.groups);
+            wiring::card_ui(ui, skin);
         },
     );
-}
-
-/// Two columns of cards where there is room, else one below the other.
-pub(super) fn two_columns<C>(
-    ui: &mut Ui,
-    skin: &Skin,
-    mut context: C,
-    left: impl FnOnce(&mut Ui, &mut C),
-    right: impl FnOnce(&mut Ui, &mut C),
-) {
-    if ui.available_width() < 640.0 {
-        left(ui, &mut context);
-        ui.add_space(skin.space.groups);
-        right(ui, &mut context);
-        return;
-    }
-    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor();
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = skin.space.between;
-        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
-            left(ui, &mut context);
-        });
-        ui.add_space(skin.space.groups - skin.space.between);
-        ui.allocate_ui_with_layout(egui::vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
-            right(ui, &mut context);
-        });
-    });
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -64,7 +37,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
             actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
         }
     };
-    card(ui, skin, &skin.say("encoder_card.title"), read, |ui| {
+    card_with(ui, skin, "encoder_card.title", read, |ui| {
         let Some(identity) = &encoder.identity else {
             empty(ui, skin, &skin.say("encoder_card.nothing"), None);
             return;
@@ -111,7 +84,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         }
     };
     let palette = skin.palette;
-    card(ui, skin, &skin.say("status_card.title"), read, |ui| match &encoder.codes {
+    card_with(ui, skin, "status_card.title", read, |ui| match &encoder.codes {
         None => {
             ui.label(skin.label(skin.say("status_card.nothing")));
         }
@@ -138,69 +111,57 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
 
 fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
     let palette = skin.palette;
-    card(
-        ui,
-        skin,
-        &skin.say("check_card.title"),
-        |_| {},
-        |ui| {
-            match &encoder.check {
-                None => {
-                    paragraph(ui, skin.label(skin.say("check_card.nothing")));
-                }
-                Some(lines) => {
-                    for line in lines {
-                        let (icon, colour) = match line.verdict {
-                            Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
-                            Verdict::Attention => (icons::WARNING, palette.warn),
-                            Verdict::Bad => (icons::X_CIRCLE, palette.bad),
-                        };
-                        let verdict = skin.words(&words::verdict(line.verdict));
-                        ui.horizontal_top(|ui| {
-                            ui.label(RichText::new(icon).color(colour)).on_hover_text(verdict);
-                            ui.vertical(|ui| {
-                                ui.label(skin.words(&words::step(line.step)));
-                                for finding in &line.findings {
-                                    let finding = skin.words(&words::finding(finding));
-                                    ui.add(egui::Label::new(skin.caption(finding)).wrap().selectable(true));
-                                }
-                            });
+    card(ui, skin, "check_card.title", |ui| {
+        match &encoder.check {
+            None => {
+                paragraph(ui, skin.label(skin.say("check_card.nothing")));
+            }
+            Some(lines) => {
+                for line in lines {
+                    let (icon, colour) = match line.verdict {
+                        Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
+                        Verdict::Attention => (icons::WARNING, palette.warn),
+                        Verdict::Bad => (icons::X_CIRCLE, palette.bad),
+                    };
+                    let verdict = skin.words(&words::verdict(line.verdict));
+                    ui.horizontal_top(|ui| {
+                        ui.label(RichText::new(icon).color(colour)).on_hover_text(verdict);
+                        ui.vertical(|ui| {
+                            ui.label(skin.words(&words::step(line.step)));
+                            for finding in &line.findings {
+                                let finding = skin.words(&words::finding(finding));
+                                ui.add(egui::Label::new(skin.caption(finding)).wrap().selectable(true));
+                            }
                         });
-                    }
+                    });
                 }
             }
-            ui.add_space(skin.space.between);
-            ui.checkbox(restart, skin.say("check_card.restart"));
-            if enabled_button(ui, encoder.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Check { restart: *restart }));
-            }
-        },
-    );
+        }
+        ui.add_space(skin.space.between);
+        ui.checkbox(restart, skin.say("check_card.restart"));
+        if enabled_button(ui, encoder.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Hiperface(encoder.id, Hiperface::Check { restart: *restart }));
+        }
+    });
 }
 
 fn extended_label(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
-    card(
-        ui,
-        skin,
-        &skin.say("label_card.title"),
-        |_| {},
-        |ui| {
-            for part in words::label(bytes) {
-                ui.horizontal_top(|ui| {
-                    ui.spacing_mut().interact_size.y = 18.0;
-                    let addresses = ui.label(skin.mono(&part.addresses).color(skin.palette.muted));
-                    ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
-                    ui.vertical(|ui| {
-                        ui.spacing_mut().item_spacing.y = 0.0;
-                        paragraph(ui, skin.words(&part.meaning));
-                        paragraph(ui, skin.mono(&part.bytes).size(skin.sizes.caption).color(skin.palette.muted));
-                    });
-                });
-            }
-        },
-    );
     ui.add_space(skin.space.groups);
+    card(ui, skin, "label_card.title", |ui| {
+        for part in words::label(bytes) {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().interact_size.y = 18.0;
+                let addresses = ui.label(skin.mono(&part.addresses).color(skin.palette.muted));
+                ui.add_space((ADDRESSES - addresses.rect.width()).max(0.0));
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing.y = 0.0;
+                    paragraph(ui, skin.words(&part.meaning));
+                    paragraph(ui, skin.mono(&part.bytes).size(skin.sizes.caption).color(skin.palette.muted));
+                });
+            });
+        }
+    });
 }
 
 /// Width of the column of addresses.

@@ -189,6 +189,10 @@ fn field_ui(
             // Room for the ring around what has the keyboard.
             ui.add_space(skin.space.inside);
             edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
+            if let [mark, ..] = marks.as_slice() {
+                let text = Text::new("memory.mounting").with("what", mark.words);
+                ui.label(skin.caption(skin.words(&text)));
+            }
             ui.add_space(skin.space.between);
             typed_view(ui, skin, view.hex.to_read(bytes));
         });
@@ -221,8 +225,8 @@ fn field_head(
         ui.label(skin.heading(skin.words(&Text::new("memory.field").with("number", field.number))));
         ui.label(skin.label(skin.words(&words::field_status(field.status))));
     });
+    let Some(memory) = memory else { return };
     ui.horizontal_wrapped(|ui| {
-        let Some(memory) = memory else { return };
         let ready = || if encoder.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let lock = field.status.is_writable();
         let (icon, word) =
@@ -335,6 +339,9 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if encoder.phase == Phase::Offline {
+                if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                    actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
+                }
                 write_into(ui, skin, studio, encoder, actions);
             } else if primary(ui, skin, dirty && encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("memory.review"))
                 .on_hover_text(skin.say("memory.review_hint"))
@@ -344,8 +351,13 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
             }
             if dirty {
                 let count = encoder.staged.edits().count();
-                let text =
-                    Text::new(if count == 1 { "memory.edited_one" } else { "memory.edited" }).with("count", count);
+                let text = Text::new(match (&encoder.source, count) {
+                    (Source::Link(_), 1) => "memory.edited_one",
+                    (Source::Link(_), _) => "memory.edited",
+                    (Source::File { .. }, 1) => "memory.unsaved_one",
+                    (Source::File { .. }, _) => "memory.unsaved",
+                })
+                .with("count", count);
                 let words = RichText::new(skin.words(&text)).color(skin.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
             }

@@ -18,7 +18,7 @@ use crate::app::{Action, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Page {
+pub(in crate::ui) enum Page {
     /// Who it is, how it is, and how it is wired.
     #[default]
     Encoder,
@@ -66,15 +66,29 @@ impl Page {
     }
 }
 
-/// What the tab remembers while the window is open: text buffers and selections.
+/// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub struct View {
+pub(in crate::ui) struct View {
     /// The open page.
     pub page: Page,
+    /// The encoder that the rest is about.
+    serial_number: Option<String>,
     memory: memory::View,
     values: values::View,
     setup: setup::View,
     check_restart: bool,
+}
+
+impl View {
+    /// What was typed for another encoder is not for this one.
+    pub(super) fn follow(&mut self, encoder: &Encoder) {
+        let Some(identity) = &encoder.identity else { return };
+        let own = &identity.serial.serial_number;
+        if self.serial_number.as_ref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.clone());
+    }
 }
 
 /// Draws the open page.
@@ -96,7 +110,7 @@ pub(super) fn page_ui(
             .show(ui, |ui| memory::page_ui(ui, skin, studio, encoder, &mut view.memory, actions));
         return;
     }
-    ScrollArea::vertical().id_salt("page").auto_shrink(false).show(ui, |ui| {
+    ScrollArea::vertical().id_salt((encoder.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
             Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),

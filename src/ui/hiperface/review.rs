@@ -1,11 +1,10 @@
 //! The review of a write: every operation old → new, what it costs and needs, the consent, how far it is, what came of it.
 
-use egui::{RichText, Ui};
-use egui_extras::{Column, TableBuilder};
+use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState, review as plan};
-use crate::app::{Action, Text};
-use crate::ui::controls::{enabled_button, modal, paragraph, primary, row};
+use crate::app::{Action, explain};
+use crate::ui::controls::{enabled_button, modal, paragraph, primary, row, spinner};
 use crate::ui::{Skin, icons};
 use crate::worker::hiperface::{Committed, Prepared};
 
@@ -25,7 +24,7 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
     match &review.state {
         ReviewState::Planning => {
             ui.horizontal(|ui| {
-                ui.add(egui::Spinner::new());
+                spinner(ui, skin);
                 ui.label(skin.label(skin.say("review.planning")));
             });
             buttons(ui, skin, encoder, actions, "review.cancel", |_, _| {});
@@ -102,60 +101,45 @@ fn buttons(
     });
 }
 
-/// The operations; while they are carried out, with the number of those that are done.
+/// The operations; while they are carried out, with the number of those that are done. What is written is never cut off.
 fn operations(ui: &mut Ui, skin: &Skin, prepared: &Prepared, done: Option<usize>) {
     let palette = skin.palette;
-    let lines = plan::lines(&prepared.plan);
-    let height = (lines.len() as f32 * 26.0 + 28.0).clamp(56.0, 260.0);
     skin.sunken().show(ui, |ui| {
-        TableBuilder::new(ui)
-            .id_salt("operations")
-            .max_scroll_height(height)
-            .min_scrolled_height(0.0)
-            .auto_shrink([false, true])
-            .column(Column::exact(22.0))
-            .column(Column::initial(150.0).clip(true))
-            .column(Column::initial(220.0).clip(true))
-            .column(Column::exact(18.0))
-            .column(Column::remainder().clip(true))
-            .header(22.0, |mut header| {
-                for id in ["", "review.item", "review.old", "", "review.new"] {
-                    header.col(|ui| {
-                        if !id.is_empty() {
-                            ui.label(skin.caption(skin.say(id)));
-                        }
+        ScrollArea::vertical().id_salt("operations").max_height(280.0).auto_shrink([false, true]).show(ui, |ui| {
+            for (at, line) in plan::lines(&prepared.plan).iter().enumerate() {
+                if at > 0 {
+                    ui.separator();
+                }
+                ui.horizontal(|ui| {
+                    let is_done = done.is_some_and(|done| at < done);
+                    let icon = if is_done { icons::CHECK } else { icons::PENCIL_SIMPLE };
+                    let colour = if is_done { palette.good } else { palette.muted };
+                    ui.label(RichText::new(icon).color(colour));
+                    ui.label(skin.words(&line.item));
+                });
+                let heads = if done == Some(usize::MAX) {
+                    ["review.before", "review.after"]
+                } else {
+                    ["review.old", "review.new"]
+                };
+                let words = [(&line.old, palette.muted), (&line.new, palette.staged)];
+                for (head, (words, colour)) in heads.into_iter().zip(words) {
+                    ui.horizontal_top(|ui| {
+                        ui.spacing_mut().interact_size.y = 18.0;
+                        ui.add_space(skin.space.around);
+                        let head = ui.label(skin.caption(skin.say(head)));
+                        ui.add_space((HEADS - head.rect.width()).max(0.0));
+                        paragraph(ui, skin.mono(skin.words(words)).color(colour));
                     });
                 }
-            })
-            .body(|body| {
-                body.rows(24.0, lines.len(), |mut table_row| {
-                    let at = table_row.index();
-                    let Some(line) = lines.get(at) else { return };
-                    table_row.col(|ui| {
-                        if done.is_some_and(|done| at < done) {
-                            ui.label(RichText::new(icons::CHECK).color(palette.good));
-                        }
-                    });
-                    table_row.col(|ui| {
-                        let words = skin.words(&line.item);
-                        ui.label(&words).on_hover_text(&words);
-                    });
-                    table_row.col(|ui| {
-                        let words = skin.words(&line.old);
-                        ui.label(skin.mono(&words).color(palette.muted)).on_hover_text(skin.mono(&words));
-                    });
-                    table_row.col(|ui| {
-                        ui.label(RichText::new(icons::ARROW_RIGHT).color(palette.muted));
-                    });
-                    table_row.col(|ui| {
-                        let words = skin.words(&line.new);
-                        ui.label(skin.mono(&words).color(palette.staged)).on_hover_text(skin.mono(&words));
-                    });
-                });
-            });
+            }
+        });
     });
     ui.add_space(skin.space.between);
 }
+
+/// Width of the column that says which is old and which is new.
+const HEADS: f32 = 56.0;
 
 fn remarks(ui: &mut Ui, skin: &Skin, prepared: &Prepared) {
     let palette = skin.palette;
@@ -202,16 +186,14 @@ fn options(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
 
 fn done(ui: &mut Ui, skin: &Skin, prepared: &Prepared, committed: &Committed) {
     operations(ui, skin, prepared, Some(usize::MAX));
-    let written = &committed.written;
     ui.horizontal(|ui| {
         ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
-        let text = Text::new("review.verified").with("verified", written.verified).with("cycles", written.write_cycles);
-        ui.label(skin.words(&text));
+        ui.label(skin.words(&explain::hiperface::verified(&committed.written)));
     });
     if let Some(backup) = &committed.backup {
         row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
     }
     if let Some(why) = &committed.logbook_warning {
-        remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&crate::app::explain::logbook(why)));
+        remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&explain::logbook(why)));
     }
 }

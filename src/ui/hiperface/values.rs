@@ -2,10 +2,9 @@
 
 use egui::{RichText, Ui};
 
-use super::encoder::two_columns;
 use crate::app::hiperface::{Action as Hiperface, Encoder, forms};
 use crate::app::{Action, Text};
-use crate::ui::controls::{card, enabled_button, entry, paragraph, text_entry};
+use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Skin, icons};
 use crate::worker::hiperface::Change;
 
@@ -33,53 +32,47 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 
 fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let palette = skin.palette;
-    card(
-        ui,
-        skin,
-        &skin.say("analogue_card.title"),
-        |_| {},
-        |ui| {
-            paragraph(ui, skin.label(skin.say("analogue_card.words")));
-            for (channel, value) in &encoder.analogue {
-                entry(ui, skin, &format!("{channel:02X}h"), |ui| match value {
-                    Ok((value, limit)) => {
-                        let over = limit.is_some_and(|limit| *value > limit);
-                        ui.label(skin.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
-                        if let Some(limit) = limit {
-                            let text = Text::new("analogue_card.limit").with("limit", limit);
-                            ui.label(skin.label(skin.words(&text)));
-                        }
-                        if over {
-                            ui.label(RichText::new(icons::WARNING).color(palette.bad));
-                            ui.label(RichText::new(skin.say("analogue_card.over")).color(palette.bad));
-                        }
+    card(ui, skin, "analogue_card.title", |ui| {
+        paragraph(ui, skin.label(skin.say("analogue_card.words")));
+        for (channel, value) in &encoder.analogue {
+            entry(ui, skin, &format!("{channel:02X}h"), |ui| match value {
+                Ok((value, limit)) => {
+                    let over = limit.is_some_and(|limit| *value > limit);
+                    ui.label(skin.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
+                    if let Some(limit) = limit {
+                        let text = Text::new("analogue_card.limit").with("limit", limit);
+                        ui.label(skin.label(skin.words(&text)));
                     }
-                    Err(why) => {
-                        paragraph(ui, skin.label(skin.words(why)));
-                    }
-                });
-            }
-            ui.add_space(skin.space.inside);
-            entry(ui, skin, &skin.say("analogue_card.channel"), |ui| {
-                let label = skin.say("analogue_card.channel");
-                let response = text_entry(ui, &mut view.channel, 48.0, &label, "48");
-                let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-                let read = enabled_button(ui, encoder.is_ready(), icons::EYE, &skin.say("analogue_card.read"));
-                if read.clicked() || (enter && encoder.is_ready()) {
-                    match forms::channel(&view.channel) {
-                        Ok(channel) => {
-                            view.problem = None;
-                            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadAnalogue(channel)));
-                        }
-                        Err(problem) => view.problem = Some(problem),
+                    if over {
+                        ui.label(RichText::new(icons::WARNING).color(palette.bad));
+                        ui.label(RichText::new(skin.say("analogue_card.over")).color(palette.bad));
                     }
                 }
+                Err(why) => {
+                    paragraph(ui, skin.label(skin.words(why)));
+                }
             });
-            if let Some(problem) = &view.problem {
-                ui.label(RichText::new(skin.words(problem)).color(palette.bad));
+        }
+        ui.add_space(skin.space.inside);
+        entry(ui, skin, &skin.say("analogue_card.channel"), |ui| {
+            let label = skin.say("analogue_card.channel");
+            let response = text_entry(ui, &mut view.channel, 48.0, &label, "48");
+            let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let read = enabled_button(ui, encoder.is_ready(), icons::EYE, &skin.say("analogue_card.read"));
+            if read.clicked() || (enter && encoder.is_ready()) {
+                match forms::channel(&view.channel) {
+                    Ok(channel) => {
+                        view.problem = None;
+                        actions.push(Action::Hiperface(encoder.id, Hiperface::ReadAnalogue(channel)));
+                    }
+                    Err(problem) => view.problem = Some(problem),
+                }
             }
-        },
-    );
+        });
+        if let Some(problem) = &view.problem {
+            ui.label(RichText::new(skin.words(problem)).color(palette.bad));
+        }
+    });
 }
 
 fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -90,7 +83,7 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
         }
     };
     let mut change = None;
-    card(ui, skin, &skin.say("counter_card.title"), read, |ui| {
+    card_with(ui, skin, "counter_card.title", read, |ui| {
         ui.label(skin.value(encoder.counter.map_or_else(|| "–".to_owned(), |counter| counter.to_string())));
         paragraph(ui, skin.label(skin.say("counter_card.words")));
         ui.horizontal(|ui| {

@@ -22,24 +22,18 @@ const WIRES: [(&str, &str); 8] = [
 ];
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
-    card(
-        ui,
-        skin,
-        &skin.say("wiring.title"),
-        |_| {},
-        |ui| {
-            for (wire, words) in WIRES {
-                ui.horizontal_top(|ui| {
-                    ui.spacing_mut().interact_size.y = 18.0;
-                    let name = ui.label(skin.mono(wire));
-                    ui.add_space((WIRE - name.rect.width()).max(0.0));
-                    paragraph(ui, skin.label(skin.say(words)));
-                });
-            }
-            ui.add_space(skin.space.inside);
-            for note in ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"] {
-                paragraph(ui, skin.caption(skin.say(note)));
-            }
-        },
-    );
+    card(ui, skin, "wiring.title", |ui| {
+        for (wire, words) in WIRES {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().interact_size.y = 18.0;
+                let name = ui.label(skin.mono(wire));
+                ui.add_space((WIRE - name.rect.width()).max(0.0));
+                paragraph(ui, skin.label(skin.say(words)));
+            });
+        }
+        ui.add_space(skin.space.inside);
+        for note in ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"] {
+            paragraph(ui, skin.caption(skin.say(note)));
+        }
+    });
 }

@@ -4,10 +4,13 @@ use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
 
 use super::nothing;
-use crate::app::{JobEnd, Severity, Studio};
+use crate::app::{JobEnd, Studio};
+use crate::ui::controls::severity;
 use crate::ui::{Skin, icons};
 
 const ROW: f32 = 22.0;
+/// Notices that are drawn; the log file has them all.
+const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 
 /// Draws the list of jobs, the newest first.
@@ -65,13 +68,8 @@ pub(in crate::ui) fn log_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
         return;
     }
     ScrollArea::vertical().id_salt("log").auto_shrink(false).show(ui, |ui| {
-        for notice in studio.services.log.notices().rev() {
-            let (icon, colour) = match notice.severity {
-                Severity::Note => (icons::INFO, palette.muted),
-                Severity::Good => (icons::CHECK_CIRCLE, palette.good),
-                Severity::Warning => (icons::WARNING, palette.warn),
-                Severity::Error => (icons::X_CIRCLE, palette.bad),
-            };
+        for notice in studio.services.log.notices().rev().take(SHOWN) {
+            let (icon, colour) = severity(skin, notice.severity);
             ui.horizontal_top(|ui| {
                 ui.label(skin.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
                 ui.label(RichText::new(icon).color(colour));

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use egui::{RichText, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{Line, Plot, PlotPoints, Points};
 
 use super::nothing;
 use crate::app::hiperface::{Action as Hiperface, Curve, Encoder, Phase, Unit};
@@ -101,7 +101,7 @@ fn curve(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     skin.sunken().inner_margin(4).show(ui, |ui| {
         let height = ui.available_height().max(80.0);
         if curve.points().len() < 2 {
-            ui.set_min_size(egui::vec2(ui.available_width(), height));
+            ui.set_min_size(egui::vec2(ui.available_width().max(0.0), height));
             nothing(ui, skin, &skin.say(if connected { "live.no_curve" } else { "live.nothing" }));
             return;
         }
@@ -115,23 +115,40 @@ fn curve(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
             .show_background(false)
             .grid_spacing(egui::Rangef::new(48.0, 300.0))
             .set_margin_fraction(egui::vec2(0.0, 0.15))
+            .x_axis_formatter(|mark, _| format!("{} s", mark.value))
             .auto_bounds(true);
         plot.height(height).show(ui, |plot| {
             for (at, run) in runs(curve).into_iter().enumerate() {
-                plot.line(Line::new(at.to_string(), PlotPoints::Owned(run)).color(colour).width(1.5));
+                if run.len() == 1 {
+                    plot.points(Points::new(at.to_string(), PlotPoints::Owned(run)).color(colour).radius(2.0));
+                } else {
+                    plot.line(Line::new(at.to_string(), PlotPoints::Owned(run)).color(colour).width(1.5));
+                }
             }
         });
     });
 }
+
+/// Seconds between readings from which they do not belong together.
+const APART: f64 = 2.5;
 
 /// The stretches of the curve between its gaps.
 fn runs(curve: &Curve) -> Vec<Vec<egui_plot::PlotPoint>> {
     let mut runs = vec![Vec::new()];
     for point in curve.points() {
         match (point.value, runs.last_mut()) {
-            (Some(value), Some(run)) => run.push(egui_plot::PlotPoint::new(point.seconds, value)),
+            (Some(value), _) => {
+                let point = egui_plot::PlotPoint::new(point.seconds, value);
+                match runs.last_mut() {
+                    // A line between readings far apart would tell of a movement that nobody has seen.
+                    Some(run) if run.last().is_none_or(|last: &egui_plot::PlotPoint| point.x - last.x < APART) => {
+                        run.push(point);
+                    }
+                    _ => runs.push(vec![point]),
+                }
+            }
             (None, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
-            _ => {}
+            (None, _) => {}
         }
     }
     runs

@@ -16,6 +16,6 @@ use super::Skin;
 fn nothing(ui: &mut Ui, skin: &Skin, words: &str) {
     ui.vertical_centered(|ui| {
         ui.add_space(skin.space.groups);
-        ui.label(skin.label(words));
+        ui.add(egui::Label::new(skin.label(words)).wrap());
     });
 }

@@ -50,8 +50,9 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views:
                 row.col(|ui| {
                     ui.label(skin.mono(&line.bytes).color(colour)).on_hover_text(skin.mono(&line.bytes));
                 });
+                let meaning = line.words(skin.language);
                 row.col(|ui| {
-                    ui.label(RichText::new(&line.meaning).color(colour)).on_hover_text(&line.meaning);
+                    ui.label(RichText::new(&meaning).color(colour)).on_hover_text(&meaning);
                 });
             });
         });

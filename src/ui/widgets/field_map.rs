@@ -168,7 +168,8 @@ fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>,
             }
             response
         } else {
-            ui.interact(*rect, id.with(number), Sense::CLICK)
+            // egui gives tooltips the plain numbers.
+            ui.interact(*rect, id.with("line").with(number), Sense::CLICK)
         };
         part.clicked |= response.clicked();
         part.state.hovered |= response.hovered();

@@ -1,78 +1,102 @@
-//! Carrying a plan out: consent and base → before-image on disk → logbook: intent → the operations → read back →
-//! logbook: result.
-
-use std::path::Path;
+//! What a HIPERFACE encoder brings to a write.
 
 use jiff::Timestamp;
 
-use super::{Commit, Committed, Hiperface, JobError, Prepared, WEAR_LIMIT};
-use crate::device::hiperface::write::{Written, carry_out, confirm};
-use crate::device::hiperface::{Error, Identity, profile_of};
-use crate::profile::hiperface::{Recorded, Scalar};
+use super::{Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
+use crate::device::hiperface::write::{Confirmed, Interrupted, Written, carry_out, confirm};
+use crate::device::hiperface::{Error, Identity, Master, profile_of};
+use crate::profile::hiperface::{Op, Recorded, Scalar};
 use crate::profile::{Body, Document};
-use crate::store::{DeviceKey, EntryId, Logbook, LogbookError, Outcome};
+use crate::protocol::hiperface::KIND;
+use crate::store::{DeviceKey, Outcome};
+use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
 use crate::worker::{Desk, Progress};
 
 pub(super) fn commit(
     encoder: &mut Hiperface,
     desk: &mut Desk,
     commit: &Commit,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Committed, JobError> {
     let prepared = &commit.prepared;
     let plan = &prepared.plan;
     if plan.is_empty() {
         return Ok(Committed::default());
     }
-    check_wear(prepared, commit.force_wear)?;
     let store = desk.store.clone();
-    let is_virtual = desk.is_virtual;
-    let mut master = encoder.master(desk);
-    let confirmed = confirm(&mut master, plan, commit.consent, &prepared.identity)?;
-    let backup = store
-        .backups()
-        .keep("hiperface", &prepared.identity.serial.serial_number, Timestamp::now(), &before_image(prepared))
-        .map_err(JobError::NotKept)?;
-    let mut note = Note::intend(&store.logbook_path(), prepared, is_virtual, &backup);
-    let total = plan.ops.len() as u64;
-    let progress = &mut |at: usize, op: &crate::profile::hiperface::Op| {
-        tell(Progress { done: at as u64, total, what: op.item() });
+    let terms = Terms {
+        device: device_key(&prepared.identity, desk.is_virtual),
+        items: plan.ops.iter().map(Op::item).collect(),
+        cost: plan.write_cycles(),
+        seen: prepared.cycles_seen,
+        limit: WEAR_LIMIT,
+        force_wear: commit.force_wear,
     };
-    match carry_out(&mut master, &confirmed, progress) {
-        Ok(written) => {
-            note.conclude(Outcome::Done, &written);
-            Ok(Committed { written, backup: Some(backup), logbook_warning: note.warning() })
+    let mut write = EncoderWrite { master: encoder.master(desk), commit, tell };
+    match carry_through(&store, &terms, &mut write) {
+        Ok(done) => {
+            Ok(Committed { written: done.written, backup: Some(done.backup), logbook_warning: done.logbook_warning })
         }
-        Err(interrupted) => {
-            let outcome = match &interrupted.cause {
-                Error::Cancelled => Outcome::Cancelled,
-                cause => Outcome::Failed(cause.to_string()),
-            };
-            note.conclude(outcome, &interrupted.done);
-            if let Some(why) = note.warning() {
-                tracing::warn!("logbook: {why}");
-            }
-            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len() })
+        Err(Failed::Worn { seen, cost, limit }) => Err(JobError::Worn { used: seen, cost, limit }),
+        Err(Failed::Refused(error)) => Err(error.into()),
+        Err(Failed::NotKept(error)) => Err(JobError::NotKept(error)),
+        Err(Failed::Interrupted { interrupted, backup }) => {
+            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind })
         }
     }
 }
 
-/// How the logbook knows an encoder.
+/// How backups and the logbook know an encoder.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey {
-        kind: "hiperface".to_owned(),
+        kind: KIND.to_owned(),
         device_type: format!("{:02X}h", identity.label.encoder_type),
         serial_number: identity.serial.serial_number.clone(),
         is_virtual,
     }
 }
 
-fn check_wear(prepared: &Prepared, force: bool) -> Result<(), JobError> {
-    let (used, cost) = (prepared.cycles_seen.unwrap_or(0), prepared.plan.write_cycles());
-    if !force && used.saturating_add(cost) > WEAR_LIMIT {
-        return Err(JobError::Worn { used, cost, limit: WEAR_LIMIT });
+struct EncoderWrite<'w, 'm> {
+    master: Master<'m>,
+    commit: &'w Commit,
+    tell: &'w mut dyn FnMut(Progress<Doing>),
+}
+
+impl<'w> Write for EncoderWrite<'w, '_> {
+    type Confirmed = Confirmed<'w>;
+    type Written = Written;
+    type Refusal = Error;
+    type Interrupted = Box<Interrupted>;
+
+    fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
+        let Commit { prepared, consent, .. } = self.commit;
+        confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
     }
-    Ok(())
+
+    fn before_image(&self) -> String {
+        before_image(&self.commit.prepared)
+    }
+
+    fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
+        let total = self.commit.prepared.plan.ops.len() as u64;
+        let progress = &mut |at: usize, op: &Op| {
+            (self.tell)(Progress { done: at as u64, total, what: Doing::Operation(op.clone()) })
+        };
+        carry_out(&mut self.master, confirmed, progress)
+    }
+
+    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
+        match ended {
+            Ok(written) => (Outcome::Done, written.write_cycles),
+            Err(interrupted) => {
+                let outcome = match &interrupted.cause {
+                    Error::Cancelled => Outcome::Cancelled,
+                    cause => Outcome::Failed(cause.to_string()),
+                };
+                (outcome, interrupted.done.write_cycles)
+            }
+        }
+    }
 }
 
 /// A profile of what the plan touches, as it was.
@@ -90,37 +114,4 @@ fn before_image(prepared: &Prepared) -> String {
     let mut document = Document::new(Timestamp::now().to_string(), Body::Hiperface(profile));
     document.note = Some("before-image of a write".to_owned());
     document.emit()
-}
-
-/// An entry of the logbook that may fail without stopping the write.
-struct Note {
-    entry: Result<(Logbook, EntryId), LogbookError>,
-    warning: Option<String>,
-}
-
-impl Note {
-    fn intend(path: &Path, prepared: &Prepared, is_virtual: bool, backup: &Path) -> Self {
-        let what: Vec<String> = prepared.plan.ops.iter().map(|op| op.item()).collect();
-        let key = device_key(&prepared.identity, is_virtual);
-        let entry = Logbook::open(path).and_then(|mut logbook| {
-            let cycles = prepared.plan.write_cycles();
-            let id = logbook.intend(Timestamp::now(), &key, &what.join(", "), cycles, Some(backup))?;
-            Ok((logbook, id))
-        });
-        Note { entry, warning: None }
-    }
-
-    fn conclude(&mut self, outcome: Outcome, written: &Written) {
-        match &mut self.entry {
-            Ok((logbook, id)) => {
-                let concluded = logbook.conclude(*id, Timestamp::now(), outcome, written.write_cycles);
-                self.warning = concluded.err().map(|error| error.to_string());
-            }
-            Err(error) => self.warning = Some(error.to_string()),
-        }
-    }
-
-    fn warning(&self) -> Option<String> {
-        self.warning.clone()
-    }
 }

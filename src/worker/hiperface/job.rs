@@ -1,17 +1,18 @@
 //! What can be asked of a HIPERFACE encoder, and what comes of it.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use crate::device::hiperface::check::Line;
-use crate::device::hiperface::find::{FindOptions, Findings, Found};
+use crate::device::hiperface::find::{Attempt, FindOptions, Findings, Found};
 use crate::device::hiperface::write::{Interrupted, Written};
 use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions, Survey};
 use crate::profile::Consent;
-use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, PlanError, RestoreOptions};
+use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RestoreOptions};
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::store::FileError;
+use crate::store::{FileError, LogbookError};
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -135,9 +136,33 @@ pub enum Change {
     IncrementCounter,
 }
 
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edited bytes are written: those that are not yet stay edited.
+    Bytes,
+    /// One thing, which is done or not.
+    Single,
+}
+
+impl Change {
+    /// Its kind.
+    pub fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Store(_) => ChangeKind::Bytes,
+            _ => ChangeKind::Single,
+        }
+    }
+}
+
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
     /// What would be written.
     pub plan: HiperfacePlan,
     /// The encoder it is for.
@@ -173,7 +198,7 @@ pub struct Committed {
     /// The before-image; `None` when there was nothing to write.
     pub backup: Option<PathBuf>,
     /// What the logbook could not take: the write itself is done.
-    pub logbook_warning: Option<String>,
+    pub logbook_warning: Option<LogbookError>,
 }
 
 /// A value that was read.
@@ -208,6 +233,27 @@ pub enum Remark {
     Codes(Vec<StatusCode>),
     /// An encoder that answered while one searched.
     Found(Found),
+}
+
+/// The step that a HIPERFACE job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// The data field of that number is read.
+    Field(u64),
+    /// An operation of a plan is carried out.
+    Operation(Op),
+    /// An encoder is searched.
+    Attempt(Attempt),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Field(field) => write!(f, "field:{field}"),
+            Doing::Operation(op) => f.write_str(&op.item()),
+            Doing::Attempt(attempt) => attempt.fmt(f),
+        }
+    }
 }
 
 /// What a HIPERFACE job gives.
@@ -260,6 +306,8 @@ pub enum JobError {
         backup: PathBuf,
         /// Operations of the plan.
         planned: usize,
+        /// The kind of change.
+        kind: ChangeKind,
     },
 }
 

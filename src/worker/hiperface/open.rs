@@ -29,8 +29,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     }
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let wire = open_bytes(url, station.format, &clock, || {
-        let config =
-            Config::from_pairs(&url.query.without(&LINE_ONLY)).map_err(|error| OpenError::Sim(error.to_string()))?;
+        let config = Config::from_pairs(&url.query.without(&LINE_ONLY))?;
         let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
         link.set_format(station.format)?;
         Ok(Box::new(link))

@@ -2,29 +2,30 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Hiperface, JobError, Prepared};
+use super::{Change, Doing, Hiperface, JobError, Prepared, device_key};
 use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
-    Error, Identity, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
+    Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
 use crate::profile::hiperface::{
     Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar,
     check_device, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
 use crate::protocol::hiperface::{BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
-use crate::store::Logbook;
+use crate::worker::commit::cycles_seen;
 use crate::worker::{Desk, Progress};
 
 pub(super) fn prepare(
     encoder: &mut Hiperface,
     desk: &mut Desk,
     change: Change,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
     let mut master = encoder.master(desk);
     let identity = identify(&mut master, &types)?;
     let mut prepared = Prepared {
+        kind: change.kind(),
         plan: HiperfacePlan { base: Base::default(), ops: Vec::new() },
         identity,
         cycles_seen: None,
@@ -49,23 +50,8 @@ pub(super) fn prepare(
         }
         other => prepared.plan = single(&mut master, other)?,
     }
-    prepared.cycles_seen = cycles_seen(desk, &prepared.identity);
+    prepared.cycles_seen = cycles_seen(&desk.store, &device_key(&prepared.identity, desk.is_virtual));
     Ok(prepared)
-}
-
-fn cycles_seen(desk: &Desk, identity: &Identity) -> Option<u64> {
-    let path = desk.store.logbook_path();
-    if !path.exists() {
-        return Some(0);
-    }
-    let key = super::commit::device_key(identity, desk.is_virtual);
-    match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(&key)) {
-        Ok(cycles) => Some(cycles),
-        Err(error) => {
-            tracing::warn!("{error}");
-            None
-        }
-    }
 }
 
 fn restore(
@@ -73,7 +59,7 @@ fn restore(
     prepared: &mut Prepared,
     profile: &HiperfaceProfile,
     options: RestoreOptions,
-    tell: &mut dyn FnMut(Progress),
+    tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<(), JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
@@ -82,7 +68,7 @@ fn restore(
         check_device(profile, &serial_number, encoder_type)?;
     }
     let memory = read_memory(master)?;
-    let progress = &mut |done, total| tell(Progress { done, total, what: format!("field:{done}") });
+    let progress = &mut |done, total| tell(Progress { done, total, what: Doing::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     prepared.plan = restore.plan;

@@ -43,10 +43,6 @@ pub fn staged(error: &StagedError, count: usize, start: usize) -> Text {
     match error {
         StagedError::NoField { field } => Text::new("staged.no_field").with("field", field),
         StagedError::Locked { field } => Text::new("staged.locked").with("field", field),
-        StagedError::Outside { field, last } => Text::new("encoder.out_of_field")
-            .with("field", field)
-            .with("last", last)
-            .with("start", start)
-            .with("count", count),
+        StagedError::Outside { field, last } => super::out_of_field(*field, *last, start, count),
     }
 }

@@ -1,0 +1,94 @@
+//! How fast a capture of ten million samples is fitted and analysed (goal: 0.5 s), and how fast a table of 100 MB is read
+//! (goal: 100 MB/s), each beside a naive way: a matrix of all samples solved by QR and an arc tangent for every sample; the
+//! lines of a text, split and parsed by the standard library.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::hint::black_box;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use encoder_studio::signal::analysis::Analysis;
+use encoder_studio::signal::capture::Wishes;
+use encoder_studio::signal::ellipse::Ellipse;
+use encoder_studio::signal::position_error::Samples;
+use encoder_studio::store::read_capture;
+use nalgebra::{DMatrix, DVector};
+
+const SAMPLES: usize = 10_000_000;
+const ROWS: usize = 3_500_000;
+const ROUNDS: usize = 5;
+
+const ELLIPSE: Ellipse =
+    Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.02, offset_sine_v: -0.03, gain_ratio: 1.05, phase_error_rad: 0.052 };
+
+fn median<T>(mut work: impl FnMut() -> T) -> f64 {
+    let mut times: Vec<f64> = (0..ROUNDS)
+        .map(|_| {
+            let begun = Instant::now();
+            black_box(work());
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[ROUNDS / 2]
+}
+
+/// A thousand samples a period, with some noise.
+fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let mut random = fastrand::Rng::with_seed(1);
+    let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();
+    let mut noisy = |value: f64| value + 1e-3 * (random.f64() - 0.5);
+    let (sine, cosine) = (0..count)
+        .map(|at| ELLIPSE.at(TAU * at as f64 / 1000.0))
+        .map(|(sine, cosine)| (noisy(sine), noisy(cosine)))
+        .unzip();
+    (time, sine, cosine)
+}
+
+/// All rows of the equations at once, and the angle of each sample.
+fn naive_fit(sine: &[f64], cosine: &[f64]) -> f64 {
+    let rows = sine.len();
+    let design = DMatrix::from_fn(rows, 5, |row, column| {
+        let (x, y) = (cosine[row], sine[row]);
+        [x * x, y * y, x * y, x, y][column]
+    });
+    let ones = DVector::from_element(rows, 1.0);
+    let (q, r) = design.qr().unpack();
+    let solution = r.solve_upper_triangular(&(q.transpose() * ones)).unwrap();
+    let errors: Vec<f64> = sine.iter().zip(cosine).map(|(y, x)| y.atan2(*x)).collect();
+    solution[0] + errors.iter().sum::<f64>()
+}
+
+fn naive_read(text: &str) -> Vec<[f64; 3]> {
+    let fields = |line: &str| line.split(',').map(|field| field.trim().parse().unwrap()).collect::<Vec<f64>>();
+    text.lines().skip(1).map(fields).map(|row| [row[0], row[1], row[2]]).collect()
+}
+
+fn main() {
+    let (time, sine, cosine) = capture(SAMPLES);
+    println!("analysis of {SAMPLES} samples, median of {ROUNDS} in seconds (goal: 0.5)");
+    let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
+    println!("{:<28} {:>8.3}", "ellipse", median(|| Ellipse::fit(&sine, &cosine).unwrap()));
+    println!("{:<28} {:>8.3}", "ellipse and all the rest", median(|| Analysis::of(samples).unwrap()));
+    // A tenth of the samples: all of them would need gigabytes.
+    let tenth = SAMPLES / 10;
+    let naive = median(|| naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;
+    println!("{:<28} {naive:>8.3}  (ten times a tenth of the samples)", "QR of all, atan2 of all");
+    let mut text = "time,sine,cosine\n".to_owned();
+    for at in 0..ROWS {
+        writeln!(text, "{:.6},{:.6},{:.6}", time[at], sine[at], cosine[at]).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("capture.csv");
+    std::fs::write(&path, &text).unwrap();
+    let megabytes = text.len() as f64 / 1e6;
+    println!("reading a table of {megabytes:.0} MB, median of {ROUNDS} in MB/s (goal: 100)");
+    let studio = median(|| {
+        read_capture(&path, &Wishes::default(), &AtomicBool::new(false), &mut |_, _| ()).unwrap().1.sine_v.len()
+    });
+    println!("{:<28} {:>8.0}", "studio", megabytes / studio);
+    let naive = median(|| naive_read(&std::fs::read_to_string(&path).unwrap()).len());
+    println!("{:<28} {:>8.0}", "lines, split, parse", megabytes / naive);
+}

@@ -1,0 +1,322 @@
+//! What is wrong with a link, a setting, a profile, a table or the logbook: the part of a sentence that says why. What
+//! the system or a library says is quoted as it is.
+
+use super::{file, plain};
+use crate::app::Text;
+use crate::link::{TraceFileError, UrlError};
+use crate::profile::ProfileError;
+use crate::protocol::hiperface::TypeTableError;
+use crate::sim::hiperface::ConfigError;
+use crate::store::{LogbookError, LogbookProblem};
+
+/// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
+/// what can be read. The first that fits counts.
+const PHRASES: [&str; 73] = [
+    "phrase.no_link",
+    "phrase.no_parameter",
+    "phrase.unknown_parameter",
+    "phrase.port",
+    "phrase.file",
+    "phrase.host",
+    "phrase.one_of",
+    "phrase.parity",
+    "phrase.bus_address",
+    "phrase.auto_on_off",
+    "phrase.time_out",
+    "phrase.milliseconds",
+    "phrase.periods",
+    "phrase.turns",
+    "phrase.with_periods",
+    "phrase.no_setting",
+    "phrase.no_fault",
+    "phrase.fault_probability",
+    "phrase.fault_number",
+    "phrase.whole_number",
+    "phrase.type_byte",
+    "phrase.serial",
+    "phrase.address_for_all",
+    "phrase.address",
+    "phrase.settings",
+    "phrase.rpm",
+    "phrase.position",
+    "phrase.position_within",
+    "phrase.celsius",
+    "phrase.on_off",
+    "phrase.pace",
+    "phrase.codes",
+    "phrase.byte",
+    "phrase.number",
+    "phrase.text_such_as",
+    "phrase.text",
+    "phrase.flag",
+    "phrase.hex_lines",
+    "phrase.structure",
+    "phrase.names",
+    "phrase.list",
+    "phrase.too_deep",
+    "phrase.field_twice",
+    "phrase.twice",
+    "phrase.no_status",
+    "phrase.locked_bytes",
+    "phrase.no_bytes",
+    "phrase.bytes_status",
+    "phrase.no_item",
+    "phrase.hex_digit",
+    "phrase.hex_odd",
+    "phrase.no_trace",
+    "phrase.trace_line",
+    "phrase.log_access",
+    "phrase.log_protected",
+    "phrase.log_locked",
+    "phrase.log_full",
+    "phrase.log_damaged",
+    "phrase.log_newer",
+    "phrase.log_entry",
+    "phrase.item_range",
+    "phrase.item_rest",
+    "phrase.item_field",
+    "phrase.item_status",
+    "phrase.item_analogue",
+    "phrase.item_counter",
+    "phrase.item_address",
+    "phrase.item_settings",
+    "phrase.item_position",
+    "phrase.item_code",
+    "phrase.item_encoder",
+    "phrase.item_fields",
+    "phrase.another_status",
+];
+
+/// A phrase of a lower floor, which speaks English: recognised by its words.
+pub fn phrase(words: &str) -> Text {
+    PHRASES.iter().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
+}
+
+/// A text that is no link, or a parameter that it does not take.
+pub fn url(error: &UrlError) -> Text {
+    match error {
+        UrlError::Target { scheme, what } => {
+            Text::new("detail.needs").with("scheme", scheme).with_text("what", phrase(what))
+        }
+        UrlError::Value { name, value, allowed } => {
+            Text::new("detail.parameter").with("name", name).with("value", value).with_text("allowed", phrase(allowed))
+        }
+        UrlError::Scheme(_) | UrlError::Parameter(_) | UrlError::Twice(_) | UrlError::Unknown { .. } => {
+            phrase(&error.to_string())
+        }
+    }
+}
+
+/// A setting that a virtual encoder does not take.
+pub fn setting(error: &ConfigError) -> Text {
+    match error {
+        ConfigError::Value { key, value, allowed } => {
+            Text::new("detail.setting").with("name", key).with("value", value).with_text("allowed", phrase(allowed))
+        }
+        ConfigError::Key { .. } | ConfigError::Fault(_) => phrase(&error.to_string()),
+    }
+}
+
+/// A text that is no profile.
+pub fn document(error: &ProfileError) -> Text {
+    match error {
+        ProfileError::Syntax { line, column, what } => syntax(*line, *column, what),
+        ProfileError::Missing { path } => Text::new("detail.missing").with("path", path),
+        ProfileError::Shape { path, expected } => {
+            Text::new("detail.shape").with("path", path).with_text("expected", phrase(expected))
+        }
+        ProfileError::Value { path, what } => {
+            Text::new("detail.value").with("path", path).with_text("what", phrase(what))
+        }
+        // These have sentences of their own.
+        ProfileError::Schema { .. } | ProfileError::Device(_) => plain(error),
+    }
+}
+
+/// A table of encoder types that cannot be used.
+pub fn type_table(error: &TypeTableError) -> Text {
+    match error {
+        TypeTableError::Syntax { line, column, what } => syntax(*line, *column, what),
+        TypeTableError::Range { code, quantity, range } => Text::new("detail.range")
+            .with("code", format!("{code:02X}h"))
+            .with("quantity", quantity)
+            .with("low", range.start())
+            .with("high", range.end()),
+    }
+}
+
+/// A file that is no recording.
+pub fn recording(error: &TraceFileError) -> Text {
+    match error {
+        TraceFileError::Hex { line, source } => {
+            Text::new("detail.in_line").with("line", line).with_text("what", phrase(&source.to_string()))
+        }
+        TraceFileError::Header | TraceFileError::Line { .. } => phrase(&error.to_string()),
+    }
+}
+
+/// A logbook that cannot be used.
+pub fn logbook_problem(error: &LogbookError) -> Text {
+    let problem = match &error.problem {
+        LogbookProblem::Folder(error) => file(error),
+        problem => phrase(&problem.to_string()),
+    };
+    Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
+}
+
+fn syntax(line: usize, column: usize, what: &str) -> Text {
+    Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", phrase(what))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    use crate::app::Language::{English, German};
+    use crate::device::hiperface::Station;
+    use crate::link::{LinkUrl, Query, read_trace};
+    use crate::profile::Document;
+    use crate::protocol::hiperface::EncoderTypes;
+    use crate::sim::hiperface::Config;
+
+    /// English is what the lower floor says, and German is not.
+    #[track_caller]
+    fn check(text: &Text, error: &dyn std::fmt::Display) {
+        assert_eq!(text.words(English), error.to_string());
+        assert_eq!(text.terminal(), error.to_string());
+        let german = text.words(German);
+        assert_ne!(german, error.to_string());
+        for english in [" is ", " must ", " from ", " to ", " the ", " or ", " and ", " of ", " a "] {
+            assert!(!format!(" {german} ").contains(english), "{german}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_link_is_told_in_both_languages() {
+        for text in ["usb:1", "serial:", "replay:", "tcp:host", "serial:x?baud", "serial:x?baud=1&baud=2"] {
+            let error = text.parse::<LinkUrl>().unwrap_err();
+            check(&url(&error), &error);
+        }
+        let known = "baud, parity".to_owned();
+        let error = UrlError::Unknown { name: "bad".to_owned(), scheme: "serial", known };
+        check(&url(&error), &error);
+        let queries = [
+            "baud=1",
+            "parity=x",
+            "address=x",
+            "echo=x",
+            "timeout=1",
+            "margin=x",
+            "periods=0",
+            "turns=2",
+            "periods=2&turns=0",
+        ];
+        for text in queries {
+            let query: Query = text.parse().unwrap();
+            let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
+            check(&url(&error), &error);
+        }
+    }
+
+    #[test]
+    fn a_wrong_setting_of_a_virtual_encoder_is_told_in_both_languages() {
+        let queries = [
+            "sed=1",
+            "seed=x",
+            "fault=x",
+            "fault=drop:2",
+            "fault=delay:x",
+            "model=x",
+            "type=x",
+            "serial=",
+            "address=x",
+            "settings=x",
+            "rpm=x",
+            "position=x",
+            "temperature=x",
+            "echo=x",
+            "encoders=9",
+            "pace=x",
+            "codes=x",
+            "model=sks36&position=4096",
+            "address=0x5F&encoders=2",
+        ];
+        for text in queries {
+            let query: Query = text.parse().unwrap();
+            let error = Config::from_pairs(query.pairs()).unwrap_err();
+            check(&setting(&error), &error);
+        }
+    }
+
+    #[test]
+    fn a_wrong_profile_is_told_in_both_languages() {
+        let good = r#"(schema: 1, device: "hiperface", identity: (serial_number: "A1", encoder_type: 0x37),
+            interface: (address: 0x40, settings: 0xE4), fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")])"#;
+        assert!(Document::parse(good).is_ok());
+        let cases = [
+            ("fields:", "feilds:"),
+            ("identity: (", "identity: 7, was: ("),
+            ("fields: [", "fields: 7, was: ["),
+            ("encoder_type: 0x37", "encoder_type: 300"),
+            ("\"A1\"", "7"),
+            ("number: 0", "number: 300"),
+            ("schema: 1", "schema: \"x\""),
+            ("status: 0xC8", "status: 0x48"),
+            ("status: 0xC8", "status: 0xC8, locked: true"),
+            ("status: 0xC8", "status: 0xC8, locked: 7"),
+            ("bytes: ", "bites: "),
+            ("bytes: \"00", "bytes: \""),
+            ("bytes: \"00", "bytes: \"0G"),
+            ("bytes: \"00", "bytes: \"0"),
+            ("schema: 1", "schema: 1, schema: 1"),
+        ];
+        for (from, to) in cases {
+            let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+            check(&document(&error), &error);
+        }
+    }
+
+    #[test]
+    fn what_can_be_read_is_named_in_both_languages() {
+        let cases = [
+            ("field:1@3+2", "Datenfeld 1 ab 3 (2 Bytes)"),
+            ("field:255@16", "Datenfeld 255 ab 16"),
+            ("field:0", "Datenfeld 0"),
+            ("status:2", "Status von Datenfeld 2"),
+            ("analogue:0x48", "Analogkanal 0x48"),
+            ("code 2", "Zugriffsschlüssel 2"),
+            ("settings", "Schnittstelleneinstellung"),
+        ];
+        for (words, german) in cases {
+            assert_eq!(
+                (phrase(words).words(English), phrase(words).words(German)),
+                (words.to_owned(), german.to_owned())
+            );
+        }
+    }
+
+    #[test]
+    fn wrong_tables_recordings_and_logbooks_are_told_in_both_languages() {
+        let error =
+            EncoderTypes::parse(r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#);
+        let error = error.unwrap_err();
+        check(&type_table(&error), &error);
+        for text in ["", "# encoder-studio trace 1\n0.1 = 40", "# encoder-studio trace 1\n1 > 4G"] {
+            let error = read_trace(text).unwrap_err();
+            check(&recording(&error), &error);
+        }
+        let problems = [
+            LogbookProblem::NoAccess,
+            LogbookProblem::WriteProtected,
+            LogbookProblem::Locked,
+            LogbookProblem::DiskFull,
+            LogbookProblem::Damaged { what: "page 3".to_owned() },
+            LogbookProblem::Newer { found: 3, known: 2 },
+        ];
+        for problem in problems {
+            let error = LogbookError { path: "l.sqlite".into(), problem };
+            check(&logbook_problem(&error), &error);
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! What a table is, from its first lines: delimiter, decimal sign, where the numbers begin, names, units, columns. Columns
+//! as SICK 8010701 names them.
+
+use super::CaptureError;
+use super::header::{Columns, TimeUnit, VoltUnit, unit_of};
+use super::import::{Number, number};
+
+/// So many bytes from the beginning are looked at.
+pub const HEAD: usize = 64 << 10;
+
+/// What stands between two columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delimiter {
+    /// A comma.
+    Comma,
+    /// A semicolon.
+    Semicolon,
+    /// A tab.
+    Tab,
+}
+
+/// What is known about a table; what is `None` is to be found out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wishes {
+    /// Delimiter.
+    pub delimiter: Option<Delimiter>,
+    /// Numbers have a decimal comma.
+    pub decimal_comma: Option<bool>,
+    /// Columns by number.
+    pub columns: Option<Columns>,
+    /// Unit of the time.
+    pub time_unit: Option<TimeUnit>,
+    /// Volts in one unit of the sine and cosine columns, whatever the header says; finite, not zero.
+    pub volts_per_unit: Option<f64>,
+}
+
+/// How a table is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Delimiter.
+    pub delimiter: Delimiter,
+    /// Numbers have a decimal comma.
+    pub decimal_comma: bool,
+    /// Line of the first numbers in the file, from 1.
+    pub first_row: u64,
+    /// Names of the columns; empty without a header.
+    pub names: Vec<String>,
+    /// Which columns are taken.
+    pub columns: Columns,
+    /// Unit of the time.
+    pub time_unit: TimeUnit,
+    /// Volts in one unit of the sine and cosine columns.
+    pub volts_per_unit: f64,
+}
+
+impl Delimiter {
+    /// Every delimiter, the surest first: a comma may also be a decimal sign.
+    pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
+
+    /// The character.
+    pub const fn byte(self) -> u8 {
+        match self {
+            Delimiter::Comma => b',',
+            Delimiter::Semicolon => b';',
+            Delimiter::Tab => b'\t',
+        }
+    }
+}
+
+/// A line of the head: its number in the file, its fields.
+struct Line {
+    row: u64,
+    fields: Vec<Vec<u8>>,
+}
+
+impl Layout {
+    /// Looks at the first bytes of a table ([`HEAD`] of them, or all there are).
+    ///
+    /// # Errors
+    /// [`CaptureError`] where they hold no table with sine and cosine.
+    pub fn detect(head: &[u8], wishes: &Wishes) -> Result<Self, CaptureError> {
+        let text = whole_lines(head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head));
+        if text.iter().all(u8::is_ascii_whitespace) {
+            return Err(CaptureError::Empty);
+        }
+        let delimiter = wishes.delimiter.or_else(|| delimiter(text)).ok_or(match has_numbers(text) {
+            true => CaptureError::OneColumn,
+            false => CaptureError::NoNumbers,
+        })?;
+        let lines = lines(text, delimiter);
+        let decimal_comma = wishes.decimal_comma.unwrap_or_else(|| decimal_comma(&lines));
+        let usual = usual_width(&lines, decimal_comma);
+        let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
+        let (before, data) = lines.split_at(first);
+        let width = data.first().map_or(0, |line| filled(&line.fields));
+        let first_row = data.first().map_or(1, |line| line.row);
+        let header = header(before, width);
+        let names = header.first().cloned().unwrap_or_default();
+        let columns = match (wishes.columns, Columns::named(&names)) {
+            (Some(columns), _) | (None, Some(columns)) => columns,
+            (None, None) if width >= 3 => Columns::PLAIN,
+            (None, None) if width == 1 => return Err(CaptureError::OneColumn),
+            (None, None) => return Err(CaptureError::TooFewColumns { columns: width }),
+        };
+        let unit = |column: usize| {
+            let of_line = |line: &Vec<String>| line.get(column.checked_sub(1)?).map(|name| name.to_lowercase());
+            header.iter().filter_map(of_line).find_map(|name| unit_of(&name).map(str::to_owned))
+        };
+        let time_unit = columns.time.and_then(unit).and_then(|unit| TimeUnit::parse(&unit));
+        let volt_unit = unit(columns.sine).and_then(|unit| VoltUnit::parse(&unit)).unwrap_or_default();
+        Ok(Layout {
+            delimiter,
+            decimal_comma,
+            first_row,
+            names,
+            columns,
+            time_unit: wishes.time_unit.or(time_unit).unwrap_or_default(),
+            volts_per_unit: wishes.volts_per_unit.unwrap_or(volt_unit.factor()),
+        })
+    }
+}
+
+/// Without a line that is cut off at the end of the head.
+fn whole_lines(head: &[u8]) -> &[u8] {
+    match head.iter().rposition(|byte| *byte == b'\n') {
+        Some(end) if head.len() + 3 >= HEAD => head.get(..=end).unwrap_or(head),
+        _ => head,
+    }
+}
+
+/// The delimiter that most lines have, the surest first.
+fn delimiter(text: &[u8]) -> Option<Delimiter> {
+    let lines = || text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
+    let count = lines().count();
+    let having = |delimiter: Delimiter| lines().filter(|line| line.contains(&delimiter.byte())).count();
+    Delimiter::ALL.into_iter().find(|delimiter| 2 * having(*delimiter) > count)
+}
+
+fn has_numbers(text: &[u8]) -> bool {
+    text.split(|byte| *byte == b'\n').any(|line| !matches!(number(line.trim_ascii(), true), Number::Text))
+}
+
+fn lines(text: &[u8], delimiter: Delimiter) -> Vec<Line> {
+    let lines = text.split(|byte| *byte == b'\n').enumerate();
+    lines
+        .filter(|(_, line)| !line.trim_ascii().is_empty())
+        .map(|(at, line)| Line { row: at as u64 + 1, fields: fields(line, delimiter) })
+        .collect()
+}
+
+/// Fields of one line; a quoted one may hold the delimiter.
+fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
+    let mut fields = vec![Vec::new()];
+    let mut quoted = false;
+    for byte in line {
+        match byte {
+            b'"' => quoted = !quoted,
+            byte if *byte == delimiter.byte() && !quoted => fields.push(Vec::new()),
+            byte => {
+                if let Some(field) = fields.last_mut() {
+                    field.push(*byte);
+                }
+            }
+        }
+    }
+    fields.iter().map(|field| field.trim_ascii().to_vec()).collect()
+}
+
+/// Some number has a comma, and none has a point.
+fn decimal_comma(lines: &[Line]) -> bool {
+    let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
+    let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
+    has(b',') && !has(b'.')
+}
+
+/// All fields are numbers; or half of them, in a row as wide as the others: a broken number in the first row is an error
+/// and not a header, while a line about the instrument may hold a number as well.
+fn is_data(line: &Line, usual: usize, decimal_comma: bool) -> bool {
+    let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
+    (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
+}
+
+fn numbers(line: &Line, decimal_comma: bool) -> usize {
+    line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
+}
+
+/// The width of most rows that are numbers by half or more; the larger of two.
+fn usual_width(lines: &[Line], decimal_comma: bool) -> usize {
+    let mut counts = std::collections::BTreeMap::<usize, usize>::new();
+    for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
+        *counts.entry(filled(&line.fields)).or_default() += 1;
+    }
+    counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
+}
+
+/// Fields up to the last that is not empty: some programs end each line with a delimiter.
+fn filled(fields: &[Vec<u8>]) -> usize {
+    fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
+}
+
+/// Names, and a line of units where there is one: the last lines before the numbers that are as wide as these.
+fn header(before: &[Line], width: usize) -> Vec<Vec<String>> {
+    let wide = |line: &&Line| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
+    let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
+    let mut found: Vec<Vec<String>> =
+        before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
+    // Of two lines the second is one of units, or the first is none of names.
+    let units = |line: &Vec<String>| {
+        line.iter().all(|name| name.is_empty() || name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
+    };
+    if found.len() == 2 && !found.first().is_some_and(units) {
+        found.truncate(1);
+    }
+    found.reverse();
+    if let [names, units] = found.as_mut_slice() {
+        // A bare unit is written as units behind names are.
+        for unit in units.iter_mut().filter(|unit| is_unit(&unit.to_lowercase())) {
+            *unit = format!("({unit})");
+        }
+        names.truncate(width.max(names.len()));
+    }
+    found
+}
+
+fn is_unit(text: &str) -> bool {
+    TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some()
+}
+
+/// A lone B5h is a µ in the encoding of older programs; a leading # or % marks a comment.
+fn latin(field: &[u8]) -> Vec<u8> {
+    let field = field.strip_prefix(b"#").or_else(|| field.strip_prefix(b"%")).unwrap_or(field).trim_ascii();
+    if std::str::from_utf8(field).is_ok() {
+        return field.to_vec();
+    }
+    field.iter().flat_map(|byte| if *byte == 0xB5 { vec![0xC2, 0xB5] } else { vec![*byte] }).collect()
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

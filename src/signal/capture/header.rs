@@ -1,0 +1,173 @@
+//! The names and units of a table's columns: which of them are time, sine and cosine (SICK 8010701: SIN, REFSIN, COS,
+//! REFCOS).
+
+/// Columns of a table, from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// Time; `None` where samples are evenly spaced and nobody says how far.
+    pub time: Option<usize>,
+    /// Sine, or SIN against ground.
+    pub sine: usize,
+    /// Cosine, or COS against ground.
+    pub cosine: usize,
+    /// REFSIN and REFCOS against ground, where sine and cosine are not differences already.
+    pub references: Option<(usize, usize)>,
+}
+
+/// Unit of a time column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// Seconds.
+    #[default]
+    Seconds,
+    /// Milliseconds.
+    Milliseconds,
+    /// Microseconds.
+    Microseconds,
+    /// Nanoseconds.
+    Nanoseconds,
+}
+
+/// Unit of a voltage column.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VoltUnit {
+    /// Volts.
+    #[default]
+    Volts,
+    /// Millivolts.
+    Millivolts,
+    /// Microvolts.
+    Microvolts,
+}
+
+impl Columns {
+    /// Time, sine, cosine in this order.
+    pub const PLAIN: Columns = Columns { time: Some(1), sine: 2, cosine: 3, references: None };
+
+    /// The last column that is needed.
+    pub fn last(&self) -> usize {
+        let (refsin, refcos) = self.references.unwrap_or_default();
+        [self.time.unwrap_or_default(), self.sine, self.cosine, refsin, refcos].into_iter().max().unwrap_or_default()
+    }
+
+    /// The columns that names tell; `None` where sine or cosine is not among them.
+    pub(super) fn named(names: &[String]) -> Option<Columns> {
+        let find = |known: &[&str]| {
+            let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
+            at.map(|at| at + 1)
+        };
+        let references = find(&["refsin", "sinref", "sinminus", "sin-", "-sin", "nsin"])
+            .zip(find(&["refcos", "cosref", "cosminus", "cos-", "-cos", "ncos"]));
+        Some(Columns {
+            time: find(&["time", "t", "zeit", "times", "seconds", "second", "timestamp"]),
+            sine: find(&["sin", "sine", "sinus", "sin+", "+sin", "sinplus"])?,
+            cosine: find(&["cos", "cosine", "cosinus", "kosinus", "cos+", "+cos", "cosplus"])?,
+            references,
+        })
+    }
+}
+
+impl TimeUnit {
+    /// Seconds in one of it.
+    pub const fn factor(self) -> f64 {
+        match self {
+            TimeUnit::Seconds => 1.0,
+            TimeUnit::Milliseconds => 1e-3,
+            TimeUnit::Microseconds => 1e-6,
+            TimeUnit::Nanoseconds => 1e-9,
+        }
+    }
+
+    /// As a header writes it.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        match text {
+            "s" | "sec" | "second" | "seconds" => Some(TimeUnit::Seconds),
+            "ms" => Some(TimeUnit::Milliseconds),
+            // The two signs for micro that Unicode has.
+            "us" | "\u{b5}s" | "\u{3bc}s" => Some(TimeUnit::Microseconds),
+            "ns" => Some(TimeUnit::Nanoseconds),
+            _ => None,
+        }
+    }
+}
+
+impl VoltUnit {
+    /// Volts in one of it.
+    pub const fn factor(self) -> f64 {
+        match self {
+            VoltUnit::Volts => 1.0,
+            VoltUnit::Millivolts => 1e-3,
+            VoltUnit::Microvolts => 1e-6,
+        }
+    }
+
+    /// As a header writes it.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        match text {
+            "v" | "volt" | "volts" => Some(VoltUnit::Volts),
+            "mv" => Some(VoltUnit::Millivolts),
+            "uv" | "\u{b5}v" | "\u{3bc}v" => Some(VoltUnit::Microvolts),
+            _ => None,
+        }
+    }
+}
+
+/// The name without its unit, in small letters: `Time [ms]` is `time`.
+fn bare_name(name: &str) -> String {
+    let name = name.trim().to_lowercase();
+    let bare = match unit_of(&name) {
+        Some(unit) => name.strip_suffix([']', ')']).unwrap_or(&name).strip_suffix(unit).unwrap_or(&name).to_owned(),
+        None => name,
+    };
+    bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
+}
+
+/// What stands behind a name in brackets, or after a space, a slash or an underscore: `ms` of `time_ms`. A name that is
+/// nothing but brackets, as in a line of units, is all unit. To be called with small letters.
+pub(super) fn unit_of(name: &str) -> Option<&str> {
+    let name = name.trim();
+    let inside = name.strip_suffix([']', ')']).unwrap_or(name);
+    let (_, unit) = inside.rsplit_once(['[', '(', '/', '_', ' '])?;
+    (TimeUnit::parse(unit).is_some() || VoltUnit::parse(unit).is_some()).then_some(unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(names: &str) -> Option<Columns> {
+        Columns::named(&names.split('|').map(str::to_owned).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn columns_are_known_by_name() {
+        let plain = Some(Columns::PLAIN);
+        for names in ["time|sin|cos", "Time [ms]|Sine (V)|Cosine (V)", "t/s|SIN_mV|COS_mV", "Zeit|Sinus|Kosinus"] {
+            assert_eq!(named(names), plain, "{names}");
+        }
+        let expected = Columns { time: Some(5), sine: 1, cosine: 3, references: Some((2, 4)) };
+        assert_eq!(named("SIN|REFSIN|COS|REFCOS|t"), Some(expected));
+        assert_eq!(expected.last(), 5);
+        let untimed = Columns { time: None, sine: 2, cosine: 1, references: None };
+        assert_eq!(named("cos|sin"), Some(untimed));
+        for names in ["a|b|c", "time|sin|x", ""] {
+            assert_eq!(named(names), None, "{names}");
+        }
+    }
+
+    #[test]
+    fn units_stand_behind_the_name() {
+        let rows = [
+            ("time [ms]", Some("ms")),
+            ("t/\u{b5}s", Some("\u{b5}s")),
+            ("sin_mv", Some("mv")),
+            ("(v)", Some("v")),
+            ("sine v", Some("v")),
+            ("channel a", None),
+            ("cos", None),
+        ];
+        for (name, unit) in rows {
+            assert_eq!(unit_of(name), unit, "{name}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! A recorded capture as a table of text (CSV), as oscilloscopes and data loggers write it: what its columns mean is found
+//! out from the first lines and can be corrected. Files are read elsewhere; here bytes are handed in, piece by piece.
+//!
+//! The columns are those that SICK 8010701 names: SIN, REFSIN, COS, REFCOS against ground, or sine and cosine as the
+//! differences.
+
+mod detect;
+mod header;
+mod import;
+
+pub use detect::{Delimiter, HEAD, Layout, Wishes};
+pub use header::{Columns, TimeUnit, VoltUnit};
+pub use import::Import;
+
+/// Samples of a sine/cosine signal.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Capture {
+    /// Times in seconds; empty where the table has none.
+    pub time_s: Vec<f64>,
+    /// Sine channel in volts, the reference already taken off.
+    pub sine_v: Vec<f64>,
+    /// Cosine channel in volts, likewise.
+    pub cosine_v: Vec<f64>,
+    /// REFSIN and REFCOS in volts, where the table has them.
+    pub references_v: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Why a table is no capture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CaptureError {
+    /// There is nothing in it.
+    #[error("it is empty")]
+    Empty,
+    /// No line holds numbers in two columns or more.
+    #[error("no line has numbers")]
+    NoNumbers,
+    /// There is one column.
+    #[error("it has one column")]
+    OneColumn,
+    /// There are too few columns, and their names do not tell which is missing.
+    #[error("it has {columns} columns")]
+    TooFewColumns {
+        /// Columns that there are.
+        columns: usize,
+    },
+    /// A row ends before a column that is needed.
+    #[error("row {row} has {columns} columns, {needed} are needed")]
+    ShortRow {
+        /// The line in the file, from 1.
+        row: u64,
+        /// Columns in this row.
+        columns: usize,
+        /// Columns needed.
+        needed: usize,
+    },
+    /// Something in a row is no number.
+    #[error("row {row}, column {column}: {text:?} is not a number")]
+    NotANumber {
+        /// The line in the file, from 1.
+        row: u64,
+        /// The column, from 1.
+        column: usize,
+        /// What stands there, shortened.
+        text: String,
+    },
+    /// A number is NaN or infinite.
+    #[error("row {row}, column {column}: {text} is not finite")]
+    NotFinite {
+        /// The line in the file, from 1.
+        row: u64,
+        /// The column, from 1.
+        column: usize,
+        /// What stands there, shortened.
+        text: String,
+    },
+}

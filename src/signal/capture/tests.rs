@@ -1,0 +1,121 @@
+//! Tables as instruments write them, and tables that are none.
+
+use super::super::import::Import;
+use super::*;
+use crate::signal::capture::Capture;
+
+fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Capture), CaptureError> {
+    let mut import = Import::begin(text, wishes)?;
+    for piece in text.chunks(pieces) {
+        import.feed(piece)?;
+    }
+    import.finish()
+}
+
+#[track_caller]
+fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
+    let text = text.as_ref();
+    let whole = read_in(1 << 20, text, &Wishes::default());
+    for pieces in [1, 7] {
+        assert_eq!(read_in(pieces, text, &Wishes::default()), whole, "in pieces of {pieces}");
+    }
+    whole
+}
+
+/// Every one of them says 0 s, 0.25 V, 0.5 V and then 0.001 s, −0.3 V, 0.4 V.
+#[test]
+fn the_same_table_in_many_ways() {
+    let ways: [(&str, &[u8]); 17] = [
+        ("plain", b"0,0.25,0.5\n0.001,-0.3,0.4\n"),
+        ("no last line break", b"0,0.25,0.5\n0.001,-0.3,0.4"),
+        ("Windows", b"time,sin,cos\r\n0,0.25,0.5\r\n0.001,-0.3,0.4\r\n"),
+        ("byte order mark", b"\xEF\xBB\xBFtime;sin;cos\n0;0.25;0.5\n0.001;-0.3;0.4\n"),
+        ("German", b"Zeit;Sinus;Kosinus\n0;0,25;0,5\n0,001;-0,3;0,4\n"),
+        ("tabs", b"t\tsin\tcos\n0\t0.25\t0.5\n1e-3\t-0.3\t+4E-1\n"),
+        ("tabs and commas", b"0\t0,25\t0,5\n1e-3\t-0,3\t0,4\n"),
+        ("units", b"time [ms],sin [mV],cos [mV]\n0,250,500\n1,-300,400\n"),
+        ("microseconds", "t (\u{b5}s);sin (V);cos (V)\n0;0.25;0.5\n1000;-.3;.4\n".as_bytes()),
+        ("Latin microseconds", b"t (\xB5s);sin (V);cos (V)\n0;0.25;0.5\n1000;-0.3;0.4\n"),
+        ("line of units", b"Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n0,250,500\n1,-300,400\n"),
+        ("preamble", b"Model,X200\nFirmware,1.2\n\ntime,sin,cos\n0,0.25,0.5\n0.001,-0.3,0.4\n"),
+        ("another order", b"cos,n,sin,t\n0.5,7,0.25,0\n0.4,8,-0.3,0.001\n"),
+        ("quoted", b"\"t\",\"sin\",\"cos\"\n\"0\",\"0,25\",\"0,5\"\n\"0,001\",\"-0,3\",\"0,4\"\n"),
+        ("spaces, blank lines, last delimiter", b"\n0 , 0.25 , 0.5 ,\n\n 0.001, -0.3 , 0.4 ,\n   \n"),
+        ("comment", b"# t, sin, cos\n0,0.25,0.5\n0.001,-0.3,0.4\n"),
+        ("four channels", b"t,SIN,REFSIN,COS,REFCOS\n0,2.75,2.5,3,2.5\n0.001,2.2,2.5,2.9,2.5\n"),
+    ];
+    for (label, text) in ways {
+        let (_, capture) = read(text).unwrap_or_else(|error| panic!("{label}: {error}"));
+        let near = |values: &[f64], expected: [f64; 2]| {
+            values.len() == 2 && values.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12)
+        };
+        assert!(near(&capture.time_s, [0.0, 0.001]), "{label}: {capture:?}");
+        assert!(near(&capture.sine_v, [0.25, -0.3]), "{label}: {capture:?}");
+        assert!(near(&capture.cosine_v, [0.5, 0.4]), "{label}: {capture:?}");
+        assert_eq!(capture.references_v.is_some(), label == "four channels", "{label}");
+    }
+}
+
+#[test]
+fn what_was_found_out_is_told_and_can_be_corrected() {
+    let text = b"Time (ms);A (mV);B (mV)\n0;1,5;2\n1;3;4\n";
+    let (layout, _) = read(text).unwrap();
+    let expected = Layout {
+        delimiter: Delimiter::Semicolon,
+        decimal_comma: true,
+        first_row: 2,
+        names: ["Time (ms)", "A (mV)", "B (mV)"].map(str::to_owned).to_vec(),
+        columns: Columns::PLAIN,
+        time_unit: TimeUnit::Milliseconds,
+        volts_per_unit: 1e-3,
+    };
+    assert_eq!(layout, expected);
+    let wishes = Wishes {
+        columns: Some(Columns { time: None, sine: 3, cosine: 2, references: None }),
+        volts_per_unit: Some(2.0),
+        ..Wishes::default()
+    };
+    let (_, capture) = read_in(99, text, &wishes).unwrap();
+    assert_eq!((capture.sine_v, capture.cosine_v, capture.time_s), (vec![4.0, 8.0], vec![3.0, 6.0], vec![]));
+}
+
+#[test]
+fn errors_name_row_and_column() {
+    let not_a_number = |row, column, text: &str| CaptureError::NotANumber { row, column, text: text.to_owned() };
+    let not_finite = |row, column, text: &str| CaptureError::NotFinite { row, column, text: text.to_owned() };
+    let cases: [(&str, CaptureError); 17] = [
+        ("", CaptureError::Empty),
+        (" \n\r\n", CaptureError::Empty),
+        ("time,sin,cos\n", CaptureError::NoNumbers),
+        ("no table at all", CaptureError::NoNumbers),
+        ("1\n2\n3\n", CaptureError::OneColumn),
+        ("sin\n0.5\n", CaptureError::OneColumn),
+        ("1,2\n3,4\n", CaptureError::TooFewColumns { columns: 2 }),
+        ("t,sin,cos\n0,abc,0.5\n", not_a_number(2, 2, "abc")),
+        ("0,1,2\n1,2,x\n", not_a_number(2, 3, "x")),
+        ("t,sin,cos\r\n0,1,2\r\n\r\n1,,2\r\n", not_a_number(4, 2, "")),
+        ("0,1,2\n1,2,1.2.3", not_a_number(2, 3, "1.2.3")),
+        ("0;1,5;2\n1;2;1.234,5", not_a_number(2, 3, "1.234,5")),
+        ("0,1,2\n1,--2,3\n", not_a_number(2, 2, "--2")),
+        ("0,1,2\n1,NaN,3\n", not_finite(2, 2, "NaN")),
+        ("t,sin,cos\nnan,0.1,0.2\n", not_finite(2, 1, "nan")),
+        ("0,1,2\n1,2,-inf\n", not_finite(2, 3, "-inf")),
+        ("0,1,2\n1,2\n", CaptureError::ShortRow { row: 2, columns: 2, needed: 3 }),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(read(text).unwrap_err(), expected, "{text:?}");
+    }
+    let long = format!("0,1,2\n1,{},3\n", "z".repeat(5000));
+    assert_eq!(read(long).unwrap_err(), not_a_number(2, 2, &("z".repeat(24) + "…")));
+}
+
+#[test]
+fn a_table_longer_than_the_head_keeps_its_row_numbers() {
+    let mut text: String = (0..20_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
+    let (_, capture) = read_in(4096, text.as_bytes(), &Wishes::default()).unwrap();
+    assert_eq!(capture.sine_v.len(), 20_000);
+    assert!((capture.time_s[19_999] - 0.019_999).abs() < 1e-12);
+    text.push_str("0,?,0\n");
+    let expected = CaptureError::NotANumber { row: 20_001, column: 2, text: "?".to_owned() };
+    assert_eq!(read_in(4096, text.as_bytes(), &Wishes::default()).unwrap_err(), expected);
+}

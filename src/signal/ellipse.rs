@@ -1,0 +1,249 @@
+//! The ellipse that a pair of sine and cosine signals draws, found by least squares, and what makes it differ from a
+//! circle: offsets, gain ratio and phase error. P. L. M. Heydemann, Applied Optics 20, 3382 (1981); section 7 of the
+//! project's sine/cosine reference.
+//!
+//! Model, with θ the true angle: x = R·cos θ + p (cosine channel) and y = (R·sin θ·cos α − R·cos θ·sin α)/r + q (sine
+//! channel). Fitted is A·x² + B·y² + C·xy + D·x + E·y = 1, the origin laid into the middle of the ellipse first: there the
+//! equation is best conditioned, and signals with a large mean level can be fitted as well.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::moments::Moments;
+
+/// Parameters of the ellipse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// R: amplitude of the cosine channel, peak, in the unit of the samples (volts).
+    pub amplitude_v: f64,
+    /// p: mean level of the cosine channel in volts.
+    pub offset_cosine_v: f64,
+    /// q: mean level of the sine channel in volts.
+    pub offset_sine_v: f64,
+    /// r: amplitude of the cosine over that of the sine channel, above 0.
+    pub gain_ratio: f64,
+    /// α: how far the sine lags behind a quarter of a period after the cosine, in radians, within ±π/2.
+    pub phase_error_rad: f64,
+}
+
+/// Why points give no ellipse.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// An ellipse has five parameters, and one more point is needed to know how well they fit.
+    #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
+    TooFew {
+        /// Points that were given.
+        points: usize,
+    },
+    /// A sample is not a finite number.
+    #[error("sample {index} is not a finite number")]
+    NotFinite {
+        /// Its index, from 0.
+        index: usize,
+    },
+    /// Both channels stand still.
+    #[error("all points are equal")]
+    Constant,
+    /// One channel stands still.
+    #[error("the {} channel does not change", .0.word())]
+    Dead(Channel),
+    /// Both channels do the same, or their opposite.
+    #[error("the points lie on a line")]
+    Line,
+    /// There are fewer than six different points, or they lie where more than one ellipse passes.
+    #[error("the points do not tell one ellipse from another")]
+    Ambiguous,
+    /// The best curve is a parabola or a hyperbola, or the points keep no distance from the middle.
+    #[error("the points do not lie on an ellipse")]
+    NotAnEllipse,
+}
+
+/// One of the two channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// Sine.
+    Sine,
+    /// Cosine.
+    Cosine,
+}
+
+/// Fewest points of a fit.
+pub const LEAST_POINTS: usize = 6;
+
+/// A channel that moves less than this share of the other's range is dead; noise may be that large.
+const DEAD: f64 = 0.05;
+/// Spread across over spread along a line, as variances, below which it is one.
+const THIN: f64 = 1e-4;
+/// Smallest over largest eigenvalue of the normal equations below which they have no single solution.
+const CONDITION: f64 = 1e-13;
+/// How often the origin is laid into the middle of the ellipse found before.
+const ROUNDS: usize = 4;
+
+impl Channel {
+    /// `sine` or `cosine`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Channel::Sine => "sine",
+            Channel::Cosine => "cosine",
+        }
+    }
+}
+
+/// Coefficients of A·x² + B·y² + C·xy + D·x + E·y = 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conic {
+    /// Of x².
+    pub a: f64,
+    /// Of y².
+    pub b: f64,
+    /// Of x·y.
+    pub c: f64,
+    /// Of x.
+    pub d: f64,
+    /// Of y.
+    pub e: f64,
+}
+
+impl Conic {
+    /// Heydemann's formulae; `None` where the curve is no ellipse around the origin.
+    pub fn ellipse(&self) -> Option<Ellipse> {
+        let Conic { a, b, c, d, e } = *self;
+        if a <= 0.0 || b <= 0.0 || c * c >= 4.0 * a * b {
+            return None;
+        }
+        let sin = c / (2.0 * (a * b).sqrt());
+        let cos = (1.0 - sin * sin).sqrt();
+        let r = (b / a).sqrt();
+        let determinant = c * c - 4.0 * a * b;
+        let p = (2.0 * b * d - e * c) / determinant;
+        let q = (2.0 * a * e - d * c) / determinant;
+        let radius = (p * p + r * r * q * q + 2.0 * r * p * q * sin + 1.0 / a).sqrt() / cos;
+        let ellipse = Ellipse {
+            amplitude_v: radius,
+            offset_cosine_v: p,
+            offset_sine_v: q,
+            gain_ratio: r,
+            phase_error_rad: sin.asin(),
+        };
+        [radius, p, q, r].iter().all(|value| value.is_finite()).then_some(ellipse)
+    }
+}
+
+impl Ellipse {
+    /// The best ellipse through points given as sine and cosine, as many of one as of the other (what is over is left
+    /// out), in volts. Takes two passes over the samples.
+    ///
+    /// # Errors
+    /// [`FitError`] where the points do not determine an ellipse. That they cover the period is for the caller to see.
+    pub fn fit(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
+        Ellipse::of_moments(&Moments::of(sine, cosine)?)
+    }
+
+    /// The best ellipse through the points whose moments were gathered.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit).
+    pub fn of_moments(moments: &Moments) -> Result<Self, FitError> {
+        if moments.count() < LEAST_POINTS {
+            return Err(FitError::TooFew { points: moments.count() });
+        }
+        let around_mean = moments.moved_to_mean();
+        refuse_flat(&around_mean)?;
+        let mut moments = around_mean;
+        let mut found = solve(&moments)?;
+        for _ in 1..ROUNDS {
+            // Without a good start the middle may lie outside; then the fit around the mean is what there is.
+            let moved = moments.moved_by(found.offset_cosine_v, found.offset_sine_v);
+            let Ok(better) = solve(&moved) else { break };
+            (moments, found) = (moved, better);
+        }
+        Ok(moments.in_volts(&found))
+    }
+
+    /// Voltages (sine, cosine) of the model at an angle in radians.
+    pub fn at(&self, angle: f64) -> (f64, f64) {
+        let lagging = (angle - self.phase_error_rad).sin();
+        (
+            self.amplitude_v * lagging / self.gain_ratio + self.offset_sine_v,
+            self.amplitude_v * angle.cos() + self.offset_cosine_v,
+        )
+    }
+
+    /// Amplitude of the sine channel, peak, in volts.
+    pub fn amplitude_sine_v(&self) -> f64 {
+        self.amplitude_v / self.gain_ratio
+    }
+
+    /// α in degrees.
+    pub fn phase_error_deg(&self) -> f64 {
+        self.phase_error_rad.to_degrees()
+    }
+
+    /// The correction that turns this ellipse into a circle.
+    pub fn correction(&self) -> Correction {
+        let (sin, cos) = self.phase_error_rad.sin_cos();
+        Correction { p: self.offset_cosine_v, q: self.offset_sine_v, tan: sin / cos, scale: self.gain_ratio / cos }
+    }
+}
+
+/// Turns samples on an ellipse into samples on a circle of the cosine's amplitude around zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    p: f64,
+    q: f64,
+    tan: f64,
+    scale: f64,
+}
+
+impl Correction {
+    /// Corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
+    pub fn apply(&self, sine: f64, cosine: f64) -> (f64, f64) {
+        let x = cosine - self.p;
+        (x * self.tan + self.scale * (sine - self.q), x)
+    }
+}
+
+/// Names what is wrong with points that have no area.
+fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
+    let (range_x, range_y) = around_mean.ranges();
+    let most = range_x.max(range_y);
+    // Relative to the level: a constant of 2.5 V has a range of a few units in the last place at most.
+    if most <= around_mean.level() * 1e-9 {
+        return Err(FitError::Constant);
+    }
+    if range_x < DEAD * most {
+        return Err(FitError::Dead(Channel::Cosine));
+    }
+    if range_y < DEAD * most {
+        return Err(FitError::Dead(Channel::Sine));
+    }
+    let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
+    // Each channel by its own spread, or a small gain would look like a line.
+    let correlation = (xy / (xx * yy).sqrt()).abs();
+    if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
+}
+
+/// The 5 × 5 normal equations, in the scale of the moments.
+fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
+    /// Powers of x and y in the columns A … E.
+    const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];
+    let power = |column: usize| POWERS.get(column).copied().unwrap_or_default();
+    let normal = SMatrix::<f64, 5, 5>::from_fn(|row, column| {
+        let ((i, j), (k, l)) = (power(row), power(column));
+        moments.sum(i + k, j + l)
+    });
+    let right = SVector::<f64, 5>::from_fn(|row, _| {
+        let (i, j) = power(row);
+        moments.sum(i, j)
+    });
+    let eigenvalues = normal.symmetric_eigenvalues();
+    if eigenvalues.min() <= CONDITION * eigenvalues.max() {
+        return Err(FitError::Ambiguous);
+    }
+    let solution = normal.cholesky().ok_or(FitError::Ambiguous)?.solve(&right);
+    let [a, b, c, d, e] = solution.into();
+    Conic { a, b, c, d, e }.ellipse().ok_or(FitError::NotAnEllipse)
+}
+
+#[cfg(test)]
+#[path = "ellipse/tests.rs"]
+mod tests;

@@ -1,0 +1,358 @@
+//! A block of samples of one column with its pyramid: over every 8 samples their least and greatest value, over every 8
+//! of those the same, up to the whole block. Knows nothing of time, nor where in the history it stands.
+
+use std::ops::Range;
+
+use super::flags::{FlagBlock, Flags};
+use super::number::Number;
+use super::spread::{Spread, extremes, together};
+use super::{BLOCK, FAN};
+
+/// A level of the pyramid.
+#[derive(Clone, Copy)]
+struct Level {
+    /// Samples under a bucket.
+    size: usize,
+    /// Where its first bucket lies among those of the block.
+    start: usize,
+}
+
+/// The levels between the samples and the whole block, the coarsest first, as they lie in memory.
+const LEVELS: [Level; 3] = [
+    Level { size: FAN * FAN * FAN, start: 0 },
+    Level { size: FAN * FAN, start: FAN },
+    Level { size: FAN, start: FAN + FAN * FAN },
+];
+
+/// Buckets of all levels.
+const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
+
+/// Least and greatest value of some samples, as distances from the block's base, rounded outward. Nothing in it: (∞, −∞).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bucket {
+    low: f32,
+    high: f32,
+}
+
+impl Bucket {
+    const EMPTY: Bucket = Bucket { low: f32::INFINITY, high: f32::NEG_INFINITY };
+
+    fn of(buckets: &[Bucket]) -> Bucket {
+        buckets.iter().fold(Bucket::EMPTY, |all, bucket| all.with(*bucket))
+    }
+
+    /// What is around the extremes, if there are any.
+    fn around<T: Number>(extremes: Option<(T, T)>, base: T) -> Bucket {
+        extremes.map_or(Bucket::EMPTY, |(min, max)| Bucket { low: min.down(base), high: max.up(base) })
+    }
+
+    fn with(self, other: Bucket) -> Bucket {
+        Bucket {
+            low: if other.low < self.low { other.low } else { self.low },
+            high: if other.high > self.high { other.high } else { self.high },
+        }
+    }
+
+    fn is_empty(self) -> bool {
+        self.low > self.high
+    }
+
+    fn contains(self, other: Bucket) -> bool {
+        other.low >= self.low && other.high <= self.high
+    }
+
+    /// A value is so far from the base that no `f32` reaches it.
+    fn is_beyond(self) -> bool {
+        self.low == f32::NEG_INFINITY || self.high == f32::INFINITY
+    }
+}
+
+/// A range of values that contains what it was made of. Nothing in it: (∞, −∞).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub(super) min: f64,
+    pub(super) max: f64,
+}
+
+impl Extent {
+    pub(super) const EMPTY: Extent = Extent { min: f64::INFINITY, max: f64::NEG_INFINITY };
+
+    pub(super) fn with(self, other: Extent) -> Extent {
+        Extent {
+            min: if other.min < self.min { other.min } else { self.min },
+            max: if other.max > self.max { other.max } else { self.max },
+        }
+    }
+}
+
+/// Up to `BLOCK` samples. What it takes is allocated at once, but for the flags, and used again after
+/// [`clear`](Block::clear). The fields are few, so that those of many blocks are looked through quickly.
+#[derive(Debug)]
+pub(super) struct Block<T> {
+    values: Vec<T>,
+    /// `BUCKETS` of them; those of which all samples are there are valid.
+    buckets: Box<[Bucket]>,
+    /// Of the whole block, when it is full.
+    top: Bucket,
+    /// What the buckets are counted from: the median of the first few values, so that one odd value does not coarsen the
+    /// rest. `None` as long as there is no bucket with a value.
+    base: Option<T>,
+    flags: FlagBlock,
+    /// Of the whole block, when it is full and has a value.
+    spread: Option<Box<Spread<T>>>,
+}
+
+impl<T: Number> Block<T> {
+    pub(super) fn new() -> Self {
+        let values = Vec::with_capacity(BLOCK);
+        let buckets = vec![Bucket::EMPTY; BUCKETS].into_boxed_slice();
+        Block { values, buckets, top: Bucket::EMPTY, base: None, flags: FlagBlock::default(), spread: None }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.values.clear();
+        self.top = Bucket::EMPTY;
+        self.base = None;
+        self.flags.clear();
+        self.spread = None;
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Takes `values`, for which there is room, with their flags (none of them: nothing is remarkable). A value that is no
+    /// number is a bad one.
+    pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
+        let start = self.values.len();
+        self.values.extend_from_slice(values);
+        if flags.iter().any(|flags| *flags != Flags::NONE) {
+            for (at, flags) in flags.iter().enumerate().take(values.len()) {
+                self.flags.mark(start + at, *flags);
+            }
+        }
+        if !values.iter().fold(true, |all, value| all & value.is_number()) {
+            for (at, _) in values.iter().enumerate().filter(|(_, value)| !value.is_number()) {
+                self.flags.mark(start + at, Flags::BAD);
+            }
+        }
+        self.complete(start);
+    }
+
+    /// The line is broken before the sample `at`.
+    pub(super) fn break_before(&mut self, at: usize) {
+        self.flags.mark(at, Flags::BREAK);
+    }
+
+    pub(super) fn value(&self, at: usize) -> Option<T> {
+        self.values.get(at).copied()
+    }
+
+    pub(super) fn flags(&self) -> &FlagBlock {
+        &self.flags
+    }
+
+    /// `known`, widened by the values of some samples: exact where they come from samples, rounded outward where from
+    /// buckets. Looks only at what can widen it.
+    pub(super) fn widen(&self, known: Extent, range: Range<usize>) -> Extent {
+        let Some(base) = self.base else { return known.with(self.scan(range)) };
+        let mut search = Search {
+            samples: Extent::EMPTY,
+            found: Bucket::EMPTY,
+            enough: Bucket { low: base.within_up(known.min), high: base.within_down(known.max) },
+        };
+        if range == (0..BLOCK) {
+            search.find(self.top);
+        } else if self.len() < BLOCK || !search.enough.contains(self.top) {
+            self.search(&LEVELS, range.clone(), &mut search);
+        }
+        if search.found.is_beyond() {
+            return known.with(self.scan(range));
+        }
+        let known = known.with(search.samples);
+        if search.found.is_empty() {
+            return known;
+        }
+        known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
+    }
+
+    /// Count, mean and deviation of some samples, from the samples themselves.
+    pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
+        if range == (0..BLOCK) {
+            return self.spread.as_deref().copied();
+        }
+        self.spread_of(range)
+    }
+
+    /// The first sample in `range` that has a value.
+    pub(super) fn first_good(&self, range: Range<usize>) -> Option<usize> {
+        if !self.flags.any().contains(Flags::BAD) {
+            return (!range.is_empty()).then_some(range.start);
+        }
+        if self.len() == BLOCK && self.top.is_empty() {
+            return None;
+        }
+        let mut at = range.start;
+        while at < range.end {
+            match self.nothing_from(at, range.end) {
+                0 => return Some(at),
+                skipped => at += skipped,
+            }
+        }
+        None
+    }
+
+    /// The last sample in `range` that has a value.
+    pub(super) fn last_good(&self, range: Range<usize>) -> Option<usize> {
+        if !self.flags.any().contains(Flags::BAD) {
+            return range.end.checked_sub(1).filter(|last| *last >= range.start);
+        }
+        if self.len() == BLOCK && self.top.is_empty() {
+            return None;
+        }
+        let mut end = range.end;
+        while end > range.start {
+            match self.nothing_before(end, range.start) {
+                0 => return end.checked_sub(1),
+                skipped => end -= skipped,
+            }
+        }
+        None
+    }
+
+    /// Bytes on the heap.
+    pub(super) fn memory(&self) -> usize {
+        let spread = self.spread.as_ref().map_or(0, |_| size_of::<Spread<T>>());
+        let buckets = self.buckets.len() * size_of::<Bucket>();
+        self.values.capacity() * size_of::<T>() + buckets + self.flags.memory() + spread
+    }
+
+    /// Fills the buckets that have become complete since there were `before` samples.
+    fn complete(&mut self, before: usize) {
+        let first = before / FAN;
+        let (groups, _) = self.values.get(first * FAN..).unwrap_or_default().as_chunks::<FAN>();
+        let (values, flags) = (self.values.as_slice(), &self.flags);
+        let ranges = (first..first + groups.len()).map(|group| group * FAN..(group + 1) * FAN);
+        if self.base.is_none() {
+            self.base = ranges
+                .clone()
+                .find_map(|range| median(flags.good(range).filter_map(|good| values.get(good)).flatten().copied()));
+        }
+        let [third, second, finest] = LEVELS;
+        let buckets = self.buckets.iter_mut().skip(finest.start + first);
+        match self.base {
+            None => buckets.zip(groups).for_each(|(bucket, _)| *bucket = Bucket::EMPTY),
+            Some(base) if flags.any().contains(Flags::BAD) => {
+                for (bucket, range) in buckets.zip(ranges) {
+                    *bucket = Bucket::around(extremes_within(values, flags, range), base);
+                }
+            }
+            Some(base) => {
+                for (bucket, group) in buckets.zip(groups) {
+                    *bucket = Bucket::around(extremes(group), base);
+                }
+            }
+        }
+        self.raise(finest, second, before);
+        self.raise(second, third, before);
+        if self.values.len() == BLOCK {
+            self.top = Bucket::of(self.buckets.get(..FAN).unwrap_or_default());
+            self.spread = self.spread_of(0..BLOCK).map(Box::new);
+        }
+    }
+
+    /// Fills the buckets of the level `upper`, likewise, from those of the one below it.
+    fn raise(&mut self, lower: Level, upper: Level, before: usize) {
+        let (first, end) = (before / upper.size, self.values.len() / upper.size);
+        let (uppers, lowers) = self.buckets.split_at_mut(lower.start);
+        let (groups, _) = lowers.get(first * FAN..end * FAN).unwrap_or_default().as_chunks::<FAN>();
+        for (bucket, group) in uppers.iter_mut().skip(upper.start + first).zip(groups) {
+            *bucket = Bucket::of(group);
+        }
+    }
+
+    /// The bucket of a level that the sample `at` is under, if it is complete.
+    fn bucket(&self, level: Level, at: usize) -> Option<Bucket> {
+        let number = at / level.size;
+        let complete = (number + 1) * level.size <= self.len();
+        self.buckets.get(level.start + number).copied().filter(|_| complete)
+    }
+
+    /// Looks for what widens the search in `range`: in the buckets of the coarsest of `levels` that lie in it, then in
+    /// what is left on both sides, where each time it may be known from one bucket that there is nothing.
+    fn search(&self, levels: &[Level], range: Range<usize>, search: &mut Search) {
+        let Some((level, finer)) = levels.split_first() else {
+            search.samples = search.samples.with(self.scan(range));
+            return;
+        };
+        let (from, to) = (range.start.div_ceil(level.size), range.end / level.size);
+        if from < to {
+            search.find(Bucket::of(self.buckets.get(level.start + from..level.start + to).unwrap_or_default()));
+        }
+        let sides =
+            if from > to { [range, 0..0] } else { [range.start..from * level.size, to * level.size..range.end] };
+        for side in sides.into_iter().filter(|side| !side.is_empty()) {
+            if self.bucket(*level, side.start).is_none_or(|bucket| !search.enough.contains(bucket)) {
+                self.search(finer, side, search);
+            }
+        }
+    }
+
+    fn spread_of(&self, range: Range<usize>) -> Option<Spread<T>> {
+        self.flags.good(range).map(|good| Spread::of(self.values.get(good)?)).fold(None, together)
+    }
+
+    fn scan(&self, range: Range<usize>) -> Extent {
+        let extremes = extremes_within(&self.values, &self.flags, range);
+        extremes.map_or(Extent::EMPTY, |(min, max)| Extent { min: min.below(), max: max.above() })
+    }
+
+    /// How many samples from `at` on, before `end`, have no value, as far as one look tells.
+    fn nothing_from(&self, at: usize, end: usize) -> usize {
+        let empty = |level: &&Level| {
+            let inside = at.is_multiple_of(level.size) && at + level.size <= end;
+            inside && self.bucket(**level, at).is_some_and(Bucket::is_empty)
+        };
+        LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
+    }
+
+    /// How many samples before `end`, from `start` on, have no value, as far as one look tells.
+    fn nothing_before(&self, end: usize, start: usize) -> usize {
+        let empty = |level: &&Level| {
+            let inside = end.is_multiple_of(level.size) && start + level.size <= end;
+            inside && self.bucket(**level, end - level.size).is_some_and(Bucket::is_empty)
+        };
+        let last = end.saturating_sub(1);
+        LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(last).contains(Flags::BAD)), |level| level.size)
+    }
+}
+
+/// What is looked for in a block, and what of it is found.
+struct Search {
+    /// What samples gave.
+    samples: Extent,
+    /// What buckets gave.
+    found: Bucket,
+    /// What lies in this widens nothing.
+    enough: Bucket,
+}
+
+impl Search {
+    fn find(&mut self, bucket: Bucket) {
+        self.found = self.found.with(bucket);
+        self.enough = self.enough.with(bucket);
+    }
+}
+
+/// Least and greatest value of the samples in `range` that have one.
+fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
+    flags.good(range).filter_map(|good| extremes(values.get(good)?)).reduce(|one, other| {
+        (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })
+    })
+}
+
+fn median<T: Number>(values: impl Iterator<Item = T>) -> Option<T> {
+    let mut values: Vec<T> = values.collect();
+    values.sort_unstable_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,290 @@
+//! Samples as they came, for hours: columns of values over one column of times, in blocks of fixed size, with a pyramid
+//! of least and greatest values that makes a picture of any stretch quickly. What was appended stays as it was until it is
+//! evicted; nothing is interpolated, smoothed or thinned out.
+//!
+//! Samples are counted from the first that ever came, and this index stays theirs: blocks and buckets begin at multiples
+//! of their size, so what is drawn of a sample does not change while others come or go.
+
+mod block;
+mod flags;
+mod number;
+mod picture;
+mod series;
+mod spread;
+mod statistics;
+#[cfg(test)]
+mod tests;
+mod times;
+
+use std::ops::Range;
+
+pub use flags::Flags;
+pub use number::Value;
+pub use picture::{Cut, Grid, Picture, Pixel, Reduced};
+pub use statistics::Statistics;
+
+use super::Time;
+use number::Number;
+use series::Series;
+use times::Times;
+
+/// Samples in a block: what is allocated and evicted at once.
+const BLOCK: usize = 4096;
+
+/// Samples under a bucket of the pyramid, and buckets under a bucket of the next level.
+const FAN: usize = 8;
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `f64`.
+    Real,
+    /// `i64`, kept exactly.
+    Whole,
+}
+
+/// A part of a column that is appended.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    values: Values<'a>,
+    flags: &'a [Flags],
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Values<'a> {
+    Real(&'a [f64]),
+    Whole(&'a [i64]),
+}
+
+impl<'a> Part<'a> {
+    /// Values of a [`Kind::Real`] column. One that is infinite or NaN is kept, and counts as [bad](Flags::BAD).
+    pub fn real(values: &'a [f64]) -> Self {
+        Part { values: Values::Real(values), flags: &[] }
+    }
+
+    /// Values of a [`Kind::Whole`] column.
+    pub fn whole(values: &'a [i64]) -> Self {
+        Part { values: Values::Whole(values), flags: &[] }
+    }
+
+    /// With the flags of each value.
+    #[must_use]
+    pub fn flagged(self, flags: &'a [Flags]) -> Self {
+        Part { flags, ..self }
+    }
+
+    fn kind(&self) -> Kind {
+        match self.values {
+            Values::Real(_) => Kind::Real,
+            Values::Whole(_) => Kind::Whole,
+        }
+    }
+
+    fn fits(&self, length: usize) -> bool {
+        let values = match self.values {
+            Values::Real(values) => values.len(),
+            Values::Whole(values) => values.len(),
+        };
+        values == length && (self.flags.is_empty() || self.flags.len() == length)
+    }
+}
+
+/// Why nothing of a batch was appended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refused {
+    /// Another number of columns, of values in a column or of its flags, or another kind of values.
+    #[error("the batch does not have the history's columns")]
+    Shape,
+    /// A sample is earlier than the one before.
+    #[error("the time goes back at sample {at} of the batch")]
+    TimeGoesBack {
+        /// Which sample of the batch, from 0.
+        at: usize,
+    },
+}
+
+/// A sample of one column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Its number, counted from the first sample that ever came.
+    pub index: u64,
+    /// When it was taken.
+    pub time: Time,
+    /// The value as it was appended.
+    pub value: Value,
+    /// What is remarkable about it.
+    pub flags: Flags,
+}
+
+/// Columns of samples that were taken together. A column is named by its place in the list given to
+/// [`new`](History::new).
+#[derive(Debug)]
+pub struct History {
+    times: Times,
+    columns: Vec<Column>,
+    /// Blocks that are kept, the one being filled included.
+    keep: usize,
+    /// Nanoseconds.
+    longest_pause: Option<i64>,
+    broken: bool,
+}
+
+#[derive(Debug)]
+enum Column {
+    Real(Series<f64>),
+    Whole(Series<i64>),
+}
+
+impl History {
+    /// Keeps the last `capacity` samples, and never more than two blocks of 4096 beyond them.
+    pub fn new(columns: &[Kind], capacity: usize) -> Self {
+        let keep = capacity.div_ceil(BLOCK) + 1;
+        let column = |kind: &Kind| match kind {
+            Kind::Real => Column::Real(Series::new(keep)),
+            Kind::Whole => Column::Whole(Series::new(keep)),
+        };
+        let columns = columns.iter().map(column).collect();
+        History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
+    }
+
+    /// Samples further apart than this many nanoseconds are not joined: something is missing between them.
+    #[must_use]
+    pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
+        History { longest_pause: Some(nanoseconds), ..self }
+    }
+
+    /// Samples are missing before those that come next, in every column.
+    pub fn break_before_next(&mut self) {
+        self.broken = true;
+    }
+
+    /// Appends samples: their times, none earlier than the one before, and a part as long for every column.
+    pub fn append(&mut self, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+        let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
+        if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
+            return Err(Refused::Shape);
+        }
+        let Some(first) = times.first() else { return Ok(()) };
+        let last = self.times.last();
+        if last.is_some_and(|last| *first < last) {
+            return Err(Refused::TimeGoesBack { at: 0 });
+        }
+        if !times.is_sorted() {
+            let at = times.iter().zip(times.iter().skip(1)).position(|(before, after)| after < before);
+            return Err(Refused::TimeGoesBack { at: at.map_or(0, |at| at + 1) });
+        }
+        let index = self.times.end();
+        let mut from = 0;
+        while from < times.len() {
+            let room = if self.times.room() == 0 { BLOCK } else { self.times.room() };
+            let range = from..(from + room).min(times.len());
+            for (column, part) in self.columns.iter_mut().zip(parts) {
+                column.append(part, range.clone(), self.keep);
+            }
+            self.times.append(times.get(range.clone()).unwrap_or_default(), self.keep);
+            self.mark_breaks(times, range.clone(), last, index);
+            from = range.end;
+        }
+        Ok(())
+    }
+
+    /// The samples that are there, by index.
+    pub fn all(&self) -> Range<u64> {
+        self.times.first()..self.times.end()
+    }
+
+    /// The samples from `from` on, before `to`, by index.
+    pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
+        let from = self.times.search(from);
+        from..self.times.search(to).max(from)
+    }
+
+    /// When the sample `index` was taken; `None` when it is not there.
+    pub fn time(&self, index: u64) -> Option<Time> {
+        self.times.get(index)
+    }
+
+    /// The sample `index` of a column; `None` when it is not there.
+    pub fn sample(&self, column: usize, index: u64) -> Option<Sample> {
+        let time = self.times.get(index)?;
+        let (value, flags) = match self.columns.get(column)? {
+            Column::Real(series) => series.get(index).map(|(value, flags)| (value.value(), flags)),
+            Column::Whole(series) => series.get(index).map(|(value, flags)| (value.value(), flags)),
+        }?;
+        Some(Sample { index, time, value, flags })
+    }
+
+    /// The index of the sample nearest to `time`, the earlier of two that are as near; `None` when there is none at all.
+    pub fn nearest(&self, time: Time) -> Option<u64> {
+        let after = self.times.search(time);
+        let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
+        let after = self.times.get(after).map(|at| (after, at));
+        match (before, after) {
+            (Some((before, earlier)), Some((after, later))) => {
+                let before_is_nearer = time.nanoseconds_since(earlier) <= later.nanoseconds_since(time);
+                Some(if before_is_nearer { before } else { after })
+            }
+            (before, after) => before.or(after).map(|(index, _)| index),
+        }
+    }
+
+    /// Bytes on the heap: what is allocated, used or not.
+    pub fn memory(&self) -> usize {
+        let columns: usize = self.columns.iter().map(Column::memory).sum();
+        self.times.memory() + columns + self.columns.capacity() * size_of::<Column>()
+    }
+
+    /// Breaks the line in every column where samples of `range` follow a pause, or what is known to be missing.
+    fn mark_breaks(&mut self, times: &[Time], range: Range<usize>, last: Option<Time>, index: u64) {
+        let pause = self.longest_pause.unwrap_or(i64::MAX);
+        let mut before = range.start.checked_sub(1).and_then(|at| times.get(at).copied()).or(last);
+        let mut broken = std::mem::take(&mut self.broken);
+        if self.longest_pause.is_none() && !broken {
+            return;
+        }
+        for (at, time) in times.iter().enumerate().take(range.end).skip(range.start) {
+            if broken || before.is_some_and(|before| time.nanoseconds_since(before) > pause) {
+                self.columns.iter_mut().for_each(|column| column.break_before(index + at as u64));
+            }
+            broken = false;
+            before = Some(*time);
+        }
+    }
+}
+
+impl Column {
+    fn kind(&self) -> Kind {
+        match self {
+            Column::Real(_) => Kind::Real,
+            Column::Whole(_) => Kind::Whole,
+        }
+    }
+
+    /// Takes the values of `part` in `range`; of another kind of values nothing, which `History::append` has ruled out.
+    fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
+        let flags = part.flags.get(range.clone()).unwrap_or_default();
+        match (self, part.values) {
+            (Column::Real(series), Values::Real(values)) => {
+                series.append(values.get(range).unwrap_or_default(), flags, keep);
+            }
+            (Column::Whole(series), Values::Whole(values)) => {
+                series.append(values.get(range).unwrap_or_default(), flags, keep);
+            }
+            _ => {}
+        }
+    }
+
+    fn break_before(&mut self, index: u64) {
+        match self {
+            Column::Real(series) => series.break_before(index),
+            Column::Whole(series) => series.break_before(index),
+        }
+    }
+
+    fn memory(&self) -> usize {
+        match self {
+            Column::Real(series) => series.memory(),
+            Column::Whole(series) => series.memory(),
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! The two kinds of numbers that are kept, and how they are rounded: outward, so that a range never becomes too small.
+
+/// A value as it was appended, with nothing rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A measured or calculated value.
+    Real(f64),
+    /// A count, steps of a position for example.
+    Whole(i64),
+}
+
+impl Value {
+    /// The nearest `f64`; exact for counts below 2⁵³.
+    pub fn to_f64(self) -> f64 {
+        match self {
+            Value::Real(real) => real,
+            Value::Whole(whole) => whole as f64,
+        }
+    }
+}
+
+/// What a series is made of.
+pub(super) trait Number: Copy + PartialOrd {
+    /// Neither infinite nor NaN.
+    fn is_number(self) -> bool;
+
+    /// The number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above it, and
+    /// hardly below; −∞ when no `f32` reaches.
+    fn down(self, base: Self) -> f32;
+
+    /// Likewise for [`at_least`](Number::at_least); +∞ when no `f32` reaches.
+    fn up(self, base: Self) -> f32;
+
+    /// `self + distance`, rounded down if at all.
+    fn at_most(self, distance: f32) -> f64;
+
+    /// `self + distance`, rounded up if at all.
+    fn at_least(self, distance: f32) -> f64;
+
+    /// A distance such that what is not below it, counted from `self`, is not below `known` either; +∞ when none is found.
+    fn within_up(self, known: f64) -> f32 {
+        let distance = (known - self.value().to_f64()) as f32;
+        let candidates = [distance, distance.next_up(), distance.next_up().next_up()];
+        let holds = |distance: &f32| distance.is_finite() && self.at_most(*distance) >= known;
+        candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
+    }
+
+    /// Likewise, of what is not above; −∞ when none is found.
+    fn within_down(self, known: f64) -> f32 {
+        let distance = (known - self.value().to_f64()) as f32;
+        let candidates = [distance, distance.next_down(), distance.next_down().next_down()];
+        let holds = |distance: &f32| distance.is_finite() && self.at_least(*distance) <= known;
+        candidates.into_iter().find(holds).unwrap_or(f32::NEG_INFINITY)
+    }
+
+    /// `self − base`, rounded to the nearest.
+    fn minus(self, base: Self) -> f64;
+
+    /// The greatest `f64` that is not above.
+    fn below(self) -> f64;
+
+    /// The least `f64` that is not below.
+    fn above(self) -> f64;
+
+    /// The number itself.
+    fn value(self) -> Value;
+}
+
+impl Number for f64 {
+    fn is_number(self) -> bool {
+        self.is_finite()
+    }
+
+    fn down(self, base: f64) -> f32 {
+        let mut distance = (self - base) as f32;
+        if distance.is_infinite() {
+            return f32::NEG_INFINITY;
+        }
+        while base.at_most(distance) > self {
+            distance = distance.next_down();
+        }
+        distance
+    }
+
+    fn up(self, base: f64) -> f32 {
+        let mut distance = (self - base) as f32;
+        if distance.is_infinite() {
+            return f32::INFINITY;
+        }
+        while base.at_least(distance) < self {
+            distance = distance.next_up();
+        }
+        distance
+    }
+
+    // The sum is rounded to the nearest, which `down` and `up` have taken into account.
+    fn at_most(self, distance: f32) -> f64 {
+        self + f64::from(distance)
+    }
+
+    fn at_least(self, distance: f32) -> f64 {
+        self + f64::from(distance)
+    }
+
+    fn minus(self, base: f64) -> f64 {
+        self - base
+    }
+
+    fn below(self) -> f64 {
+        self
+    }
+
+    fn above(self) -> f64 {
+        self
+    }
+
+    fn value(self) -> Value {
+        Value::Real(self)
+    }
+}
+
+/// Sums of two such numbers are exact in `f64`.
+const EXACT: f64 = (1_i64 << 52) as f64;
+
+impl Number for i64 {
+    fn is_number(self) -> bool {
+        true
+    }
+
+    fn down(self, base: i64) -> f32 {
+        let exact = i128::from(self) - i128::from(base);
+        let mut distance = exact as f32;
+        while distance as i128 > exact {
+            distance = distance.next_down();
+        }
+        distance
+    }
+
+    fn up(self, base: i64) -> f32 {
+        let exact = i128::from(self) - i128::from(base);
+        let mut distance = exact as f32;
+        while (distance as i128) < exact {
+            distance = distance.next_up();
+        }
+        distance
+    }
+
+    fn at_most(self, distance: f32) -> f64 {
+        let (base, distance) = (self as f64, f64::from(distance));
+        if base.abs() <= EXACT && distance.abs() <= EXACT {
+            return base + distance;
+        }
+        below(i128::from(self) + distance as i128)
+    }
+
+    fn at_least(self, distance: f32) -> f64 {
+        let (base, distance) = (self as f64, f64::from(distance));
+        if base.abs() <= EXACT && distance.abs() <= EXACT {
+            return base + distance;
+        }
+        above(i128::from(self) + distance as i128)
+    }
+
+    fn minus(self, base: i64) -> f64 {
+        match self.checked_sub(base) {
+            Some(difference) => difference as f64,
+            None => (i128::from(self) - i128::from(base)) as f64,
+        }
+    }
+
+    fn below(self) -> f64 {
+        below(i128::from(self))
+    }
+
+    fn above(self) -> f64 {
+        above(i128::from(self))
+    }
+
+    fn value(self) -> Value {
+        Value::Whole(self)
+    }
+}
+
+fn below(exact: i128) -> f64 {
+    let nearest = exact as f64;
+    if nearest as i128 > exact { nearest.next_down() } else { nearest }
+}
+
+fn above(exact: i128) -> f64 {
+    let nearest = exact as f64;
+    if (nearest as i128) < exact { nearest.next_up() } else { nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn counts_beyond_24_bits_stay_exact_near_their_base() {
+        let base = 1 << 60;
+        for step in [0, 1, -1, 12_345_677, -(1 << 24)] {
+            let position: i64 = base + step;
+            assert_eq!((position.down(base), position.up(base)), (step as f32, step as f32));
+        }
+        let far = (1_i64 << 24) + 1;
+        assert_eq!((far.down(0), far.up(0)), (16_777_216.0, 16_777_218.0));
+        assert_eq!(i64::MAX.up(i64::MIN), 18_446_744_073_709_551_616.0);
+    }
+
+    #[test]
+    fn what_an_f32_does_not_reach_is_infinite() {
+        assert_eq!((1e300).down(0.0), f32::NEG_INFINITY);
+        assert_eq!((1e300).up(0.0), f32::INFINITY);
+        assert_eq!(f64::MAX.down(f64::MIN), f32::NEG_INFINITY);
+        assert_eq!((1e300).down(1e300), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn counts_are_rounded_outward(value in any::<i64>(), base in any::<i64>(), shift in 0..63) {
+            let value = base.saturating_add(value >> shift);
+            let distance = (i128::from(value) - i128::from(base)).unsigned_abs() as f64;
+            let loss = distance / f64::from(1 << 23) + (value as f64).abs() * f64::EPSILON * 2.0;
+            let (low, high) = (base.at_most(value.down(base)), base.at_least(value.up(base)));
+            prop_assert!(low as i128 <= i128::from(value) && i128::from(value) <= high as i128);
+            prop_assert!(high - low <= 2.0 * loss, "{low} {value} {high}");
+        }
+
+        #[test]
+        fn reals_are_rounded_outward(value in any::<f64>(), base in any::<f64>(), close in any::<f64>()) {
+            prop_assume!(value.is_finite() && base.is_finite());
+            for value in [value, base + base * (close % 1.0), base.next_up(), base.next_down(), 0.0] {
+                let (low, high) = (value.down(base), value.up(base));
+                prop_assert_eq!(low.is_infinite(), high.is_infinite());
+                if low.is_finite() && value.is_finite() {
+                    let (low, high) = (base.at_most(low), base.at_least(high));
+                    prop_assert!(low <= value && value <= high);
+                    let loss = (value - base).abs() / f64::from(1 << 23) + 2e-45;
+                    let grain = (value.abs().max(base.abs())) * f64::EPSILON;
+                    prop_assert!(high - low <= 2.0 * (loss + grain), "{low:e} {value:e} {high:e} {base:e}");
+                }
+            }
+        }
+    }
+}

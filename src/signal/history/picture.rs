@@ -1,0 +1,218 @@
+//! A stretch of time cut into pixel columns, and what is drawn in each. Contains every extreme, break and flag of the raw
+//! samples however far it is zoomed out; knows nothing of screens.
+
+use std::ops::Range;
+
+use super::block::Extent;
+use super::flags::Flags;
+use super::number::Number;
+use super::series::Series;
+use super::{Column, History};
+use crate::signal::Time;
+
+/// Equal steps of time, one a pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
+/// keeps its columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid {
+    start: Time,
+    width: i64,
+    pixels: usize,
+}
+
+impl Grid {
+    /// Covers the time from `from` until `to` by as many columns as there are `pixels`, or one more.
+    pub fn new(from: Time, to: Time, pixels: usize) -> Self {
+        let span = i128::from(to.nanoseconds()) - i128::from(from.nanoseconds());
+        let width = match i128::try_from(pixels) {
+            Ok(pixels @ 1..) if span > 0 => (span + pixels - 1) / pixels,
+            _ => return Grid { start: from, width: 1, pixels: 0 },
+        };
+        let width = i64::try_from(width).unwrap_or(i64::MAX);
+        let start = from.nanoseconds().saturating_sub(from.nanoseconds().rem_euclid(width));
+        let covered = i128::from(to.nanoseconds()) - i128::from(start);
+        let columns = (covered + i128::from(width) - 1) / i128::from(width);
+        Grid { start: Time::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
+    }
+
+    /// Pixel columns.
+    pub fn pixels(&self) -> usize {
+        self.pixels
+    }
+
+    /// Nanoseconds a pixel column, at least 1.
+    pub fn width(&self) -> i64 {
+        self.width
+    }
+
+    /// Where the pixel column `pixel` begins, which belongs to it; the one before it ends there.
+    pub fn edge(&self, pixel: usize) -> Time {
+        let edge = i128::from(self.start.nanoseconds()) + pixel as i128 * i128::from(self.width);
+        Time::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
+    }
+}
+
+/// Where a [`Grid`] cuts the samples of a history; the same for all of its columns. Samples that are appended later are
+/// not in it, and what is evicted is not drawn.
+#[derive(Clone, Debug)]
+pub struct Cut {
+    /// The beginning of each pixel column, and the end of the last one.
+    edges: Vec<Edge>,
+}
+
+/// Where one pixel column ends and the next begins.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    /// Index of the first sample behind it.
+    index: u64,
+    /// When the last sample before it was taken.
+    before: Option<Time>,
+    /// When the first sample behind it was taken.
+    after: Option<Time>,
+}
+
+/// What there is to draw of one pixel column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// When the first sample with a value was taken, or without any value the first sample.
+    pub from: Time,
+    /// When the last one was taken.
+    pub to: Time,
+    /// `None` when no sample has a value to believe.
+    pub values: Option<Reduced>,
+    /// What any of the samples has; [`BREAK`](Flags::BREAK) when the line is broken in this column or before it.
+    pub flags: Flags,
+    /// A line leads from the last value of the pixel column before to the first of this one: no break lies between them.
+    pub joined: bool,
+}
+
+/// The values of the samples of one pixel column, in the column's unit; `f64` holds counts below 2⁵³ exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reduced {
+    /// The first, exactly.
+    pub first: f64,
+    /// Not above the least of them, and below it by no more than 2⁻²² of the range of the values within 4096 samples around.
+    pub min: f64,
+    /// Not below the greatest of them, and above it by no more than 2⁻²² of the range of the values within 4096 samples around.
+    pub max: f64,
+    /// The last, exactly.
+    pub last: f64,
+}
+
+/// What there is to draw: pixel columns that have samples, in the order of time. A line goes through first, min, max and
+/// last of each. The nearest samples to the left and right of the stretch are with them, so that a line leads there.
+#[derive(Clone, Debug, Default)]
+pub struct Picture {
+    /// The pixel columns; see `raw`.
+    pub pixels: Vec<Pixel>,
+    /// There are so few samples that each is a pixel of its own, with the time it was taken.
+    pub raw: bool,
+}
+
+/// Up to so many samples a pixel column are given as they are, which is no more to draw than first, min, max and last.
+const FEW: u64 = 4;
+
+impl History {
+    /// Finds the samples of each pixel column.
+    pub fn cut(&self, grid: &Grid) -> Cut {
+        let edge = |pixel: usize| {
+            let index = self.times.search(grid.edge(pixel));
+            let before = index.checked_sub(1).and_then(|before| self.times.get(before));
+            Edge { index, before, after: self.times.get(index) }
+        };
+        Cut { edges: (0..=grid.pixels()).map(edge).collect() }
+    }
+
+    /// What there is to draw of a column, into `picture`, whose memory is used again.
+    pub fn picture(&self, column: usize, cut: &Cut, picture: &mut Picture) {
+        picture.pixels.clear();
+        match self.columns.get(column) {
+            Some(Column::Real(series)) => Painter { history: self, series, last: None, picture }.paint(cut),
+            Some(Column::Whole(series)) => Painter { history: self, series, last: None, picture }.paint(cut),
+            None => {}
+        }
+    }
+}
+
+struct Painter<'a, T> {
+    history: &'a History,
+    series: &'a Series<T>,
+    /// The last sample with a value in what is painted already.
+    last: Option<u64>,
+    picture: &'a mut Picture,
+}
+
+impl<T: Number> Painter<'_, T> {
+    fn paint(&mut self, cut: &Cut) {
+        let all = self.history.all();
+        let (Some(from), Some(to)) = (cut.edges.first(), cut.edges.last()) else { return };
+        let (from, to) = (from.index.max(all.start), to.index.min(all.end));
+        let pixels = cut.edges.iter().zip(cut.edges.iter().skip(1));
+        self.picture.raw = to.saturating_sub(from) <= FEW.saturating_mul(pixels.len() as u64);
+        if let Some(before) = self.series.last_good(all.start..from) {
+            self.sample(before);
+        }
+        if self.picture.raw {
+            (from..to).for_each(|index| self.sample(index));
+        } else {
+            // Fetched together: these lie far apart in memory, and one does not wait for the other.
+            let ends: Vec<Option<(T, T)>> =
+                pixels.clone().map(|(from, to)| self.series.ends(from.index..to.index)).collect();
+            for ((from, to), ends) in pixels.zip(ends) {
+                if let Some(ends) = ends {
+                    self.pixel(from, to, ends);
+                }
+            }
+        }
+        if let Some(after) = self.series.first_good(to..all.end) {
+            self.sample(after);
+        }
+    }
+
+    /// One sample as a pixel of its own.
+    fn sample(&mut self, index: u64) {
+        let (Some((value, flags)), Some(time)) = (self.series.get(index), self.history.time(index)) else { return };
+        let good = !flags.contains(Flags::BAD);
+        let joined = good && self.is_joined(index);
+        let value = value.value().to_f64();
+        let values = good.then_some(Reduced { first: value, min: value, max: value, last: value });
+        if good {
+            self.last = Some(index);
+        }
+        self.picture.pixels.push(Pixel { from: time, to: time, values, flags, joined });
+    }
+
+    /// The samples between two edges, of which the first and the last are `ends`, as one pixel.
+    fn pixel(&mut self, from: &Edge, to: &Edge, ends: (T, T)) {
+        let range = from.index..to.index;
+        let (Some(start), Some(end)) = (from.after, to.before) else { return };
+        if self.series.is_plain(range.clone()) {
+            let joined = self.is_joined(from.index);
+            let values = Some(self.reduced(range, ends));
+            self.last = Some(to.index - 1);
+            self.picture.pixels.push(Pixel { from: start, to: end, values, flags: Flags::NONE, joined });
+            return;
+        }
+        let flags = self.series.flags(range.clone());
+        let mut pixel = Pixel { from: start, to: end, values: None, flags, joined: false };
+        if let (Some(first), Some(last)) = (self.series.first_good(range.clone()), self.series.last_good(range)) {
+            let good = first..last + 1;
+            pixel.joined = self.is_joined(first);
+            pixel.values = self.series.ends(good.clone()).map(|ends| self.reduced(good, ends));
+            pixel.from = self.history.time(first).unwrap_or(start);
+            pixel.to = self.history.time(last).unwrap_or(end);
+            self.last = Some(last);
+        }
+        self.picture.pixels.push(pixel);
+    }
+
+    /// A line leads from the last sample with a value to the sample `index`.
+    fn is_joined(&self, index: u64) -> bool {
+        self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
+    }
+
+    fn reduced(&self, range: Range<u64>, (first, last): (T, T)) -> Reduced {
+        let (first, last) = (first.value().to_f64(), last.value().to_f64());
+        let Extent { min, max } = self.series.widen(Extent { min: first.min(last), max: first.max(last) }, range);
+        Reduced { first, min, max, last }
+    }
+}

@@ -1,0 +1,142 @@
+//! The blocks of one column, found by absolute sample index. When there are enough of them the oldest is used again.
+
+use std::collections::VecDeque;
+use std::ops::Range;
+
+use super::BLOCK;
+use super::block::{Block, Extent};
+use super::flags::Flags;
+use super::number::Number;
+use super::spread::{Spread, together};
+
+/// One column of values.
+#[derive(Debug)]
+pub(super) struct Series<T> {
+    blocks: VecDeque<Block<T>>,
+    /// Absolute index of the oldest sample; a multiple of `BLOCK`.
+    first: u64,
+}
+
+impl<T: Number> Series<T> {
+    /// Room for `blocks` blocks, which are allocated when they are needed.
+    pub(super) fn new(blocks: usize) -> Self {
+        Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
+    }
+
+    /// Takes `values`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are kept.
+    pub(super) fn append(&mut self, values: &[T], flags: &[Flags], keep: usize) {
+        if self.blocks.back().is_none_or(|block| block.len() == BLOCK) {
+            self.open(keep);
+        }
+        if let Some(block) = self.blocks.back_mut() {
+            block.append(values, flags);
+        }
+    }
+
+    /// The line is broken before the sample `index`.
+    pub(super) fn break_before(&mut self, index: u64) {
+        let (block, at) = self.place(index);
+        if let Some(block) = self.blocks.get_mut(block) {
+            block.break_before(at);
+        }
+    }
+
+    /// The sample `index` as it was appended.
+    pub(super) fn get(&self, index: u64) -> Option<(T, Flags)> {
+        let (block, at) = self.place(index);
+        let block = self.blocks.get(block).filter(|_| index >= self.first)?;
+        Some((block.value(at)?, block.flags().get(at)))
+    }
+
+    /// The values of the first and the last sample of `range`, as they were appended; `None` when one is not there.
+    pub(super) fn ends(&self, range: Range<u64>) -> Option<(T, T)> {
+        if range.start < self.first || range.is_empty() {
+            return None;
+        }
+        let value = |index| {
+            let (block, at) = self.place(index);
+            self.blocks.get(block)?.value(at)
+        };
+        Some((value(range.start)?, value(range.end - 1)?))
+    }
+
+    /// `known`, widened by the values of the samples in `range`, which are all there; see [`Block::widen`]. Whole blocks
+    /// first: what they give saves most of the work on the rest.
+    pub(super) fn widen(&self, known: Extent, range: Range<u64>) -> Extent {
+        let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
+        let widen = |known: Extent, block: usize, range: Range<usize>| {
+            self.blocks.get(block).map_or(known, |block| block.widen(known, range))
+        };
+        if first == last {
+            return widen(known, first, from..to + 1);
+        }
+        let known = (first + 1..last).fold(known, |known, block| widen(known, block, 0..BLOCK));
+        widen(widen(known, first, from..BLOCK), last, 0..to + 1)
+    }
+
+    /// No sample near `range` has a flag: a quick look, which may miss that none in it has.
+    pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
+        let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
+        let flagged = |block: usize| self.blocks.get(block).is_some_and(|block| block.flags().any() != Flags::NONE);
+        !(first..=last).any(flagged)
+    }
+
+    pub(super) fn flags(&self, range: Range<u64>) -> Flags {
+        if self.is_plain(range.clone()) {
+            return Flags::NONE;
+        }
+        self.parts(range).fold(Flags::NONE, |all, (_, block, range)| all | block.flags().within(range))
+    }
+
+    pub(super) fn spread(&self, range: Range<u64>) -> Option<Spread<T>> {
+        self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, together)
+    }
+
+    /// The first sample in `range` that has a value.
+    pub(super) fn first_good(&self, range: Range<u64>) -> Option<u64> {
+        self.parts(range).find_map(|(start, block, range)| Some(start + block.first_good(range)? as u64))
+    }
+
+    /// The last sample in `range` that has a value.
+    pub(super) fn last_good(&self, range: Range<u64>) -> Option<u64> {
+        self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
+    }
+
+    /// Bytes on the heap.
+    pub(super) fn memory(&self) -> usize {
+        let blocks: usize = self.blocks.iter().map(Block::memory).sum();
+        blocks + self.blocks.capacity() * size_of::<Block<T>>()
+    }
+
+    fn open(&mut self, keep: usize) {
+        let used = if self.blocks.len() >= keep { self.blocks.pop_front() } else { None };
+        let block = match used {
+            Some(mut block) => {
+                self.first += BLOCK as u64;
+                block.clear();
+                block
+            }
+            None => Block::new(),
+        };
+        self.blocks.push_back(block);
+    }
+
+    /// The block of the sample `index`, and where it stands in it.
+    fn place(&self, index: u64) -> (usize, usize) {
+        let at = index.saturating_sub(self.first) as usize;
+        (at / BLOCK, at % BLOCK)
+    }
+
+    /// The blocks that `range` touches, as far as there are samples: index of the block's first sample, block, range in it.
+    fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &Block<T>, Range<usize>)> {
+        let from = range.start.saturating_sub(self.first) as usize;
+        let to = range.end.saturating_sub(self.first) as usize;
+        let blocks = (from / BLOCK).min(self.blocks.len())..to.div_ceil(BLOCK).min(self.blocks.len());
+        let numbers = blocks.start..blocks.end.max(blocks.start);
+        numbers.clone().zip(self.blocks.range(numbers)).map(move |(number, block)| {
+            let start = number * BLOCK;
+            let end = to.saturating_sub(start).min(block.len());
+            (self.first + start as u64, block, from.saturating_sub(start).min(end)..end)
+        })
+    }
+}

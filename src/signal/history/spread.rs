@@ -1,0 +1,74 @@
+//! Mean and deviation that can be put together from parts, and stay sound for small noise on a large value. Welford's
+//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Only ever of raw samples.
+
+use super::number::Number;
+
+/// Count, mean, sum of squared deviations and range of some samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spread<T> {
+    pub(super) count: u64,
+    /// What `mean` is counted from.
+    pub(super) base: T,
+    pub(super) mean: f64,
+    pub(super) squares: f64,
+    pub(super) min: T,
+    pub(super) max: T,
+}
+
+impl<T: Number> Spread<T> {
+    /// The spread of `values`, which are all numbers; `None` when there are none.
+    pub(super) fn of(values: &[T]) -> Option<Self> {
+        let base = *values.first()?;
+        let (min, max) = extremes(values)?;
+        let count = values.len() as f64;
+        let mean = sum(values, |value| value.minus(base)) / count;
+        let squares = sum(values, |value| {
+            let deviation = value.minus(base) - mean;
+            deviation * deviation
+        });
+        Some(Spread { count: values.len() as u64, base, mean, squares, min, max })
+    }
+
+    /// Both together.
+    pub(super) fn with(self, other: Self) -> Self {
+        let (own, others) = (self.count as f64, other.count as f64);
+        let all = own + others;
+        let apart = other.base.minus(self.base) + other.mean - self.mean;
+        Spread {
+            count: self.count + other.count,
+            base: self.base,
+            mean: self.mean + apart * (others / all),
+            squares: self.squares + other.squares + apart * apart * (own * others / all),
+            min: if other.min < self.min { other.min } else { self.min },
+            max: if other.max > self.max { other.max } else { self.max },
+        }
+    }
+}
+
+/// Both together, where either may be nothing.
+pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.with(other)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Least and greatest of `values`, which are all numbers.
+pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
+    let first = *values.first()?;
+    Some(values.iter().fold((first, first), |(min, max), value| {
+        (if *value < min { *value } else { min }, if *value > max { *value } else { max })
+    }))
+}
+
+/// Eight sums side by side, which a processor does in little more time than one.
+fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
+    let (groups, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for group in groups {
+        for (sum, value) in sums.iter_mut().zip(group) {
+            *sum += term(*value);
+        }
+    }
+    sums.iter().sum::<f64>() + rest.iter().map(|value| term(*value)).sum::<f64>()
+}

@@ -1,0 +1,50 @@
+//! Numbers about a stretch of a column. From the raw samples, each of which counts once: what was reduced for a picture is
+//! not used here.
+
+use std::ops::Range;
+
+use super::number::{Number, Value};
+use super::series::Series;
+use super::{Column, History};
+
+/// What is told of a stretch of samples. All but `bad` are of those that have a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics {
+    /// Samples with a value, at least 1.
+    pub count: u64,
+    /// Samples without a value to believe.
+    pub bad: u64,
+    /// Their mean, in the column's unit.
+    pub mean: f64,
+    /// The least value, as it was appended.
+    pub min: Value,
+    /// The greatest value, as it was appended.
+    pub max: Value,
+    /// Standard deviation (divided by count − 1), in the column's unit; 0 for a single sample.
+    pub deviation: f64,
+}
+
+impl History {
+    /// The statistics of the samples `indices` of a column; `None` when none of them has a value.
+    pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
+        let all = self.all();
+        let indices = indices.start.max(all.start)..indices.end.min(all.end);
+        match self.columns.get(column)? {
+            Column::Real(series) => of(series, indices),
+            Column::Whole(series) => of(series, indices),
+        }
+    }
+}
+
+fn of<T: Number>(series: &Series<T>, indices: Range<u64>) -> Option<Statistics> {
+    let asked = indices.end.saturating_sub(indices.start);
+    let spread = series.spread(indices)?;
+    Some(Statistics {
+        count: spread.count,
+        bad: asked - spread.count,
+        mean: spread.base.value().to_f64() + spread.mean,
+        min: spread.min.value(),
+        max: spread.max.value(),
+        deviation: (spread.squares / spread.count.saturating_sub(1).max(1) as f64).sqrt(),
+    })
+}

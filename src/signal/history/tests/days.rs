@@ -1,0 +1,121 @@
+//! Long runs in virtual time, and what they take of memory. These are shorter than a day's samples, so that they can be
+//! run unoptimised; `benches/history.rs` does the whole day.
+
+use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture};
+use crate::signal::{Motion, Time, Unwrap};
+
+const MILLISECOND: i64 = 1_000_000;
+
+#[test]
+fn memory_is_little_more_than_the_raw_columns() {
+    let cases: [(&str, &[Kind], bool); 4] = [
+        ("one column", &[Kind::Real], false),
+        ("one column with flags everywhere", &[Kind::Whole], true),
+        ("four columns", &[Kind::Real, Kind::Real, Kind::Whole, Kind::Whole], false),
+        ("sixteen columns with flags everywhere", &[Kind::Real; 16], true),
+    ];
+    for (label, kinds, flagged) in cases {
+        let capacity = 60 * BLOCK;
+        let mut history = History::new(kinds, capacity);
+        let reals = vec![1.5; BLOCK];
+        let wholes = vec![15; BLOCK];
+        let flags = vec![Flags::WARNING; if flagged { BLOCK } else { 0 }];
+        let part = |kind: &Kind| match kind {
+            Kind::Real => Part::real(&reals).flagged(&flags),
+            Kind::Whole => Part::whole(&wholes).flagged(&flags),
+        };
+        let parts: Vec<Part<'_>> = kinds.iter().map(part).collect();
+        let mut most = 0;
+        for block in 0..200_i64 {
+            let times: Vec<Time> =
+                (0..BLOCK as i64).map(|at| Time::from_nanoseconds((block * BLOCK as i64 + at) * MILLISECOND)).collect();
+            history.append(&times, &parts).unwrap();
+            most = most.max(history.memory());
+        }
+        let samples = (history.all().end - history.all().start) as usize;
+        assert_eq!(samples, capacity + BLOCK, "{label}");
+        let raw = samples * 8 * (kinds.len() + 1);
+        let ratio = most as f64 / raw as f64;
+        assert!(ratio < 1.35, "{label}: {ratio}");
+    }
+}
+
+#[test]
+fn times_are_exact_over_ten_days() {
+    let mut history = History::new(&[Kind::Whole], 10_000);
+    let ten_days = 10 * 86_400_000;
+    // An hour's batch each time, of which the history sees the last seconds: 1 kHz, and the clock's odd nanoseconds.
+    let at = |k: i64| Time::from_nanoseconds(k * MILLISECOND + k % 7);
+    for start in (0..ten_days).step_by(3_600_000) {
+        let numbers: Vec<i64> = (start..start + 5_000).collect();
+        let times: Vec<Time> = numbers.iter().map(|k| at(*k)).collect();
+        history.append(&times, &[Part::whole(&numbers)]).unwrap();
+        for k in (start..start + 5_000).step_by(499) {
+            let index = history.nearest(at(k)).unwrap();
+            assert_eq!(history.time(index), Some(at(k)));
+            let before = history.time(index - u64::from(k != start)).unwrap();
+            assert_eq!(at(k).nanoseconds_since(before), at(k).nanoseconds() - at((k - 1).max(start)).nanoseconds());
+            assert_eq!(history.indices(at(k), at(k).plus(1)), index..index + 1);
+        }
+    }
+}
+
+#[test]
+fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
+    const BATCH: i64 = 5_000;
+    const RANGE: i64 = 4096 * 4096;
+    // Steps a millisecond: about 6000 rpm, so the position wraps every 41 s.
+    const SPEED: i64 = 409;
+    let mut history = History::new(&[Kind::Whole, Kind::Real], 200_000).with_longest_pause(10 * MILLISECOND);
+    let mut unwrap = Unwrap::rotary(RANGE).unwrap();
+    let mut motion = Motion::over(20 * MILLISECOND);
+    let mut most = 0;
+    let mut start = 0;
+    let mut gaps = 0;
+    for batch in 0..360 {
+        let mut positions = Vec::new();
+        let mut speeds = Vec::new();
+        let mut times = Vec::new();
+        if batch % 7 == 3 {
+            // The wire was unplugged for 100 ms.
+            start += 100;
+            gaps += 1;
+            unwrap.gap();
+        }
+        for k in start..start + BATCH {
+            let time = Time::from_nanoseconds(k * MILLISECOND);
+            let next = unwrap.next((k * SPEED).rem_euclid(RANGE)).unwrap();
+            assert_eq!((next.steps, next.broken), (k * SPEED, batch % 7 == 3 && k == start));
+            if next.broken {
+                motion.reset();
+            }
+            let speed = motion.next(time, next.steps).speed;
+            assert!(speed.is_none_or(|speed| (speed - SPEED as f64 * 1000.0).abs() < 1e-6), "{speed:?}");
+            positions.push(next.steps);
+            speeds.push(speed.unwrap_or(f64::NAN));
+            times.push(time);
+        }
+        history.append(&times, &[Part::whole(&positions), Part::real(&speeds)]).unwrap();
+        start += BATCH;
+        most = most.max(history.memory());
+    }
+    assert!(most < 200_000 * 24 * 135 / 100, "{most}");
+    // What is left, at three zooms: every gap there is a break, and no column is higher than the encoder turns.
+    let all = history.all();
+    let (from, to) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap().plus(1));
+    let kept = all.clone().filter(|index| history.sample(0, *index).unwrap().flags == Flags::BREAK).count();
+    assert!(kept > 3 && kept <= gaps);
+    for pixels in [20, 400, 3_000] {
+        let grid = Grid::new(from, to, pixels);
+        let mut picture = Picture::default();
+        history.picture(0, &history.cut(&grid), &mut picture);
+        let broken = picture.pixels.iter().filter(|pixel| pixel.flags.contains(Flags::BREAK)).count();
+        assert!(broken == kept || pixels == 20 && broken > 3, "{pixels}: {broken} of {kept}");
+        for pixel in &picture.pixels {
+            let values = pixel.values.unwrap();
+            let turned = pixel.to.nanoseconds_since(pixel.from) / MILLISECOND * SPEED;
+            assert_eq!((values.min, values.max), (values.first, values.last));
+            assert_eq!(values.last - values.first, turned as f64);
+        }
+    }
+}

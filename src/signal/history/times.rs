@@ -1,0 +1,126 @@
+//! The time column: one for all values that were sampled together. Times never go back.
+
+use std::collections::VecDeque;
+
+use super::BLOCK;
+use crate::signal::Time;
+
+/// When the samples were taken, in blocks that begin and end with those of the values.
+#[derive(Debug)]
+pub(super) struct Times {
+    blocks: VecDeque<Vec<Time>>,
+    /// First time of each block, side by side for a quick search.
+    starts: VecDeque<Time>,
+    /// Absolute index of the oldest sample; a multiple of `BLOCK`.
+    first: u64,
+}
+
+impl Times {
+    /// Room for `blocks` blocks, which are allocated when they are needed.
+    pub(super) fn new(blocks: usize) -> Self {
+        Times { blocks: VecDeque::with_capacity(blocks), starts: VecDeque::with_capacity(blocks), first: 0 }
+    }
+
+    /// Absolute index of the oldest sample that is still there.
+    pub(super) fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// Absolute index of the next sample.
+    pub(super) fn end(&self) -> u64 {
+        let last = self.blocks.back().map_or(0, Vec::len);
+        self.first + (self.blocks.len().saturating_sub(1) * BLOCK + last) as u64
+    }
+
+    /// How many samples there is room for before a block has to be opened.
+    pub(super) fn room(&self) -> usize {
+        self.blocks.back().map_or(0, |block| BLOCK - block.len())
+    }
+
+    pub(super) fn last(&self) -> Option<Time> {
+        self.blocks.back()?.last().copied()
+    }
+
+    pub(super) fn get(&self, index: u64) -> Option<Time> {
+        let at = index.checked_sub(self.first)? as usize;
+        self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
+    }
+
+    /// Takes `times`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are kept.
+    pub(super) fn append(&mut self, times: &[Time], keep: usize) {
+        let Some(start) = times.first() else { return };
+        if self.room() == 0 {
+            let used = if self.blocks.len() >= keep { self.blocks.pop_front() } else { None };
+            let block = match used {
+                Some(mut block) => {
+                    self.starts.pop_front();
+                    self.first += BLOCK as u64;
+                    block.clear();
+                    block
+                }
+                None => Vec::with_capacity(BLOCK),
+            };
+            self.blocks.push_back(block);
+            self.starts.push_back(*start);
+        }
+        if let Some(block) = self.blocks.back_mut() {
+            block.extend_from_slice(times);
+        }
+    }
+
+    /// Absolute index of the first sample at or after `time`; the end when there is none.
+    pub(super) fn search(&self, time: Time) -> u64 {
+        let Some(number) = self.starts.partition_point(|start| *start < time).checked_sub(1) else { return self.first };
+        let inside = self.blocks.get(number).map_or(0, |block| search_in(block, time));
+        self.first + (number * BLOCK + inside) as u64
+    }
+
+    /// Bytes on the heap.
+    pub(super) fn memory(&self) -> usize {
+        let blocks: usize = self.blocks.iter().map(Vec::capacity).sum();
+        (blocks + self.starts.capacity()) * size_of::<Time>() + self.blocks.capacity() * size_of::<Vec<Time>>()
+    }
+}
+
+/// Where in `times` the first lies that is at or after `time`. Samples mostly come evenly, so it is first looked for where
+/// it would be then.
+fn search_in(times: &[Time], time: Time) -> usize {
+    const NEAR: usize = 4;
+    let before = |other: &Time| *other < time;
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0 };
+    let share = time.nanoseconds_since(*first) as f64 / last.nanoseconds_since(*first).max(1) as f64;
+    let guess = (share * (times.len() - 1) as f64) as usize;
+    let (from, to) = (guess.saturating_sub(NEAR), guess.saturating_add(NEAR).min(times.len()));
+    let near = times.get(from..to).unwrap_or_default();
+    if near.first().is_some_and(before) && !near.last().is_none_or(before) {
+        return from + near.partition_point(before);
+    }
+    times.partition_point(before)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(nanoseconds: impl Iterator<Item = i64>) -> Vec<Time> {
+        nanoseconds.map(Time::from_nanoseconds).collect()
+    }
+
+    #[test]
+    fn a_time_is_found_among_even_and_uneven_ones() {
+        let cases = [
+            ("even", times((0..100).map(|k| k * 1_000))),
+            ("uneven", times((0..100).map(|k| k * k * k))),
+            ("all at once", times((0..100).map(|_| 7))),
+            ("a jump", times((0..100).map(|k| if k < 60 { k } else { 1_000_000 + k }))),
+            ("one", times(std::iter::once(7))),
+        ];
+        for (label, times) in cases {
+            for probe in -2..1_000_200 {
+                let probe = Time::from_nanoseconds(if label == "even" { probe / 10 } else { probe });
+                let naive = times.partition_point(|time| *time < probe);
+                assert_eq!(search_in(&times, probe), naive, "{label} {probe:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What a drive's input circuit does to the signals: frequency of the signals at a speed, phase and amplitude of the input
+//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the
+//! input resistor in the text and the feedback resistor in the formula: what counts is the one across the capacitor.
+
+use std::f64::consts::TAU;
+
+/// Bandwidth of the process data channel (−3 dB) in hertz.
+pub const BANDWIDTH_HZ: f64 = 150_000.0;
+
+/// A filter of first order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputFilter {
+    /// The resistor across the capacitor, in ohms.
+    pub resistance_ohm: f64,
+    /// The capacitor, in farads.
+    pub capacitance_f: f64,
+}
+
+/// What a filter does at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// How far the output lags, in electrical degrees, 0 to 90.
+    pub phase_deg: f64,
+    /// Amplitude of the output over that of the input, 0 to 1.
+    pub gain: f64,
+}
+
+impl InputFilter {
+    /// What it does at a frequency in hertz.
+    pub fn at(&self, frequency_hz: f64) -> Response {
+        let product = TAU * frequency_hz * self.resistance_ohm * self.capacitance_f;
+        Response { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }
+    }
+}
+
+impl Response {
+    /// The lag in 1/32 of a period, the steps of the absolute position.
+    pub fn lag_in_steps(&self) -> f64 {
+        self.phase_deg / 360.0 * 32.0
+    }
+}
+
+/// Frequency in hertz of a signal with so many periods in a revolution, at a speed in revolutions a minute.
+pub fn signal_frequency_hz(periods: u32, speed_rpm: f64) -> f64 {
+    f64::from(periods) * speed_rpm / 60.0
+}
+
+/// The speed in revolutions a minute at which a signal reaches a frequency in hertz; `None` without periods.
+pub fn speed_rpm_at(periods: u32, frequency_hz: f64) -> Option<f64> {
+    if periods == 0 { None } else { Some(frequency_hz * 60.0 / f64::from(periods)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filters_of_section_1() {
+        let rows = [
+            (100e3, 22e-12, 7.870, 0.700, 0.99058),
+            (100e3, 47e-12, 16.452, 1.462, 0.95906),
+            (102.4e3, 47e-12, 16.825, 1.496, 0.95719),
+        ];
+        for (frequency, capacitance_f, phase, steps, gain) in rows {
+            let response = InputFilter { resistance_ohm: 10e3, capacitance_f }.at(frequency);
+            assert!((response.phase_deg - phase).abs() < 6e-4, "{response:?}");
+            assert!((response.lag_in_steps() - steps).abs() < 6e-4, "{response:?}");
+            assert!((response.gain - gain).abs() < 6e-6, "{response:?}");
+        }
+    }
+
+    #[test]
+    fn frequencies_of_sections_1_and_8() {
+        let rows =
+            [(512, 12_000.0, 102_400.0), (1024, 6000.0, 102_400.0), (128, 12_000.0, 25_600.0), (16, 12_000.0, 3200.0)];
+        for (periods, rpm, hertz) in rows {
+            assert_eq!(signal_frequency_hz(periods, rpm), hertz);
+        }
+        for (periods, rpm) in [(16, 562_500.0), (128, 70_312.5), (512, 17_578.125), (1024, 8_789.062_5)] {
+            assert_eq!(speed_rpm_at(periods, BANDWIDTH_HZ), Some(rpm));
+        }
+        assert_eq!(speed_rpm_at(0, BANDWIDTH_HZ), None);
+    }
+}

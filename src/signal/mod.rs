@@ -1,0 +1,27 @@
+//! What samples mean: their time, positions without a wrap, speed and acceleration; hours of them and pictures of any stretch; of sine and cosine the angle inside
+//! a period, the ellipse they draw and how to make it a circle, their quality, and how they go together with the absolute
+//! position. Pure: samples and their times are handed in; nothing here waits, reads a clock or a file, or draws.
+//!
+//! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
+
+pub mod analysis;
+pub mod arctan;
+pub mod capture;
+pub mod commutation;
+pub mod coverage;
+pub mod ellipse;
+pub mod history;
+pub mod input_circuit;
+pub mod moments;
+mod motion;
+pub mod nonlinearity;
+pub mod position_error;
+pub mod quality;
+pub mod spectrum;
+pub mod synchronise;
+mod time;
+mod unwrap;
+
+pub use motion::{Motion, Rates};
+pub use time::Time;
+pub use unwrap::{Unwrap, Unwrapped};

@@ -1,0 +1,218 @@
+//! Sums of powers of two signals up to the fourth: all that the fit of an ellipse (Heydemann 1981) needs to know of any
+//! number of samples. They are gathered in one scale, near one, so that no digits are lost to the unit, and can be moved
+//! to another origin afterwards.
+
+use super::ellipse::{Ellipse, FitError};
+
+/// Highest power.
+const ORDER: usize = 4;
+/// Numbers of one row of powers.
+const ROW: usize = ORDER + 1;
+/// Samples summed before the sums are added to the total: rounding grows with the square root of blocks, not samples.
+const BLOCK: usize = 4096;
+/// Sums side by side, which lets the processor add several at a time.
+const LANES: usize = 2;
+/// (power of x, power of y) of each sum.
+const POWERS: [(usize, usize); 14] =
+    [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3), (4, 0), (3, 1), (2, 2), (1, 3), (0, 4)];
+
+/// Origin and unit in which sums are gathered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    x: f64,
+    y: f64,
+    unit: f64,
+}
+
+/// Sums of xⁱ·yʲ with i + j ≤ 4; x is the cosine channel, y the sine channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moments {
+    scale: Scale,
+    count: usize,
+    sums: [f64; ROW * ROW],
+    least: (f64, f64),
+    most: (f64, f64),
+}
+
+/// The extremes of the samples.
+#[derive(Clone, Copy)]
+struct Extremes {
+    least: (f64, f64),
+    most: (f64, f64),
+}
+
+impl Scale {
+    /// A scale for samples around these mean levels with about this amplitude, in volts. Signals that come in pieces are
+    /// gathered in the scale of the first.
+    pub fn new(sine: f64, cosine: f64, amplitude: f64) -> Self {
+        let unit = if amplitude.is_finite() && amplitude > 0.0 { amplitude } else { 1.0 };
+        Scale { x: cosine, y: sine, unit }
+    }
+}
+
+impl Moments {
+    /// No sample yet.
+    pub fn new(scale: Scale) -> Self {
+        let (least, most) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
+        Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }
+    }
+
+    /// Sums over all samples, in the scale that fits them best; what one channel has over is left out.
+    ///
+    /// # Errors
+    /// [`FitError::NotFinite`] with the first such sample.
+    pub fn of(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
+        let Extremes { least, most } = Extremes::of(sine, cosine);
+        let middle = |low: f64, high: f64| low + (high - low) / 2.0;
+        let amplitude = ((most.0 - least.0).max(most.1 - least.1) / 2.0).max(f64::MIN_POSITIVE);
+        let scale = Scale::new(middle(least.1, most.1), middle(least.0, most.0), amplitude);
+        let mut moments = Moments::new(scale);
+        moments.add(sine, cosine)?;
+        Ok(moments)
+    }
+
+    /// Adds samples in volts, as many of one channel as of the other (what is over is left out).
+    ///
+    /// # Errors
+    /// [`FitError::NotFinite`]; the moments are then as before, except for whole blocks before that sample.
+    pub fn add(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
+        let length = sine.len().min(cosine.len());
+        let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());
+        for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
+            let sums = self.block(xs, ys);
+            let extremes = Extremes::of(ys, xs);
+            // A sample that is not finite, or too large for its fourth power, shows in these sums.
+            if !sums.iter().all(|sum| sum.is_finite()) {
+                let bad = xs.iter().zip(ys).position(|(x, y)| !x.is_finite() || !y.is_finite());
+                return Err(FitError::NotFinite { index: block * BLOCK + bad.unwrap_or_default() });
+            }
+            for ((i, j), sum) in POWERS.into_iter().zip(sums) {
+                if let Some(total) = self.sums.get_mut(i * ROW + j) {
+                    *total += sum;
+                }
+            }
+            self.count += xs.len();
+            self.least = (self.least.0.min(extremes.least.0), self.least.1.min(extremes.least.1));
+            self.most = (self.most.0.max(extremes.most.0), self.most.1.max(extremes.most.1));
+        }
+        if let Some(ones) = self.sums.first_mut() {
+            *ones = self.count as f64;
+        }
+        Ok(())
+    }
+
+    /// Samples so far.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
+    pub(super) fn sum(&self, i: usize, j: usize) -> f64 {
+        if i + j > ORDER { 0.0 } else { self.sums.get(i * ROW + j).copied().unwrap_or(0.0) }
+    }
+
+    /// Ranges of the cosine and of the sine channel in volts.
+    pub(super) fn ranges(&self) -> (f64, f64) {
+        (self.most.0 - self.least.0, self.most.1 - self.least.1)
+    }
+
+    /// The largest voltage there is, without its sign.
+    pub(super) fn level(&self) -> f64 {
+        [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// The same samples seen from their mean.
+    pub(super) fn moved_to_mean(&self) -> Moments {
+        let count = self.sum(0, 0).max(1.0);
+        self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
+    }
+
+    /// The same samples seen from (x, y), which is given in the unit of the scale: (x − a)ⁱ·(y − b)ʲ by the binomial
+    /// theorem.
+    pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
+        const BINOMIAL: [[f64; ROW]; ROW] = [
+            [1.0, 0.0, 0.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0, 0.0, 0.0],
+            [1.0, 2.0, 1.0, 0.0, 0.0],
+            [1.0, 3.0, 3.0, 1.0, 0.0],
+            [1.0, 4.0, 6.0, 4.0, 1.0],
+        ];
+        let choose = |n: usize, k: usize| BINOMIAL.get(n).and_then(|row| row.get(k)).copied().unwrap_or(0.0);
+        let power = |base: f64, exponent: usize| (0..exponent).fold(1.0, |product, _| product * base);
+        let mut moved = self.clone();
+        for (place, sum) in moved.sums.iter_mut().enumerate() {
+            let (i, j) = (place / ROW, place % ROW);
+            if i + j > ORDER {
+                continue;
+            }
+            *sum = 0.0;
+            for (k, l) in (0..=i).flat_map(|k| (0..=j).map(move |l| (k, l))) {
+                *sum += choose(i, k) * choose(j, l) * power(-x, i - k) * power(-y, j - l) * self.sum(k, l);
+            }
+        }
+        moved.scale.x += x * self.scale.unit;
+        moved.scale.y += y * self.scale.unit;
+        moved
+    }
+
+    /// An ellipse found in this scale, in volts.
+    pub(super) fn in_volts(&self, ellipse: &Ellipse) -> Ellipse {
+        Ellipse {
+            amplitude_v: ellipse.amplitude_v * self.scale.unit,
+            offset_cosine_v: ellipse.offset_cosine_v * self.scale.unit + self.scale.x,
+            offset_sine_v: ellipse.offset_sine_v * self.scale.unit + self.scale.y,
+            ..*ellipse
+        }
+    }
+
+    fn block(&self, xs: &[f64], ys: &[f64]) -> [f64; 14] {
+        let mut lanes = [[0.0; LANES]; 14];
+        let factor = 1.0 / self.scale.unit;
+        let add = |lanes: &mut [[f64; LANES]; 14], lane: usize, x: f64, y: f64| {
+            let (x, y) = ((x - self.scale.x) * factor, (y - self.scale.y) * factor);
+            let (xx, xy, yy) = (x * x, x * y, y * y);
+            let powers =
+                [x, y, xx, xy, yy, xx * x, xx * y, x * yy, yy * y, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy];
+            for (sums, power) in lanes.iter_mut().zip(powers) {
+                if let Some(sum) = sums.get_mut(lane) {
+                    *sum += power;
+                }
+            }
+        };
+        let (pairs, rest) = xs.as_chunks::<LANES>();
+        let (pairs_y, rest_y) = ys.as_chunks::<LANES>();
+        for (x, y) in pairs.iter().zip(pairs_y) {
+            for lane in 0..LANES {
+                if let (Some(x), Some(y)) = (x.get(lane), y.get(lane)) {
+                    add(&mut lanes, lane, *x, *y);
+                }
+            }
+        }
+        for (x, y) in rest.iter().zip(rest_y) {
+            add(&mut lanes, 0, *x, *y);
+        }
+        lanes.map(|sums| sums.iter().sum())
+    }
+}
+
+impl Extremes {
+    /// Not-a-numbers are passed over; they show in the sums.
+    fn of(sine: &[f64], cosine: &[f64]) -> Self {
+        let ((least_x, most_x), (least_y, most_y)) = (extremes(cosine), extremes(sine));
+        Extremes { least: (least_x, least_y), most: (most_x, most_y) }
+    }
+}
+
+fn extremes(values: &[f64]) -> (f64, f64) {
+    let (groups, rest) = values.as_chunks::<4>();
+    let mut least = [f64::INFINITY; 4];
+    let mut most = [f64::NEG_INFINITY; 4];
+    for group in groups {
+        for ((least, most), value) in least.iter_mut().zip(&mut most).zip(group) {
+            *least = if value < least { *value } else { *least };
+            *most = if value > most { *value } else { *most };
+        }
+    }
+    let all = |start: [f64; 4], choose: fn(f64, f64) -> f64| start.iter().chain(rest).copied().fold(start[0], choose);
+    (all(least, f64::min), all(most, f64::max))
+}

@@ -1,0 +1,152 @@
+//! Speed and acceleration from unwrapped positions: differences over a stretch of time, not over a number of samples, so
+//! that a faster poll does not make them noisier. Never looks across a break.
+
+use std::collections::VecDeque;
+
+use super::Time;
+
+/// Follows unwrapped positions and tells how fast they change.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Nanoseconds, at least 1.
+    window: i64,
+    /// Positions of the last two windows, the oldest first.
+    recent: VecDeque<(Time, i64)>,
+}
+
+/// How a position changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rates {
+    /// Steps/s, averaged over the last window, so it belongs to the middle of it; `None` until a window is over.
+    pub speed: Option<f64>,
+    /// Steps/s², from the last two windows; `None` until two windows are over.
+    pub acceleration: Option<f64>,
+}
+
+impl Motion {
+    /// Positions closer than this fraction of a window are not all kept: bounds memory at any rate.
+    const RESOLUTION: i64 = 1024;
+
+    /// Averages over `window` nanoseconds (at least 1), or over one sample where they come more slowly than that.
+    pub fn over(window: i64) -> Self {
+        Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
+    }
+
+    /// Begins anew: what comes next is not connected to what was.
+    pub fn reset(&mut self) {
+        self.recent.clear();
+    }
+
+    /// The next position in steps. A position that is not later than the one before tells nothing.
+    pub fn next(&mut self, time: Time, steps: i64) -> Rates {
+        if self.recent.back().is_some_and(|(before, _)| time <= *before) {
+            return Rates::default();
+        }
+        let middle = self.before(time.plus(-self.window));
+        let oldest = middle.and_then(|(middle, _)| self.before(middle.plus(-self.window)));
+        let speed = middle.map(|middle| slope(middle, (time, steps)));
+        let acceleration = match (speed, middle, oldest) {
+            (Some(speed), Some(middle), Some(oldest)) => {
+                // The two slopes belong to the middles of their stretches.
+                let apart = time.seconds_since(oldest.0) / 2.0;
+                Some((speed - slope(oldest, middle)) / apart)
+            }
+            _ => None,
+        };
+        self.keep(time, steps);
+        Rates { speed, acceleration }
+    }
+
+    /// The newest position at or before `time`.
+    fn before(&self, time: Time) -> Option<(Time, i64)> {
+        let after = self.recent.partition_point(|(at, _)| *at <= time);
+        self.recent.get(after.checked_sub(1)?).copied()
+    }
+
+    fn keep(&mut self, time: Time, steps: i64) {
+        // The last but one stands for what is close to it; the last is always kept, as the next may come much later.
+        let crowded = self
+            .recent
+            .len()
+            .checked_sub(2)
+            .and_then(|at| self.recent.get(at))
+            .is_some_and(|(before, _)| time.nanoseconds_since(*before) < self.window / Self::RESOLUTION);
+        if crowded {
+            self.recent.pop_back();
+        }
+        self.recent.push_back((time, steps));
+        // One that is older than two windows has to stay: it is where a stretch begins.
+        let start = self.before(time.plus(-self.window)).and_then(|(middle, _)| self.before(middle.plus(-self.window)));
+        while let (Some(start), Some(first)) = (start, self.recent.front())
+            && first.0 < start.0
+        {
+            self.recent.pop_front();
+        }
+    }
+}
+
+/// Steps/s between two positions, the earlier first. The differences are exact before they are divided.
+fn slope(from: (Time, i64), to: (Time, i64)) -> f64 {
+    to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MILLISECOND: i64 = 1_000_000;
+
+    fn at(milliseconds: i64) -> Time {
+        Time::from_nanoseconds(milliseconds * MILLISECOND)
+    }
+
+    #[test]
+    fn a_steady_speed_is_exact_whatever_the_rate() {
+        for (label, period) in [("slow", 250), ("as the window", 100), ("fast", 1)] {
+            let mut motion = Motion::over(100 * MILLISECOND);
+            let days = 10 * 86_400_000;
+            let rates: Vec<Rates> =
+                (0..1000).map(|k| motion.next(at(days + k * period), (1 << 50) + k * period * 3)).collect();
+            assert_eq!(rates[0], Rates::default(), "{label}");
+            assert_eq!(rates[999], Rates { speed: Some(3000.0), acceleration: Some(0.0) }, "{label}");
+        }
+    }
+
+    #[test]
+    fn a_parabola_has_its_acceleration() {
+        let mut motion = Motion::over(50 * MILLISECOND);
+        let mut last = Rates::default();
+        // Uneven periods: 7 and 13 ms.
+        let mut now = 0;
+        for k in 0..100 {
+            last = motion.next(at(now), now * now);
+            now += if k % 2 == 0 { 7 } else { 13 };
+        }
+        // steps = t² in ms²: 2 steps/ms² are 2e6 steps/s².
+        assert!((last.acceleration.unwrap() - 2e6).abs() < 1e-3, "{last:?}");
+    }
+
+    #[test]
+    fn nothing_is_said_before_a_window_is_over_or_across_a_break() {
+        let mut motion = Motion::over(10 * MILLISECOND);
+        assert_eq!(motion.next(at(0), 0).speed, None);
+        assert_eq!(motion.next(at(9), 9).speed, None);
+        assert_eq!(motion.next(at(10), 10), Rates { speed: Some(1000.0), acceleration: None });
+        assert_eq!(motion.next(at(10), 11), Rates::default());
+        motion.reset();
+        assert_eq!(motion.next(at(30), 1_000_000).speed, None);
+        assert_eq!(motion.next(at(40), 1_000_000).speed, Some(0.0));
+    }
+
+    #[test]
+    fn memory_is_bounded_at_any_rate() {
+        let mut motion = Motion::over(1_000 * MILLISECOND);
+        let capacity = motion.recent.capacity();
+        let mut last = Rates::default();
+        for k in 0..300_000 {
+            last = motion.next(Time::from_nanoseconds(k * 10_000), k);
+        }
+        assert_eq!(motion.recent.capacity(), capacity);
+        assert!((last.speed.unwrap() - 100_000.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,182 @@
+//! Differential and integral non-linearity against a reference: the deviation inside one signal period (offset, gain,
+//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors; section 6
+//! of the project's sine/cosine reference, whose way of evaluating is taken: the mean over one period around each sample
+//! is the integral part, what remains is the differential part. Both are half of peak to peak: a ± value.
+
+/// Both non-linearities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nonlinearity {
+    /// DNL: ± deviation inside one period, in mechanical degrees.
+    pub differential_deg: f64,
+    /// INL: ± deviation of the mean over one period, in mechanical degrees.
+    pub integral_deg: f64,
+    /// Reference angle and both parts of the deviation, mean removed, in mechanical degrees; where a whole period lies
+    /// around the sample.
+    pub curve: Vec<Deviation>,
+    /// Revolutions that the curve covers; INL speaks for a whole one only from 1 on.
+    pub revolutions: f64,
+}
+
+/// The deviation at one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Reference in mechanical degrees.
+    pub reference_deg: f64,
+    /// What remains beside the mean over a period, in mechanical degrees.
+    pub differential_deg: f64,
+    /// The mean over a period, in mechanical degrees.
+    pub integral_deg: f64,
+}
+
+/// Why it cannot be told.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NonlinearityError {
+    /// The reference does not run in one direction at this sample.
+    #[error("the reference does not run on at sample {index}")]
+    NotMonotonic {
+        /// Its index, from 0.
+        index: usize,
+    },
+    /// Less than two periods, or fewer than four samples in one.
+    #[error("two periods with at least four samples each are needed")]
+    TooLittle,
+    /// A sample is not a finite number, or there are no periods.
+    #[error("a sample is not a number")]
+    NotFinite,
+}
+
+/// Compares measured and reference angles in mechanical degrees, both running on without wrapping; `periods` is the
+/// number of signal periods in a revolution.
+///
+/// # Errors
+/// [`NonlinearityError`] where the reference turns back, or there is too little of it.
+pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result<Nonlinearity, NonlinearityError> {
+    let count = measured.len().min(reference.len());
+    let (measured, reference) = (measured.get(..count).unwrap_or_default(), reference.get(..count).unwrap_or_default());
+    let finite = measured.iter().chain(reference).all(|value| value.is_finite());
+    let (Some(first), Some(last)) = (reference.first(), reference.last()) else {
+        return Err(NonlinearityError::TooLittle);
+    };
+    if !finite || periods == 0 {
+        return Err(NonlinearityError::NotFinite);
+    }
+    let direction = (last - first).signum();
+    let forward = |pair: &[f64]| matches!(pair, [a, b] if (b - a) * direction > 0.0);
+    if let Some(before) = reference.windows(2).position(|pair| !forward(pair)) {
+        return Err(NonlinearityError::NotMonotonic { index: before + 1 });
+    }
+    let period_deg = 360.0 / f64::from(periods);
+    let covered = (last - first).abs();
+    if covered < 2.0 * period_deg || (count as f64) < 4.0 * covered / period_deg {
+        return Err(NonlinearityError::TooLittle);
+    }
+    let errors: Vec<f64> = measured.iter().zip(reference).map(|(measured, reference)| measured - reference).collect();
+    let curve = split(&errors, reference, period_deg, direction);
+    let half_range = |part: fn(&Deviation) -> f64| {
+        let ends = curve
+            .iter()
+            .map(part)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        (ends.1 - ends.0) / 2.0
+    };
+    Ok(Nonlinearity {
+        differential_deg: half_range(|deviation| deviation.differential_deg),
+        integral_deg: half_range(|deviation| deviation.integral_deg),
+        revolutions: covered / 360.0,
+        curve,
+    })
+}
+
+/// The mean over one period around each sample that has one: the integral of the straight lines between the samples, so
+/// that where they lie in the period makes no difference.
+fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
+    let start = reference.first().copied().unwrap_or(0.0);
+    // Angles from the start, growing whatever the direction.
+    let place = |index: usize| reference.get(index).map(|angle| (angle - start) * direction);
+    let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+    let error = |index: usize| errors.get(index).copied().unwrap_or(0.0) - mean;
+    let mut areas = Vec::with_capacity(errors.len());
+    let mut area = 0.0;
+    for index in 0..errors.len() {
+        if let (Some(before), Some(here)) = (index.checked_sub(1).and_then(place), place(index)) {
+            area += (here - before) * (error(index - 1) + error(index)) / 2.0;
+        }
+        areas.push(area);
+    }
+    let end = place(errors.len().saturating_sub(1)).unwrap_or(0.0);
+    // The area up to any angle; `from` walks along with it.
+    let area_to = |angle: f64, from: &mut usize| {
+        while place(*from + 1).is_some_and(|next| next <= angle) {
+            *from += 1;
+        }
+        let (here, next) = (place(*from).unwrap_or(0.0), place(*from + 1).unwrap_or(end));
+        let share = if next > here { (angle - here) / (next - here) } else { 0.0 };
+        let height = error(*from) + (error(*from + 1) - error(*from)) * share / 2.0;
+        areas.get(*from).copied().unwrap_or(0.0) + (angle - here) * height
+    };
+    let (mut low, mut high) = (0, 0);
+    let mut curve = Vec::new();
+    for (index, angle) in reference.iter().enumerate() {
+        let here = (angle - start) * direction;
+        let (from, to) = (here - period_deg / 2.0, here + period_deg / 2.0);
+        if from < 0.0 || to > end {
+            continue;
+        }
+        let integral_deg = (area_to(to, &mut high) - area_to(from, &mut low)) / period_deg;
+        curve.push(Deviation { reference_deg: *angle, differential_deg: error(index) - integral_deg, integral_deg });
+    }
+    curve
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
+    fn measured(count: usize, revolutions: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
+        (0..count)
+            .map(|at| {
+                let turn = revolutions * at as f64 / count as f64;
+                let error = 0.02 * (TAU * turn).sin() + 0.003 * (TAU * periods * turn + 0.4).cos();
+                (turn * 360.0 + 17.0 + error, turn * 360.0)
+            })
+            .unzip()
+    }
+
+    #[test]
+    fn the_two_parts_are_told_apart_in_both_directions() {
+        let (values, reference) = measured(40_000, 1.1, 128.0);
+        let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
+        for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
+            let told = nonlinearity(&values, &reference, 128).unwrap();
+            // The mean over 1/128 revolution lessens a sine of one revolution by 1e-4 of itself.
+            assert!((told.integral_deg - 0.02).abs() < 5e-6, "{}", told.integral_deg);
+            assert!((told.differential_deg - 0.003).abs() < 5e-6, "{}", told.differential_deg);
+            assert!((told.revolutions - 1.1).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_period_need_not_be_a_whole_number_of_samples() {
+        let (values, reference) = measured(1111, 1.0, 16.0);
+        let told = nonlinearity(&values, &reference, 16).unwrap();
+        // The mean over 1/16 revolution takes (π/16)²/6 of a sine of one revolution, which the differential part gets.
+        let leaked = 0.02 * (TAU / 32.0).powi(2) / 6.0;
+        assert!((told.differential_deg - leaked - 0.003).abs() < 3e-5, "{}", told.differential_deg);
+        assert!((told.integral_deg / 0.02 - 1.0).abs() < 0.02, "{}", told.integral_deg);
+    }
+
+    #[test]
+    fn what_cannot_be_told_is_refused() {
+        let (values, mut reference) = measured(1000, 1.0, 16.0);
+        assert_eq!(nonlinearity(&values[..100], &reference[..100], 16), Err(NonlinearityError::TooLittle));
+        assert_eq!(nonlinearity(&values, &reference, 512), Err(NonlinearityError::TooLittle));
+        assert_eq!(nonlinearity(&values, &reference, 0), Err(NonlinearityError::NotFinite));
+        assert_eq!(nonlinearity(&[], &[], 16), Err(NonlinearityError::TooLittle));
+        reference[500] = reference[499];
+        assert_eq!(nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotMonotonic { index: 500 }));
+        reference[500] = f64::NAN;
+        assert_eq!(nonlinearity(&values, &reference, 16), Err(NonlinearityError::NotFinite));
+    }
+}

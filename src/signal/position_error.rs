@@ -1,0 +1,249 @@
+//! The position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
+//! SICK 8010701, definitions of errors (what offset, gain, phase and harmonics do inside a period); section 6 of the
+//! project's sine/cosine reference.
+//!
+//! Without a reference encoder the motion is the reference: over a few periods a shaft turns along a straight line or a
+//! parabola in time, so that what repeats with the period is error. Both are fitted in one: a motion for each segment of
+//! the capture, and eight harmonics of the corrected angle for all. Where the motion is no such line, or there is too little
+//! of it, the distance from the ellipse stands for the error: what distorts one distorts the other by as much.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{SMatrix, SVector};
+
+use super::ellipse::Ellipse;
+
+/// Harmonics of the period that are told apart.
+pub const HARMONICS: usize = 8;
+
+/// The error over one period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionError {
+    /// As measured, in electrical degrees, at [`POINTS`] evenly spread angles; its mean is zero.
+    pub raw_deg: Vec<f64>,
+    /// What remains after the correction, likewise.
+    pub corrected_deg: Vec<f64>,
+    /// Where the remaining error comes from.
+    pub basis: Basis,
+    /// Peak to peak of what remains, in electrical degrees.
+    pub corrected_pp_deg: f64,
+}
+
+/// What the remaining error was measured against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Basis {
+    /// A steady motion, from which the samples keep this far beside the harmonics (noise), rms in electrical degrees.
+    Motion {
+        /// Rms in electrical degrees.
+        noise_deg: f64,
+    },
+    /// The motion was not steady, or too short: the distance from the ellipse.
+    Ellipse,
+}
+
+/// Points of a curve.
+pub const POINTS: usize = 720;
+
+/// Sine and cosine of each harmonic.
+const TERMS: usize = 2 * HARMONICS;
+/// Periods in a segment with a motion of its own.
+const SEGMENT_PERIODS: f64 = 4.0;
+/// Most segments that are looked at; they are spread over the capture.
+const SEGMENTS: usize = 32;
+/// Most samples of a segment; of more, every so many.
+const SEGMENT_SAMPLES: usize = 4096;
+/// Fewest samples for a fit of the motion with all harmonics.
+const LEAST_SAMPLES: usize = 3 * TERMS;
+/// Least periods: of less, harmonics and motion are not told apart.
+const LEAST_PERIODS: f64 = 0.95;
+/// Noise beside the harmonics, over what the distance from the ellipse lets expect, beyond which no motion was steady.
+const STEADY: f64 = 3.0;
+
+type Normal = SMatrix<f64, TERMS, TERMS>;
+type Terms = SVector<f64, TERMS>;
+
+/// A capture on its ellipse.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples<'a> {
+    /// Times in seconds; others than growing ones are not used, the samples then count as evenly spaced.
+    pub time_s: &'a [f64],
+    /// Sine channel in volts.
+    pub sine_v: &'a [f64],
+    /// Cosine channel in volts.
+    pub cosine_v: &'a [f64],
+}
+
+impl PositionError {
+    /// The error of samples on their ellipse; `periods` and `residual_rms` (a share of the amplitude) as their coverage
+    /// says.
+    pub fn of(samples: Samples<'_>, ellipse: &Ellipse, periods: f64, residual_rms: f64) -> Self {
+        let expected_deg = residual_rms.to_degrees();
+        let found =
+            fit(&samples, ellipse, periods).filter(|(_, noise_deg)| *noise_deg <= STEADY * expected_deg.max(0.01));
+        let corrected_deg: Vec<f64> = match &found {
+            Some((terms, _)) => angles().map(|angle| harmonics_at(angle).dot(terms).to_degrees()).collect(),
+            None => vec![0.0; POINTS],
+        };
+        let of_ellipse = angles().map(|angle| {
+            let (sine, cosine) = ellipse.at(angle);
+            (sine.atan2(cosine) - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
+        });
+        let mut raw_deg: Vec<f64> =
+            of_ellipse.zip(&corrected_deg).map(|(error, left)| error.to_degrees() + left).collect();
+        let mean = raw_deg.iter().sum::<f64>() / POINTS as f64;
+        raw_deg.iter_mut().for_each(|error| *error -= mean);
+        let (basis, corrected_pp_deg) = match found {
+            Some((_, noise_deg)) => (Basis::Motion { noise_deg }, peak_to_peak(&corrected_deg)),
+            // One sine with this rms.
+            None => (Basis::Ellipse, 2.0 * 2.0_f64.sqrt() * expected_deg),
+        };
+        PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
+    }
+
+    /// Peak to peak as measured, in electrical degrees.
+    pub fn raw_pp_deg(&self) -> f64 {
+        peak_to_peak(&self.raw_deg)
+    }
+}
+
+/// Peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
+pub fn harmonics(curve: &[f64]) -> [f64; HARMONICS] {
+    let count = curve.len().max(1) as f64;
+    let mut order = 0.0;
+    [0.0; HARMONICS].map(|_| {
+        order += 1.0;
+        let angle = |at: usize| TAU * order * at as f64 / count;
+        let (sine, cosine) = curve.iter().enumerate().fold((0.0, 0.0), |(sine, cosine), (at, value)| {
+            (sine + value * angle(at).sin(), cosine + value * angle(at).cos())
+        });
+        2.0 / count * f64::hypot(sine, cosine)
+    })
+}
+
+fn angles() -> impl Iterator<Item = f64> {
+    (0..POINTS).map(|at| TAU * at as f64 / POINTS as f64)
+}
+
+fn peak_to_peak(curve: &[f64]) -> f64 {
+    let (low, high) =
+        curve.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    (high - low).max(0.0)
+}
+
+fn harmonics_at(angle: f64) -> Terms {
+    let (sine, cosine) = angle.sin_cos();
+    let (mut s, mut c) = (0.0, 1.0);
+    let mut terms = Terms::zeros();
+    for pair in terms.as_mut_slice().chunks_exact_mut(2) {
+        (s, c) = (s * cosine + c * sine, c * cosine - s * sine);
+        if let [first, second] = pair {
+            (*first, *second) = (s, c);
+        }
+    }
+    terms
+}
+
+/// Harmonics in radians, and the rms of what is left in degrees; `None` where there is too little.
+fn fit(samples: &Samples<'_>, ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
+    let count = samples.sine_v.len().min(samples.cosine_v.len());
+    if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
+        return None;
+    }
+    let timed = samples.time_s.len() >= count && samples.time_s.windows(2).all(|pair| matches!(pair, [a, b] if a < b));
+    let segments = ((periods / SEGMENT_PERIODS) as usize).clamp(1, SEGMENTS.min(count / LEAST_SAMPLES).max(1));
+    let length = if segments == 1 && periods < 2.0 * SEGMENT_PERIODS {
+        count
+    } else {
+        ((count as f64 * SEGMENT_PERIODS / periods) as usize).clamp(LEAST_SAMPLES.min(count), count)
+    };
+    let bends = periods >= 2.0;
+    let mut sums = Sums { normal: Normal::zeros(), right: Terms::zeros(), squares: 0.0, count: 0, motions: 0 };
+    for segment in 0..segments {
+        let start = if segments == 1 { 0 } else { (count - length) * segment / (segments - 1) };
+        sums.add(samples, ellipse, start..start + length, timed, bends);
+    }
+    sums.solve()
+}
+
+/// Normal equations of the harmonics, the motions already taken out.
+struct Sums {
+    normal: Normal,
+    right: Terms,
+    squares: f64,
+    count: usize,
+    motions: usize,
+}
+
+impl Sums {
+    fn add(
+        &mut self,
+        samples: &Samples<'_>,
+        ellipse: &Ellipse,
+        range: std::ops::Range<usize>,
+        timed: bool,
+        bends: bool,
+    ) {
+        let stride = (range.len() / SEGMENT_SAMPLES).max(1);
+        let correction = ellipse.correction();
+        let part = |values: &'_ [f64]| values.get(range.clone()).unwrap_or_default().to_vec();
+        let (sine, cosine) = (part(samples.sine_v), part(samples.cosine_v));
+        let times = if timed { part(samples.time_s) } else { (0..range.len()).map(|at| at as f64).collect() };
+        let (Some(begin), Some(end)) = (times.first(), times.last()) else { return };
+        let (middle, half) = ((begin + end) / 2.0, ((end - begin) / 2.0).max(f64::MIN_POSITIVE));
+        // Motion: 1, t, t² with t from −1 to 1.
+        let mut motion = SMatrix::<f64, 3, 3>::zeros();
+        let mut mixed = SMatrix::<f64, 3, TERMS>::zeros();
+        let mut of_motion = SVector::<f64, 3>::zeros();
+        let mut normal = Normal::zeros();
+        let mut right = Terms::zeros();
+        let (mut turned, mut last) = (0.0, None);
+        for ((time, y), x) in times.iter().zip(&sine).zip(&cosine).step_by(stride) {
+            let (y, x) = correction.apply(*y, *x);
+            let angle = y.atan2(x);
+            let step = angle - last.unwrap_or(angle);
+            turned += step - TAU * (step / TAU).round();
+            last = Some(angle);
+            let t = (time - middle) / half;
+            let powers = SVector::<f64, 3>::new(1.0, t, if bends { t * t } else { 0.0 });
+            let terms = harmonics_at(angle);
+            motion += powers * powers.transpose();
+            mixed += powers * terms.transpose();
+            of_motion += powers * turned;
+            normal.syger(1.0, &terms, &terms, 1.0);
+            right += terms * turned;
+            self.squares += turned * turned;
+            self.count += 1;
+        }
+        normal.fill_upper_triangle_with_lower_triangle();
+        if !bends && let Some(unused) = motion.get_mut((2, 2)) {
+            *unused = 1.0;
+        }
+        let Some(motion) = motion.cholesky() else { return };
+        self.normal += normal - mixed.transpose() * motion.solve(&mixed);
+        self.right += right - mixed.transpose() * motion.solve(&of_motion);
+        self.squares -= of_motion.dot(&motion.solve(&of_motion));
+        self.motions += if bends { 3 } else { 2 };
+    }
+
+    fn solve(self) -> Option<(Terms, f64)> {
+        /// Smallest share of the largest eigenvalue that still says something: few samples in a period cannot tell high
+        /// harmonics from low ones.
+        const RANK: f64 = 1e-4;
+        let parts = self.normal.symmetric_eigen();
+        let largest = parts.eigenvalues.max();
+        let mut terms = Terms::zeros();
+        for (value, vector) in parts.eigenvalues.iter().zip(parts.eigenvectors.column_iter()) {
+            if *value > RANK * largest {
+                terms += vector * (vector.dot(&self.right) / value);
+            }
+        }
+        let left = (self.squares - terms.dot(&self.right)).max(0.0);
+        let free = self.count.checked_sub(self.motions + TERMS).filter(|free| *free > 0)?;
+        let noise = (left / free as f64).sqrt().to_degrees();
+        noise.is_finite().then_some((terms, noise))
+    }
+}
+
+#[cfg(test)]
+#[path = "position_error/tests.rs"]
+mod tests;

@@ -1,0 +1,162 @@
+//! Is a sine/cosine signal good enough: the length of the amplitude vector √(sin² + cos²), offsets, gain ratio and phase
+//! error against their limits. SICK 8010701 for the amplitudes; section 2 of the project's sine/cosine reference, whose
+//! other limits are assumptions (U) and can be changed here.
+
+use super::ellipse::Ellipse;
+
+/// A verdict, from good to bad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Within the limits.
+    Ok,
+    /// Outside; the position is still right.
+    Warn,
+    /// So far outside that a wire is broken or the angle is wrong.
+    Fault,
+}
+
+/// Limits of a family of encoders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Least and largest amplitude (peak, differential) that is good, in volts.
+    pub ok_v: (f64, f64),
+    /// Amplitudes outside these are a fault, in volts.
+    pub fault_v: (f64, f64),
+    /// Largest offset as a share of the amplitude.
+    pub offset: f64,
+    /// Least and largest gain ratio.
+    pub gain_ratio: (f64, f64),
+    /// Largest phase error in degrees, whatever its sign.
+    pub phase_deg: f64,
+    /// Largest deviation from the ellipse, rms, as a share of the amplitude.
+    pub residual: f64,
+}
+
+/// What is out of its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Finding {
+    /// An amplitude (peak) in volts, the smaller or larger of the two channels.
+    Amplitude {
+        /// Found, peak, in volts.
+        volts: f64,
+        /// Good from, good to, in volts.
+        ok_v: (f64, f64),
+        /// How bad.
+        verdict: Verdict,
+    },
+    /// Offset of the sine channel as a share of the amplitude.
+    OffsetSine(f64),
+    /// Offset of the cosine channel as a share of the amplitude.
+    OffsetCosine(f64),
+    /// Amplitude of the cosine over that of the sine.
+    GainRatio(f64),
+    /// Phase error in degrees.
+    PhaseError(f64),
+    /// The samples keep so far from the ellipse, rms, as a share of the amplitude: noise, interference, harmonics.
+    Residual(f64),
+}
+
+/// Rounding of the last place must not turn a value on the limit into one beyond it.
+const SLACK: f64 = 1e-9;
+
+impl Limits {
+    /// HIPERFACE: 0.9 … 1.1 V peak to peak.
+    pub const HIPERFACE: Limits = Limits {
+        ok_v: (0.45, 0.55),
+        fault_v: (0.30, 0.70),
+        offset: 0.05,
+        gain_ratio: (0.9, 1.1),
+        phase_deg: 5.0,
+        residual: 0.02,
+    };
+
+    /// AFS/AFM60: 0.8 … 1.2 V peak to peak.
+    pub const AFS_AFM60: Limits = Limits { ok_v: (0.40, 0.60), ..Limits::HIPERFACE };
+
+    /// TTK70: 0.9 … 1.1 V peak to peak.
+    pub const TTK70: Limits = Limits::HIPERFACE;
+
+    /// Judges the length of one amplitude vector; `None` is no signal at all. One vector also holds offset and gain error,
+    /// so that the least and the largest over a period are what to judge.
+    pub fn vector(&self, sine: f64, cosine: f64) -> Option<Verdict> {
+        let length = sine.hypot(cosine);
+        if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude(length)) }
+    }
+
+    /// Judges an amplitude (peak) in volts.
+    pub fn amplitude(&self, volts: f64) -> Verdict {
+        if within(volts, self.ok_v) {
+            Verdict::Ok
+        } else if within(volts, self.fault_v) {
+            Verdict::Warn
+        } else {
+            Verdict::Fault
+        }
+    }
+
+    /// What of an ellipse is out of its limits, in the order of section 2. `residual_rms` is relative to the amplitude.
+    pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<Finding> {
+        let amplitude = ellipse.amplitude_v;
+        let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude(volts), volts));
+        let (verdict, volts) = if worst[1].0 > worst[0].0 { worst[1] } else { worst[0] };
+        let offsets = [ellipse.offset_sine_v / amplitude, ellipse.offset_cosine_v / amplitude];
+        let beyond = |value: f64, limit: f64| !within(value, (-limit, limit));
+        [
+            (verdict != Verdict::Ok, Finding::Amplitude { volts, ok_v: self.ok_v, verdict }),
+            (beyond(offsets[0], self.offset), Finding::OffsetSine(offsets[0])),
+            (beyond(offsets[1], self.offset), Finding::OffsetCosine(offsets[1])),
+            (!within(ellipse.gain_ratio, self.gain_ratio), Finding::GainRatio(ellipse.gain_ratio)),
+            (beyond(ellipse.phase_error_deg(), self.phase_deg), Finding::PhaseError(ellipse.phase_error_deg())),
+            (beyond(residual_rms, self.residual), Finding::Residual(residual_rms)),
+        ]
+        .into_iter()
+        .filter_map(|(out, finding)| out.then_some(finding))
+        .collect()
+    }
+}
+
+fn within(value: f64, (least, most): (f64, f64)) -> bool {
+    value >= least - SLACK && value <= most + SLACK
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amplitudes_of_section_8() {
+        let limits = Limits::HIPERFACE;
+        let cases = [
+            (0.45, 0.0, Some(Verdict::Ok)),
+            (0.44, 0.0, Some(Verdict::Warn)),
+            (0.25, 0.0, Some(Verdict::Fault)),
+            (0.0, 0.0, None),
+            (0.33, -0.44, Some(Verdict::Ok)),
+            (0.0, -0.7, Some(Verdict::Warn)),
+            (0.5, 0.5, Some(Verdict::Fault)),
+            (f64::NAN, 0.5, None),
+        ];
+        for (sine, cosine, expected) in cases {
+            assert_eq!(limits.vector(sine, cosine), expected, "{sine} {cosine}");
+        }
+        assert_eq!(Limits::AFS_AFM60.vector(0.0, 0.4), Some(Verdict::Ok));
+        assert_eq!(Limits::TTK70.vector(0.0, 0.4), Some(Verdict::Warn));
+    }
+
+    #[test]
+    fn an_ellipse_is_judged_by_its_parameters() {
+        let good = Ellipse {
+            amplitude_v: 0.5,
+            offset_cosine_v: 0.025,
+            offset_sine_v: -0.025,
+            gain_ratio: 1.1,
+            phase_error_rad: -5.0_f64.to_radians(),
+        };
+        let limits = Limits::HIPERFACE;
+        assert_eq!(limits.judge(&good, 0.02), []);
+        let bad = Ellipse { amplitude_v: 0.5, gain_ratio: 2.0, offset_sine_v: 0.03, ..good };
+        let amplitude = Finding::Amplitude { volts: 0.25, ok_v: (0.45, 0.55), verdict: Verdict::Fault };
+        let expected = [amplitude, Finding::OffsetSine(0.06), Finding::GainRatio(2.0), Finding::Residual(0.03)];
+        assert_eq!(limits.judge(&bad, 0.03), expected);
+    }
+}

@@ -1,0 +1,203 @@
+//! The absolute position of the parameter channel and the angle of the analogue signals, made one fine position. SICK
+//! 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
+//!
+//! Both know the last 1/32 of a period; the coarse value is corrected by one period towards the smaller difference, which
+//! tolerates half a period of drift and delay. How the zero of one lies to that of the other is not told by the manual
+//! (U): it is an offset that can be set or [measured](measure_offset).
+
+use std::f64::consts::TAU;
+
+use super::arctan::Phase;
+use super::quality::Verdict;
+
+/// Steps of the absolute position in one period.
+pub const STEPS: u64 = 32;
+
+/// How two positions are brought together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Synchroniser {
+    /// Periods in the whole range: periods a revolution times revolutions, at least 1.
+    pub periods: u64,
+    /// How much the absolute position is ahead when both are right, in steps of 1/32 period; 0 where nothing is known.
+    pub offset_steps: f64,
+    /// The absolute position means the middle of its step instead of its beginning.
+    pub half_step: bool,
+}
+
+/// A fine position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Synchronised {
+    /// Whole periods, below the range.
+    pub period: u64,
+    /// Position inside the period.
+    pub phase: Phase,
+    /// Periods by which the absolute position was corrected: −1, 0 or 1.
+    pub correction: i8,
+    /// Absolute minus fine position, in periods, within ±½.
+    pub residual_periods: f64,
+    /// Warns beyond 8/32 (the encoder's own drift is up to 4/32), a fault beyond 14/32 (U).
+    pub verdict: Verdict,
+}
+
+/// Both positions are just half a period apart: either neighbour could be right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("absolute and analogue position are half a period apart")]
+pub struct Unsynchronisable;
+
+impl Synchroniser {
+    /// Without offset, for so many periods in the whole range.
+    pub fn new(periods: u64) -> Self {
+        Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
+    }
+
+    /// Brings an absolute position in steps of 1/32 period and an analogue phase together.
+    ///
+    /// # Errors
+    /// [`Unsynchronisable`] at exactly half a period.
+    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<Synchronised, Unsynchronisable> {
+        /// Rounding may move half a period by this, in steps.
+        const SLACK: f64 = 1e-9;
+        let half = if self.half_step { 0.5 } else { 0.0 };
+        let low = (absolute % STEPS) as f64 + half - self.offset_steps;
+        let difference = low - STEPS as f64 * phase.periods();
+        // With an offset the difference may be several periods; one of them is what remains to be decided.
+        let periods = difference / STEPS as f64;
+        let nearest = periods.round();
+        let residual = periods - nearest;
+        if (residual.abs() - 0.5).abs() * (STEPS as f64) < SLACK || !residual.is_finite() {
+            return Err(Unsynchronisable);
+        }
+        let range = self.periods.max(1);
+        let forward = (nearest as i64).rem_euclid(i64::try_from(range).unwrap_or(i64::MAX)).unsigned_abs();
+        let period = ((u128::from(absolute / STEPS) + u128::from(forward)) % u128::from(range)) as u64;
+        let off = residual.abs() * STEPS as f64;
+        let verdict = match off {
+            off if off > 14.0 => Verdict::Fault,
+            off if off > 8.0 => Verdict::Warn,
+            _ => Verdict::Ok,
+        };
+        Ok(Synchronised { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
+    }
+
+    /// The fine position from a counter of quarters of a period (quadrature counter).
+    pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
+        let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
+        let range = u128::from(self.periods.max(1));
+        // −1, 0 or 1: one range more keeps it positive.
+        let period = (u128::from(quarters / 4) + range).saturating_add_signed(nearest as i128) % range;
+        (period as u64, phase)
+    }
+}
+
+impl Synchronised {
+    /// The fine position in periods.
+    pub fn periods(&self) -> f64 {
+        self.period as f64 + self.phase.periods()
+    }
+
+    /// The fine position in steps of 2^`bits` a period (at most 32).
+    pub fn steps(&self, bits: u32) -> u128 {
+        (u128::from(self.period) << bits.min(32)) + u128::from(self.phase.step(bits))
+    }
+}
+
+/// By how many steps of 1/32 period the absolute position is ahead on average: the mean over at least one turn of the
+/// differences, as angles, so that a difference of 31 steps is one of −1. `None` without samples, or where they cancel.
+pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
+    let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
+    for (absolute, phase) in samples {
+        let angle = TAU * ((absolute % STEPS) as f64 / STEPS as f64 - phase.periods());
+        sine += angle.sin();
+        cosine += angle.cos();
+        count += 1;
+    }
+    let sure = f64::hypot(sine, cosine) > 0.1 * count as f64;
+    (count > 0 && sure).then(|| sine.atan2(cosine) / TAU * STEPS as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn phase(periods: f64) -> Phase {
+        Phase::of_periods(periods).unwrap()
+    }
+
+    /// The table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
+    #[test]
+    fn cases_of_section_4() {
+        use Verdict::{Fault, Ok, Warn};
+        let rows = [
+            ("SKM36", 128 * 4096, 0x000E_0531, 0.5375, 0, 28_713.537_5, -0.0062, Ok),
+            ("lag", 1024, 0x2A5F, 0.02, 1, 339.02, -0.0512, Ok),
+            ("lead", 1024, 0x2A40, 0.97, -1, 337.97, 0.03, Ok),
+            ("mid", 1024, 0x2A4F, 0.47, 0, 338.47, -0.0013, Ok),
+            ("end of a revolution", 1024, 0x7FFF, 0.03, 1, 0.03, -0.0612, Ok),
+            ("start of a revolution", 1024, 0x0000, 0.96, -1, 1023.96, 0.04, Ok),
+            ("warn", 1024, 0x2A47, 0.47, 0, 338.47, -0.2513, Warn),
+            ("limit", 16, 0, 0.49, 0, 0.49, -0.49, Fault),
+            ("past the limit", 16, 0, 0.51, -1, 15.51, 0.49, Fault),
+        ];
+        for (label, periods, absolute, phi, k, fine, residual, verdict) in rows {
+            let told = Synchroniser::new(periods).synchronise(absolute, phase(phi)).unwrap();
+            assert_eq!((told.correction, told.verdict), (k, verdict), "{label}: {told:?}");
+            assert!((told.periods() - fine).abs() < 1e-9, "{label}: {told:?}");
+            assert!((told.residual_periods - residual).abs() < 6e-5, "{label}: {told:?}");
+        }
+        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(Unsynchronisable));
+    }
+
+    #[test]
+    fn sixteen_bits_of_interpolation() {
+        let told = Synchroniser::new(1024).synchronise(0x2A5F, phase(0.02)).unwrap();
+        assert_eq!(told.steps(16), 0x0153_051E);
+        let degrees = told.steps(16) as f64 * 360.0 / (1024.0 * 65_536.0);
+        assert!((degrees - 119.186_715).abs() < 5e-7, "{degrees}");
+    }
+
+    #[test]
+    fn counters_of_section_4() {
+        let rows = [(43, 0.76, 10), (44, 0.98, 10), (43, 0.02, 11), (45, 0.26, 11), (45, 0.24, 11), (0, 0.98, 1023)];
+        for (quarters, phi, period) in rows {
+            assert_eq!(
+                Synchroniser::new(1024).with_quadrature(quarters, phase(phi)),
+                (period, phase(phi)),
+                "{quarters}"
+            );
+        }
+    }
+
+    /// A true position with every delay below half a period gives itself back, wherever it lies.
+    #[test]
+    fn drift_below_half_a_period_is_corrected() {
+        let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(64) };
+        for step in 0..64 * 100 {
+            let fine = f64::from(step) / 100.0;
+            for drift in [-0.48, -0.2, 0.0, 0.2, 0.48] {
+                let absolute = ((fine + drift).rem_euclid(64.0) * 32.0) as u64;
+                let told = synchroniser.synchronise(absolute, phase(fine)).unwrap();
+                assert!((told.periods() - fine).abs() < 1e-9, "{fine} {drift}: {told:?}");
+                assert!((told.residual_periods - drift).abs() <= 0.5 / 32.0 + 1e-9, "{fine} {drift}: {told:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_fixed_offset_is_measured_and_taken_out() {
+        let pairs: Vec<(u64, Phase)> = (0..5000)
+            .map(|step| {
+                let fine = f64::from(step) * 0.0127;
+                (((fine + 0.55).rem_euclid(64.0) * 32.0) as u64, phase(fine))
+            })
+            .collect();
+        let offset = measure_offset(pairs.iter().copied()).unwrap();
+        // 0.55 periods are 17.6 steps, which is −14.4; a step says on average half of itself less.
+        assert!((offset - -14.9).abs() < 0.05, "{offset}");
+        let synchroniser = Synchroniser { offset_steps: offset, ..Synchroniser::new(64) };
+        for (absolute, phase) in pairs {
+            let told = synchroniser.synchronise(absolute, phase).unwrap();
+            assert!(told.residual_periods.abs() < 0.02, "{told:?}");
+        }
+        assert_eq!(measure_offset([]), None);
+    }
+}

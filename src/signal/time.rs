@@ -1,0 +1,70 @@
+//! The time of a sample: whole nanoseconds, so that differences stay exact after days. Reads no clock.
+
+use crate::units::Moment;
+
+/// A point in time in whole nanoseconds from an origin that the samples of one history share: the start of a session's
+/// clock, or the trigger of a capture (what lies before it is negative). Reaches 292 years to either side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Time(i64);
+
+impl Time {
+    /// The origin.
+    pub const ORIGIN: Time = Time(0);
+
+    /// The point `nanoseconds` after the origin.
+    pub const fn from_nanoseconds(nanoseconds: i64) -> Self {
+        Time(nanoseconds)
+    }
+
+    /// Nanoseconds since the origin.
+    pub const fn nanoseconds(self) -> i64 {
+        self.0
+    }
+
+    /// The point `nanoseconds` later; stays at the end of the range instead of wrapping.
+    pub const fn plus(self, nanoseconds: i64) -> Self {
+        Time(self.0.saturating_add(nanoseconds))
+    }
+
+    /// Nanoseconds from `origin` to here, negative when `origin` lies ahead. Exact.
+    pub const fn nanoseconds_since(self, origin: Time) -> i64 {
+        self.0.saturating_sub(origin.0)
+    }
+
+    /// Seconds from `origin` to here. The difference is taken before it is rounded: near `origin` nothing is lost.
+    pub fn seconds_since(self, origin: Time) -> f64 {
+        self.nanoseconds_since(origin) as f64 / 1e9
+    }
+}
+
+impl From<Moment> for Time {
+    /// The moment on its clock; the start of the clock is the origin.
+    fn from(moment: Moment) -> Self {
+        let elapsed = moment.since_start();
+        let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);
+        Time(seconds.saturating_mul(1_000_000_000).saturating_add(i64::from(elapsed.subsec_nanos())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_moment_keeps_its_nanoseconds() {
+        let ten_days = Duration::new(864_000, 1);
+        assert_eq!(Time::from(Moment::after_start(ten_days)).nanoseconds(), 864_000_000_000_001);
+        assert_eq!(Time::from(Moment::after_start(Duration::MAX)).nanoseconds(), i64::MAX);
+    }
+
+    #[test]
+    fn differences_are_exact_after_days() {
+        let late = Time::from_nanoseconds(864_000_000_000_000);
+        assert_eq!(late.plus(1).nanoseconds_since(late), 1);
+        assert_eq!(late.plus(1).seconds_since(late), 1e-9);
+        assert_eq!(late.nanoseconds_since(late.plus(1)), -1);
+        assert_eq!(Time::from_nanoseconds(i64::MAX).plus(1), Time::from_nanoseconds(i64::MAX));
+    }
+}

@@ -1,0 +1,134 @@
+//! Positions without the wrap: a rotary encoder counts from 0 to its range and begins again, which in a plot would be a
+//! spike of thousands of turns. Only for display and speed; what is written to a device never comes from here.
+
+/// Follows a position word beyond its range.
+#[derive(Clone, Copy, Debug)]
+pub struct Unwrap {
+    range: Option<i64>,
+    /// Last position word and what it was unwrapped to.
+    last: Option<(i64, i64)>,
+    gap: bool,
+}
+
+/// A position as it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unwrapped {
+    /// Steps; beyond the range after a wrap, negative below zero.
+    pub steps: i64,
+    /// How it came here from the sample before is not known: there was a gap, or the step was half the range, which may
+    /// have been either way. Not set for the first position of all.
+    pub broken: bool,
+}
+
+impl Unwrap {
+    /// An encoder that counts 0…`range` − 1 and begins again; `None` for a range below 2.
+    pub fn rotary(range: i64) -> Option<Self> {
+        (range >= 2).then_some(Unwrap { range: Some(range), last: None, gap: false })
+    }
+
+    /// An encoder without a wrap: its positions go through as they are.
+    pub fn linear() -> Self {
+        Unwrap { range: None, last: None, gap: false }
+    }
+
+    /// Samples are missing before the next one.
+    pub fn gap(&mut self) {
+        self.gap = true;
+    }
+
+    /// The next position word, which is taken as the shortest way from the one before, so a wrap is a step like any other.
+    /// `None` when it lies outside the range: such a word is no position, and counts as a gap.
+    pub fn next(&mut self, word: i64) -> Option<Unwrapped> {
+        if self.range.is_some_and(|range| !(0..range).contains(&word)) {
+            self.gap();
+            return None;
+        }
+        let gap = std::mem::take(&mut self.gap);
+        let next = match (self.last, self.range) {
+            (None, _) => Unwrapped { steps: word, broken: false },
+            (Some(_), None) => Unwrapped { steps: word, broken: gap },
+            (Some((before, steps)), Some(range)) => {
+                // 0…range − 1, and the shorter way round; both ways are equally long at exactly half.
+                let forward = (word - before).rem_euclid(range);
+                let backward = range - forward;
+                let step = if forward <= backward { forward } else { -backward };
+                Unwrapped { steps: steps.saturating_add(step), broken: gap || forward == backward }
+            }
+        };
+        self.last = Some((word, next.steps));
+        Some(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn follow(mut unwrap: Unwrap, words: &[i64]) -> Vec<(i64, bool)> {
+        words.iter().filter_map(|word| unwrap.next(*word)).map(|next| (next.steps, next.broken)).collect()
+    }
+
+    #[test]
+    fn a_wrap_is_a_step_like_any_other() {
+        let multiturn = 4096 * 4096;
+        let ring = Unwrap::rotary(multiturn).unwrap();
+        let forward = follow(ring, &[multiturn - 2, multiturn - 1, 0, 1, multiturn - 1]);
+        assert_eq!(forward.iter().map(|(steps, _)| steps - multiturn).collect::<Vec<_>>(), [-2, -1, 0, 1, -1]);
+        assert!(forward.iter().all(|(_, broken)| !broken));
+        assert_eq!(follow(ring, &[1, multiturn - 1, 0]), [(1, false), (-1, false), (0, false)]);
+    }
+
+    #[test]
+    fn half_the_range_may_be_either_way() {
+        let ring = Unwrap::rotary(100).unwrap();
+        assert_eq!(follow(ring, &[10, 59, 10]), [(10, false), (59, false), (10, false)]);
+        assert_eq!(follow(ring, &[10, 60]), [(10, false), (60, true)]);
+        assert_eq!(follow(ring, &[10, 61]), [(10, false), (-39, false)]);
+        let odd = Unwrap::rotary(5).unwrap();
+        assert_eq!(follow(odd, &[0, 2, 0, 3]), [(0, false), (2, false), (0, false), (-2, false)]);
+    }
+
+    #[test]
+    fn after_a_gap_the_way_is_not_known() {
+        let mut ring = Unwrap::rotary(100).unwrap();
+        ring.gap();
+        assert_eq!(ring.next(98), Some(Unwrapped { steps: 98, broken: false }));
+        ring.gap();
+        assert_eq!(ring.next(2), Some(Unwrapped { steps: 102, broken: true }));
+        assert_eq!(ring.next(3), Some(Unwrapped { steps: 103, broken: false }));
+        assert_eq!(ring.next(100), None);
+        assert_eq!(ring.next(-1), None);
+        assert_eq!(ring.next(4), Some(Unwrapped { steps: 104, broken: true }));
+    }
+
+    #[test]
+    fn a_linear_encoder_has_no_wrap() {
+        let mut linear = Unwrap::linear();
+        assert_eq!(follow(linear, &[-5, 1 << 40, 0]), [(-5, false), (1 << 40, false), (0, false)]);
+        linear.next(1);
+        linear.gap();
+        assert_eq!(linear.next(9), Some(Unwrapped { steps: 9, broken: true }));
+    }
+
+    #[test]
+    fn a_range_has_two_positions_at_least() {
+        assert!(Unwrap::rotary(1).is_none());
+        assert!(Unwrap::rotary(i64::MIN).is_none());
+    }
+
+    proptest! {
+        /// Any walk whose steps are below half the range comes back as it was.
+        #[test]
+        fn a_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
+            let mut truth = start % range;
+            let mut unwrap = Unwrap::rotary(range).unwrap();
+            prop_assert_eq!(unwrap.next(truth).unwrap().steps, truth);
+            for step in walk {
+                truth += (step * ((range - 1) / 2) as f64) as i64;
+                let next = unwrap.next(truth.rem_euclid(range)).unwrap();
+                prop_assert_eq!(next, Unwrapped { steps: truth, broken: false });
+            }
+        }
+    }
+}

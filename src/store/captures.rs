@@ -1,0 +1,114 @@
+//! Captures from files: read in pieces, with progress, and given up when that is wished.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::file_error::{FileError, FileProblem, FileTask};
+use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Layout, Wishes};
+
+/// Why a capture could not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReadCaptureError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It holds no capture.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// It was wished to give up.
+    #[error("given up")]
+    Cancelled,
+}
+
+/// Bytes read and bytes in all; what has no length (a pipe) tells 0 in all.
+pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
+
+/// Bytes of a piece. Between two, progress is told and the wish to give up is heard.
+const PIECE: usize = 1 << 20;
+
+/// Reads a capture and says how its table was understood.
+///
+/// # Errors
+/// [`ReadCaptureError`]: the file is missing, is no capture, or `cancel` was set.
+pub fn read_capture(
+    path: &Path,
+    wishes: &Wishes,
+    cancel: &AtomicBool,
+    progress: OnProgress<'_>,
+) -> Result<(Layout, Capture), ReadCaptureError> {
+    let failed = |error: io::Error| {
+        // Windows calls it "permission denied".
+        let problem = if path.is_dir() { FileProblem::IsFolder } else { error.into() };
+        problem.of(FileTask::Read, path)
+    };
+    let mut file = File::open(path).map_err(failed)?;
+    let total = file.metadata().map(|data| if data.is_file() { data.len() } else { 0 }).unwrap_or(0);
+    let mut piece = Vec::with_capacity(PIECE);
+    let mut import: Option<Import> = None;
+    let mut done = 0;
+    loop {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(ReadCaptureError::Cancelled);
+        }
+        piece.clear();
+        // A pipe gives what it has; the first piece has to hold the head.
+        let read = (&mut file).take(PIECE.max(HEAD) as u64).read_to_end(&mut piece).map_err(failed)?;
+        let importing = match &mut import {
+            Some(importing) => importing,
+            none => none.insert(Import::begin(&piece, wishes)?),
+        };
+        importing.feed(&piece)?;
+        done += read as u64;
+        progress(done, total);
+        if read == 0 {
+            break;
+        }
+    }
+    match import {
+        Some(import) => Ok(import.finish()?),
+        None => Err(CaptureError::Empty.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read(path: &Path, cancel: bool) -> (Result<usize, ReadCaptureError>, Vec<(u64, u64)>) {
+        let mut told = Vec::new();
+        let cancel = AtomicBool::new(cancel);
+        let read = read_capture(path, &Wishes::default(), &cancel, &mut |done, total| told.push((done, total)));
+        (read.map(|(_, capture)| capture.sine_v.len()), told)
+    }
+
+    #[test]
+    fn a_file_of_several_pieces_is_read_with_progress_until_given_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c.csv");
+        let text: String = (0..100_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
+        fs::write(&path, &text).unwrap();
+        let (rows, told) = read(&path, false);
+        assert_eq!(rows, Ok(100_000));
+        let length = text.len() as u64;
+        assert!(told.len() >= 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
+        assert_eq!(told.last(), Some(&(length, length)));
+        assert_eq!(read(&path, true), (Err(ReadCaptureError::Cancelled), Vec::new()));
+    }
+
+    #[test]
+    fn what_is_no_file_is_told_as_the_system_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let problem = |path: &Path| match read(path, false).0 {
+            Err(ReadCaptureError::File(error)) => error.problem,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(problem(folder.path()), FileProblem::IsFolder);
+        assert_eq!(problem(&folder.path().join("none.csv")), FileProblem::NotFound);
+        let empty = folder.path().join("empty.csv");
+        fs::write(&empty, "").unwrap();
+        assert_eq!(read(&empty, false).0, Err(ReadCaptureError::Capture(CaptureError::Empty)));
+    }
+}

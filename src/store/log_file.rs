@@ -1,0 +1,244 @@
+//! The log file: what the log panel shows, kept beyond the window. A thread of its own writes it, so that a disk that
+//! hangs stops nobody: what does not fit into the queue is dropped and counted, and the count is written when the disk
+//! goes again. A file that has become large gives way to a new one; the one before is kept beside it.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use tracing::Level;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::{fmt, registry};
+
+/// Bytes from which a new file begins.
+const LARGE: u64 = 1 << 20;
+
+/// Lines that wait for the disk, at most.
+const QUEUE: usize = 1024;
+
+/// How long the program's end waits for the last lines.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Takes lines for the log file without ever waiting. Clones write into the same file.
+#[derive(Clone, Debug)]
+pub struct LogFile {
+    queue: Sender<Order>,
+    dropped: Arc<AtomicU64>,
+}
+
+#[derive(Debug)]
+enum Order {
+    Line(Vec<u8>),
+    /// Everything before has been written.
+    Flush(Sender<()>),
+}
+
+impl LogFile {
+    /// Writes what this program tells (from the level "info") and what its libraries warn of into this file from now on,
+    /// making it and its folder where there is none. Where it cannot be opened, the program works without.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub fn begin(path: &Path) -> io::Result<Self> {
+        let own = path.to_owned();
+        let log = Self::writing_into(move || Rotating::open(&own, LARGE), QUEUE)?;
+        let lines = log.clone();
+        let layer = fmt::layer().with_writer(move || lines.clone()).with_ansi(false).with_target(false);
+        let filter = Targets::new().with_default(Level::WARN).with_target(env!("CARGO_CRATE_NAME"), Level::INFO);
+        let _ = tracing::subscriber::set_global_default(registry().with(layer).with(filter));
+        tracing::info!("encoder-studio {}", env!("CARGO_PKG_VERSION"));
+        Ok(log)
+    }
+
+    fn writing_into<W: Write>(open: impl FnOnce() -> io::Result<W> + Send + 'static, queue: usize) -> io::Result<Self> {
+        let (sender, orders) = bounded(queue);
+        let dropped = Arc::new(AtomicU64::new(0));
+        let counted = dropped.clone();
+        thread::Builder::new().name("log".to_owned()).spawn(move || {
+            // Opening waits for the disk, too.
+            if let Ok(file) = open() {
+                write_all(file, &orders, &counted);
+            }
+        })?;
+        Ok(LogFile { queue: sender, dropped })
+    }
+
+    /// Adds a line, with its end.
+    fn add(&self, line: &[u8]) {
+        if self.queue.try_send(Order::Line(line.to_owned())).is_err() {
+            self.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Waits until everything is in the file, but not for a disk that hangs.
+    pub fn wait(&self) {
+        let (done, waited) = bounded(1);
+        if self.queue.send_timeout(Order::Flush(done), PATIENCE).is_ok() {
+            let _ = waited.recv_timeout(PATIENCE);
+        }
+    }
+}
+
+fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64) {
+    for order in orders {
+        match order {
+            Order::Line(line) => {
+                // What the disk refuses is missing until it takes something again.
+                if file.write_all(&line).is_err() {
+                    dropped.fetch_add(1, Ordering::Relaxed);
+                    continue;
+                }
+                let missing = dropped.swap(0, Ordering::Relaxed);
+                if missing > 0 && writeln!(file, "({missing} lines are missing)").is_err() {
+                    dropped.fetch_add(missing, Ordering::Relaxed);
+                }
+            }
+            Order::Flush(done) => {
+                let _ = file.flush();
+                let _ = done.try_send(());
+            }
+        }
+    }
+}
+
+/// A line at a time.
+impl Write for LogFile {
+    fn write(&mut self, line: &[u8]) -> io::Result<usize> {
+        self.add(line);
+        Ok(line.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A file that begins anew when it has become large.
+struct Rotating {
+    path: PathBuf,
+    large: u64,
+    file: File,
+    length: u64,
+}
+
+impl Rotating {
+    fn open(path: &Path, large: u64) -> io::Result<Self> {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        let file = OpenOptions::new().create(true).append(true).open(path)?;
+        let length = file.metadata()?.len();
+        Ok(Rotating { path: path.to_owned(), large, file, length })
+    }
+
+    fn begin_anew(&mut self) -> io::Result<()> {
+        fs::rename(&self.path, self.path.with_extension("old.log"))?;
+        *self = Self::open(&self.path, self.large)?;
+        Ok(())
+    }
+}
+
+impl Write for Rotating {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
+        if full && self.begin_anew().is_err() {
+            // Another window may have it open where that forbids renaming: it grows until the next try.
+            self.length = 0;
+        }
+        let written = self.file.write(bytes)?;
+        self.length = self.length.saturating_add(written as u64);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn lines_come_into_the_file_and_a_later_start_adds_to_them() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("data").join("own.log");
+        for line in ["one\n", "two\n"] {
+            let log = LogFile::writing_into(
+                {
+                    let path = path.clone();
+                    move || Rotating::open(&path, LARGE)
+                },
+                QUEUE,
+            )
+            .unwrap();
+            log.add(line.as_bytes());
+            log.wait();
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), "one\ntwo\n");
+    }
+
+    #[test]
+    fn a_file_that_has_become_large_begins_anew_while_it_is_written() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("own.log");
+        let own = path.clone();
+        let log = LogFile::writing_into(move || Rotating::open(&own, 8), QUEUE).unwrap();
+        for line in ["one\n", "two\n", "three\n", "four\n"] {
+            log.add(line.as_bytes());
+        }
+        log.wait();
+        assert_eq!(fs::read_to_string(path.with_extension("old.log")).unwrap(), "three\n");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "four\n");
+    }
+
+    /// A disk that hangs until it is let go.
+    struct Hanging {
+        lock: Receiver<()>,
+        written: Arc<Mutex<Vec<u8>>>,
+    }
+
+    impl Write for Hanging {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let _ = self.lock.recv();
+            self.written.lock().unwrap().extend(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_disk_that_hangs_stops_nobody_and_what_is_missing_is_counted() {
+        let (release, lock) = bounded::<()>(0);
+        let written = Arc::new(Mutex::new(Vec::new()));
+        let log = LogFile::writing_into(
+            {
+                let written = written.clone();
+                move || Ok(Hanging { lock, written })
+            },
+            2,
+        )
+        .unwrap();
+        for number in 0..10 {
+            log.add(format!("line {number}\n").as_bytes());
+        }
+        // Dropped, the lock holds nobody back any more.
+        drop(release);
+        log.wait();
+        let text = String::from_utf8(written.lock().unwrap().clone()).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let (missing, kept): (Vec<&str>, Vec<&str>) = lines.iter().partition(|line| line.starts_with('('));
+        let count: usize = missing[0].trim_start_matches('(').split(' ').next().unwrap().parse().unwrap();
+        assert_eq!((missing.len(), kept.len() + count, kept[0]), (1, 10, "line 0"), "{text}");
+    }
+}

@@ -1,0 +1,279 @@
+//! Carrying a plan out, for every kind of device in the same order: consent and base → before-image on disk → logbook:
+//! intent → the operations, each read back → logbook: result. A device brings what differs and cannot leave a step out:
+//! its operations take an [`Intended`], which only [`commit`] makes, after the steps before.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+
+use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
+
+/// What a kind of device brings to a write.
+pub(super) trait Write {
+    /// Consent and base hold.
+    type Confirmed;
+    /// What was written.
+    type Written;
+    /// Why nothing can be written.
+    type Refusal;
+    /// How far a write came that ended early, and why.
+    type Interrupted;
+
+    /// Checks the consent, and reads again what the plan rests upon.
+    fn confirm(&mut self) -> Result<Self::Confirmed, Self::Refusal>;
+
+    /// A restorable text of what the plan touches, as it was.
+    fn before_image(&self) -> String;
+
+    /// Exactly the operations that were confirmed, each read back.
+    fn carry_out(
+        &mut self,
+        confirmed: &Self::Confirmed,
+        intended: &Intended,
+    ) -> Result<Self::Written, Self::Interrupted>;
+
+    /// For the logbook: how it ended, and write cycles spent.
+    fn conclusion(ended: Result<&Self::Written, &Self::Interrupted>) -> (Outcome, u64);
+}
+
+/// What is written, and into what.
+pub(super) struct Terms {
+    /// The device.
+    pub(super) device: DeviceKey,
+    /// Names of what the operations change.
+    pub(super) items: Vec<String>,
+    /// Write cycles that they cost.
+    pub(super) cost: u64,
+    /// Write cycles that this computer has seen the device take.
+    pub(super) seen: Option<u64>,
+    /// Write cycles from which the device counts as worn.
+    pub(super) limit: u64,
+    /// Write although it does.
+    pub(super) force_wear: bool,
+}
+
+/// The before-image is kept, and the logbook has been told.
+pub(super) struct Intended {
+    backup: PathBuf,
+    entry: Result<(Logbook, EntryId), LogbookError>,
+}
+
+/// A write that is done.
+pub(super) struct Done<W> {
+    pub(super) written: W,
+    /// The before-image.
+    pub(super) backup: PathBuf,
+    /// What the logbook could not take.
+    pub(super) logbook_warning: Option<LogbookError>,
+}
+
+/// A write that is not done, or not to its end.
+pub(super) enum Failed<W: Write> {
+    /// The device counts as worn; nothing was written.
+    Worn { seen: u64, cost: u64, limit: u64 },
+    /// Consent or base do not hold; nothing was written.
+    Refused(W::Refusal),
+    /// The before-image cannot be kept; nothing was written.
+    NotKept(FileError),
+    /// It was begun and not finished.
+    Interrupted {
+        /// How far it came.
+        interrupted: W::Interrupted,
+        /// The before-image.
+        backup: PathBuf,
+    },
+}
+
+/// The one way to write.
+pub(super) fn commit<W: Write>(store: &Store, terms: &Terms, write: &mut W) -> Result<Done<W::Written>, Failed<W>> {
+    check_wear(terms)?;
+    let confirmed = write.confirm().map_err(Failed::Refused)?;
+    let intended = Intended::note(store, terms, &write.before_image()).map_err(Failed::NotKept)?;
+    let ended = write.carry_out(&confirmed, &intended);
+    let (outcome, spent) = W::conclusion(ended.as_ref());
+    let (backup, logbook_warning) = intended.conclude(outcome, spent);
+    match ended {
+        Ok(written) => Ok(Done { written, backup, logbook_warning }),
+        Err(interrupted) => {
+            if let Some(why) = logbook_warning {
+                tracing::warn!("{why}");
+            }
+            Err(Failed::Interrupted { interrupted, backup })
+        }
+    }
+}
+
+/// Write cycles that this computer has seen a device take; `None` where the logbook does not tell.
+pub(super) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
+    let path = store.logbook_path();
+    if !path.exists() {
+        return Some(0);
+    }
+    match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(device)) {
+        Ok(cycles) => Some(cycles),
+        Err(error) => {
+            tracing::warn!("{error}");
+            None
+        }
+    }
+}
+
+fn check_wear<W: Write>(terms: &Terms) -> Result<(), Failed<W>> {
+    let Terms { cost, limit, force_wear, .. } = *terms;
+    let seen = terms.seen.unwrap_or(0);
+    if !force_wear && seen.saturating_add(cost) > limit {
+        return Err(Failed::Worn { seen, cost, limit });
+    }
+    Ok(())
+}
+
+impl Intended {
+    /// Keeps the before-image and tells the logbook, which may fail without stopping the write.
+    fn note(store: &Store, terms: &Terms, before_image: &str) -> Result<Self, FileError> {
+        let DeviceKey { kind, serial_number, .. } = &terms.device;
+        let backup = store.backups().keep(kind, serial_number, Timestamp::now(), before_image)?;
+        let entry = intend(&store.logbook_path(), terms, &backup);
+        Ok(Intended { backup, entry })
+    }
+
+    /// The before-image, and what the logbook could not take.
+    fn conclude(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
+        let warning = match self.entry {
+            Ok((mut logbook, id)) => logbook.conclude(id, Timestamp::now(), outcome, spent).err(),
+            Err(error) => Some(error),
+        };
+        (self.backup, warning)
+    }
+}
+
+fn intend(path: &Path, terms: &Terms, backup: &Path) -> Result<(Logbook, EntryId), LogbookError> {
+    let mut logbook = Logbook::open(path)?;
+    let what = terms.items.join(", ");
+    let id = logbook.intend(Timestamp::now(), &terms.device, &what, terms.cost, Some(backup))?;
+    Ok((logbook, id))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Notes what is asked of it, and looks on disk what has been done before.
+    struct Spy {
+        store: Store,
+        steps: Vec<&'static str>,
+        refuses: bool,
+        ends_early: bool,
+    }
+
+    impl Spy {
+        fn open_intents(&self) -> usize {
+            let logbook = Logbook::open(&self.store.logbook_path()).unwrap();
+            let entries = logbook.history(&terms(0).device, 9).unwrap();
+            entries.iter().filter(|entry| entry.conclusion.is_none()).count()
+        }
+    }
+
+    impl Write for Spy {
+        type Confirmed = ();
+        type Written = u64;
+        type Refusal = ();
+        type Interrupted = u64;
+
+        fn confirm(&mut self) -> Result<(), ()> {
+            self.steps.push("confirm");
+            assert!(self.store.backups().list("spy", "1").unwrap().is_empty());
+            if self.refuses { Err(()) } else { Ok(()) }
+        }
+
+        fn before_image(&self) -> String {
+            "before".to_owned()
+        }
+
+        fn carry_out(&mut self, (): &(), _intended: &Intended) -> Result<u64, u64> {
+            self.steps.push("carry out");
+            assert_eq!(self.store.backups().list("spy", "1").unwrap().len(), 1);
+            assert_eq!(self.open_intents(), 1);
+            if self.ends_early { Err(1) } else { Ok(2) }
+        }
+
+        fn conclusion(ended: Result<&u64, &u64>) -> (Outcome, u64) {
+            match ended {
+                Ok(cycles) => (Outcome::Done, *cycles),
+                Err(cycles) => (Outcome::Cancelled, *cycles),
+            }
+        }
+    }
+
+    fn terms(seen: u64) -> Terms {
+        let device = DeviceKey {
+            kind: "spy".to_owned(),
+            device_type: "1".to_owned(),
+            serial_number: "1".to_owned(),
+            is_virtual: true,
+        };
+        Terms {
+            device,
+            items: vec!["a".to_owned(), "b".to_owned()],
+            cost: 2,
+            seen: Some(seen),
+            limit: 10,
+            force_wear: false,
+        }
+    }
+
+    #[test]
+    fn every_write_takes_all_steps_in_their_order() {
+        let cases = [
+            ("done", 0, false, false, vec!["confirm", "carry out"], 2),
+            ("cut off", 0, false, true, vec!["confirm", "carry out"], 1),
+            ("refused", 0, true, false, vec!["confirm"], 0),
+            ("worn", 9, false, false, vec![], 0),
+        ];
+        for (label, seen, refuses, ends_early, steps, spent) in cases {
+            let root = tempfile::tempdir().unwrap();
+            let store = Store::at(root.path());
+            let mut spy = Spy { store: store.clone(), steps: Vec::new(), refuses, ends_early };
+            let ended = commit(&store, &terms(seen), &mut spy);
+            assert_eq!(spy.steps, steps, "{label}");
+            assert_eq!(cycles_seen(&store, &terms(0).device), Some(spent), "{label}");
+            match ended {
+                Ok(done) => assert!(label == "done" && done.written == 2 && done.logbook_warning.is_none()),
+                Err(Failed::Interrupted { interrupted, backup }) => {
+                    assert!(label == "cut off" && interrupted == 1 && backup.exists());
+                }
+                Err(Failed::Refused(())) => assert_eq!(label, "refused"),
+                Err(Failed::Worn { seen: 9, cost: 2, limit: 10 }) => assert_eq!(label, "worn"),
+                Err(_) => panic!("{label}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_logbook_that_cannot_be_used_stops_no_write() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        std::fs::create_dir_all(store.logbook_path()).unwrap();
+        struct Plain;
+        impl Write for Plain {
+            type Confirmed = ();
+            type Written = ();
+            type Refusal = ();
+            type Interrupted = ();
+            fn confirm(&mut self) -> Result<(), ()> {
+                Ok(())
+            }
+            fn before_image(&self) -> String {
+                String::new()
+            }
+            fn carry_out(&mut self, (): &(), _: &Intended) -> Result<(), ()> {
+                Ok(())
+            }
+            fn conclusion(_: Result<&(), &()>) -> (Outcome, u64) {
+                (Outcome::Done, 2)
+            }
+        }
+        let Ok(done) = commit(&store, &terms(0), &mut Plain) else { panic!() };
+        assert!(done.logbook_warning.is_some());
+        assert_eq!(cycles_seen(&store, &terms(0).device), None);
+    }
+}

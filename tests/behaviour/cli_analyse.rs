@@ -1,0 +1,211 @@
+//! `analyse`: captures made here by arithmetic give back what was put in, and bad ones get one sentence.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::support::Bench;
+
+/// R, p, q, r, α in degrees, as the program's description defines them.
+#[derive(Clone, Copy)]
+struct Signal {
+    amplitude: f64,
+    offset_cosine: f64,
+    offset_sine: f64,
+    ratio: f64,
+    phase_deg: f64,
+}
+
+/// Section 7 of the reference.
+const REFERENCE: Signal =
+    Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
+
+/// Sine and cosine at an angle in periods.
+fn at(signal: &Signal, periods: f64) -> (f64, f64) {
+    let (angle, phase) = (TAU * periods, signal.phase_deg.to_radians());
+    let sine = (signal.amplitude * angle.sin() * phase.cos() - signal.amplitude * angle.cos() * phase.sin())
+        / signal.ratio
+        + signal.offset_sine;
+    (sine, signal.amplitude * angle.cos() + signal.offset_cosine)
+}
+
+fn rows(signal: &Signal, count: usize, from: f64, periods: f64) -> Vec<[f64; 3]> {
+    (0..count)
+        .map(|i| {
+            let (sine, cosine) = at(signal, from + periods * i as f64 / count as f64);
+            [i as f64 * 1e-6, sine, cosine]
+        })
+        .collect()
+}
+
+fn table(header: &str, rows: &[[f64; 3]]) -> String {
+    rows.iter().fold(header.to_owned(), |mut text, [t, sine, cosine]| {
+        writeln!(text, "{t:.6},{sine:.9},{cosine:.9}").unwrap();
+        text
+    })
+}
+
+#[track_caller]
+fn near(told: &Value, key: &str, expected: f64, tolerance: f64) {
+    let value = told[key].as_f64().unwrap_or_else(|| panic!("{key} is no number in {told}"));
+    assert!((value - expected).abs() <= tolerance, "{key}: {value} instead of {expected} in {told}");
+}
+
+#[test]
+fn the_reference_signal_gives_back_what_was_put_in() {
+    let bench = Bench::new();
+    // 360 points of a period and the six of 0, 60 … 300°; they cover one step less than the period.
+    for (count, header) in [(360, "time,sin,cos\n"), (6, "")] {
+        let file = bench.write("c.csv", table(header, &rows(&REFERENCE, count, 0.0, 1.0)));
+        let told = bench.run(&["analyse", &file, "--json"]).json();
+        near(&told, "amplitude_v", 0.5, 1e-7);
+        near(&told, "offset_cos_v", 0.02, 1e-7);
+        near(&told, "offset_sin_v", -0.03, 1e-7);
+        near(&told, "gain_ratio", 1.05, 1e-6);
+        near(&told, "phase_error_deg", 3.0, 1e-5);
+        near(&told, "periods", 1.0 - 1.0 / count as f64, 1e-7);
+        near(&told, "residual_rms", 0.0, 1e-7);
+        near(&told, "error_pp_deg_corrected", 0.0, 1e-4);
+        // Python: max − min of degrees(atan2(y, x)) − θ over 720 angles from 0° is 2.310392 + 7.660480.
+        near(&told, "error_pp_deg_raw", 9.970_873, 1e-4);
+    }
+}
+
+/// 2 mV rms of noise in 0.5 V: 1000 points a period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; five of them.
+#[test]
+fn noise_moves_it_only_as_far_as_its_statistics_allow() {
+    let bench = Bench::new();
+    let mut noise = fastrand::Rng::with_seed(11);
+    let mut rows = rows(&REFERENCE, 7250, 0.3, -7.25);
+    for value in rows.iter_mut().flat_map(|row| &mut row[1..]) {
+        *value += 2e-3 * ((0..12).map(|_| noise.f64()).sum::<f64>() - 6.0);
+    }
+    let file = bench.write("c.csv", table("t [s],sine [V],cosine [V]\n", &rows));
+    let told = bench.run(&["analyse", &file, "--json"]).json();
+    let scatter = 2e-3 * (2.0 / 7250.0_f64).sqrt();
+    near(&told, "amplitude_v", 0.5, 5.0 * scatter);
+    near(&told, "offset_cos_v", 0.02, 5.0 * scatter);
+    near(&told, "offset_sin_v", -0.03, 5.0 * scatter);
+    near(&told, "gain_ratio", 1.05, 20.0 * scatter);
+    near(&told, "phase_error_deg", 3.0, (20.0 * scatter).to_degrees());
+    near(&told, "periods", 7.25, 0.01);
+    near(&told, "residual_rms", 0.004, 0.0004);
+    near(&told, "error_pp_deg_raw", 9.97, 0.1);
+    near(&told, "error_pp_deg_corrected", 0.0, 0.1);
+}
+
+#[test]
+fn columns_and_units_are_found_or_given() {
+    let bench = Bench::new();
+    let rows = rows(&REFERENCE, 500, 0.0, 3.0);
+    let plain = bench.run(&["analyse", &bench.write("p.csv", table("", &rows)), "--json"]).json();
+    let german: String = rows
+        .iter()
+        .map(|[t, sine, cosine]| format!("{:.6};{:.9};{:.9}\n", cosine * 1e3, t * 1e3, sine * 1e3).replace('.', ","))
+        .collect();
+    let file = bench.write("g.csv", format!("cos [mV];Zeit [ms];sin [mV]\n{german}"));
+    let counts: String =
+        rows.iter().map(|[t, sine, cosine]| format!("7\t{t:.6}\t{:.3}\t{:.3}\n", cosine * 1e5, sine * 1e5)).collect();
+    let counted = bench.write("n.csv", counts);
+    let four: String = rows
+        .iter()
+        .map(|[t, sine, cosine]| format!("{t:.6},{:.9},2.5,{:.9},2.4\n", 2.5 + sine, 2.4 + cosine))
+        .collect();
+    let named = bench.write("f.csv", format!("time,SIN,REFSIN,COS,REFCOS\n{four}"));
+    let numbered = bench.write("u.csv", four);
+    for arguments in [
+        &["analyse", &file, "--json"][..],
+        &["analyse", &counted, "--columns", "2,4,3", "--volts-per-unit", "1e-5", "--json"],
+        &["analyse", &named, "--json"],
+        &["analyse", &numbered, "--columns", "1,2,3,4,5", "--json"],
+    ] {
+        let told = bench.run(arguments).json();
+        for key in ["amplitude_v", "offset_sin_v", "offset_cos_v", "gain_ratio", "phase_error_deg", "periods"] {
+            near(&told, key, plain[key].as_f64().unwrap(), 2e-5);
+        }
+        near(&told, "frequency_hz", plain["frequency_hz"].as_f64().unwrap(), 1.0);
+    }
+}
+
+#[test]
+fn bad_captures_get_one_sentence() {
+    let bench = Bench::new();
+    let good = rows(&REFERENCE, 200, 0.0, 1.0);
+    let made = |change: fn(&mut [f64; 3])| {
+        let mut rows = good.clone();
+        rows.iter_mut().for_each(change);
+        table("time,sin,cos\n", &rows)
+    };
+    let text = table("time,sin,cos\n", &good);
+    let cases: [(&str, String, &[&str]); 15] = [
+        ("nothing", String::new(), &["is empty"]),
+        ("only a header", "time,sin,cos\n".to_owned(), &["no row has numbers"]),
+        ("one column", "0.1\n0.2\n0.3\n".to_owned(), &["one column"]),
+        ("two columns", "0,1\n1,2\n".to_owned(), &["2 columns"]),
+        ("text", text.replace("0.000007,", "0.000007,oops"), &["row 9", "column 2", "oops"]),
+        ("not a number", text.replace("0.000005,", "nan,"), &["row 7", "column 1", "nan"]),
+        ("a short row", text.replace("0.000003,", "0.000003\n1,"), &["row 5", "1 of 3"]),
+        ("five points", table("", &good[..5]), &["too few points", "5"]),
+        ("a fifth of a period", table("", &good[10..76]), &["octants", "whole period"]),
+        ("constant", made(|row| *row = [row[0], 0.3, 0.2]), &["constant"]),
+        ("no voltage", made(|row| *row = [row[0], 0.0, 0.0]), &["constant"]),
+        ("dead sine", made(|row| row[1] = 1e-3 * (row[0] * 1e9).sin()), &["sine channel is dead"]),
+        ("dead cosine", made(|row| row[2] = 2.5), &["cosine channel is dead"]),
+        ("a line", made(|row| row[2] = 0.1 - 0.8 * row[1]), &["on a line"]),
+        ("binary", "\u{0}\u{1}\u{2}\u{3}".repeat(50), &["no row has numbers"]),
+    ];
+    for (label, text, words) in cases {
+        let file = bench.write("bad.csv", text);
+        for arguments in [&["analyse", &file, "--json"][..], &["analyse", &file]] {
+            let ran = bench.run(arguments);
+            ran.fails(1, words);
+            assert_eq!(ran.err.lines().count(), 1, "{label}: {ran:?}");
+            assert!(ran.err.contains("bad.csv"), "{label}: {ran:?}");
+        }
+    }
+    bench.run(&["analyse", &bench.file("none.csv")]).fails(1, &["none.csv", "does not exist"]);
+    bench.run(&["analyse", &bench.file("")]).fails(1, &["folder"]);
+}
+
+#[test]
+fn wrong_usage_is_status_2() {
+    let bench = Bench::new();
+    let file = bench.write("c.csv", table("", &rows(&REFERENCE, 100, 0.0, 1.0)));
+    bench.run(&["analyse"]).fails(2, &["FILE.csv"]);
+    for columns in ["1,2", "0,1,2", "1,2,2", "a,b,c", "", "1,2,3,4"] {
+        bench.run(&["analyse", &file, "--columns", columns]).fails(2, &["--columns"]);
+    }
+    for factor in ["0", "-1", "x", "nan", "inf"] {
+        bench.run(&["analyse", &file, "--volts-per-unit", factor]).fails(2, &["--volts-per-unit"]);
+    }
+    bench.run(&["analyse", &file, "--columns", "1,2,9"]).fails(1, &["row 1", "3 of 9"]);
+}
+
+#[test]
+fn the_captures_that_ship_are_a_good_one_and_a_bad_one() {
+    let bench = Bench::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals");
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let good = bench.run(&["analyse", &path("healthy.csv")]);
+    assert_eq!(good.status, Some(0), "{good:?}");
+    assert!(good.out.contains("within the limits") && good.out.contains("periods"), "{good:?}");
+    // As put in: R, p, q, r, α; 0.5 mV rms of noise on 400 points.
+    let told = bench.run(&["analyse", &path("offset-gain-phase.csv"), "--json"]).json();
+    let expected = [
+        ("amplitude_v", 0.5, 2e-4),
+        ("offset_cos_v", 0.04, 2e-4),
+        ("offset_sin_v", -0.03, 2e-4),
+        ("gain_ratio", 1.12, 1e-3),
+        ("phase_error_deg", 6.0, 0.05),
+        ("periods", 3.99, 0.01),
+        ("frequency_hz", 2000.0, 5.0),
+        ("residual_rms", 0.001, 3e-4),
+        ("error_pp_deg_corrected", 0.0, 0.15),
+    ];
+    for (key, value, tolerance) in expected {
+        near(&told, key, value, tolerance);
+    }
+    assert!(told["findings"].as_array().unwrap().len() >= 4, "{told}");
+}
