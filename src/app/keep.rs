@@ -70,6 +70,7 @@ impl Keeper {
 
     /// Takes over what was read; what the user has set meanwhile stays.
     pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
+        services.log.settle("session.settings_slow", None);
         let found = match read {
             SettingsRead::Whole(found) => {
                 self.may_write = true;

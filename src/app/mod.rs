@@ -2,6 +2,7 @@
 //! for a person, the look as data.
 
 mod action;
+mod closing;
 pub mod connect;
 pub mod explain;
 pub mod hiperface;

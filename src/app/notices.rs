@@ -78,9 +78,9 @@ impl Log {
     }
 
     /// What stands in the window is true no more, where it is this text about this session.
-    pub(super) fn settle(&mut self, id: &str, about: &str) {
+    pub(super) fn settle(&mut self, id: &str, about: Option<&str>) {
         let is_it =
-            |notice: &Notice| notice.about.as_deref() == Some(about) && notice.texts.iter().any(|text| text.id() == id);
+            |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);
         if self.standing.as_ref().is_some_and(is_it) {
             self.standing = None;
         }
@@ -134,10 +134,10 @@ mod tests {
         let mut log = Log::default();
         let texts = vec![Text::new("session.not_connected")];
         log.add(Notice { at: Zoned::now(), severity: Severity::Warning, texts, about: Some("one".to_owned()) });
-        log.settle("session.busy", "one");
-        log.settle("session.not_connected", "other");
+        log.settle("session.busy", Some("one"));
+        log.settle("session.not_connected", Some("other"));
         assert!(log.standing().is_some());
-        log.settle("session.not_connected", "one");
+        log.settle("session.not_connected", Some("one"));
         assert!(log.standing().is_none() && log.notices().len() == 1);
     }
 }

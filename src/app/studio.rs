@@ -6,7 +6,7 @@ use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waite
 use super::connect::{self, Connect};
 use super::hiperface::{self, Encoder, Phase, Source};
 use super::keep::Keeper;
-use super::services::{JobEnd, Services, World};
+use super::services::{Services, World};
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
@@ -39,9 +39,9 @@ pub struct Studio {
     pub(super) encoders: Vec<Encoder>,
     pub(super) shown: Option<SessionId>,
     next_id: u32,
-    keeper: Keeper,
-    closing: bool,
-    waited: Option<Waited>,
+    pub(super) keeper: Keeper,
+    pub(super) closing: bool,
+    pub(super) waited: Option<Waited>,
     path_question: Option<FileQuestion>,
 }
 
@@ -181,20 +181,6 @@ impl Studio {
         self.encoders.iter().any(|encoder| encoder.line().is_some_and(|line| line.polling().is_some()))
     }
 
-    /// The window may close now: nothing runs any more, not even in sessions that were let go, and what is to be kept is
-    /// on disk; or it has had time enough.
-    pub fn may_close(&self) -> bool {
-        let services = &self.services;
-        let drafts = services.drafts_on_their_way == 0 && self.encoders.iter().all(Encoder::is_draft_kept);
-        let writes = services.leaves_writing() || self.encoders.iter().any(Encoder::is_writing);
-        let runs = !services.leaving.is_empty() || self.encoders.iter().any(Encoder::is_busy);
-        let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
-        self.closing
-            && over(Waited::Writes, !writes)
-            && over(Waited::Jobs, !runs)
-            && over(Waited::Disk, drafts && self.keeper.is_idle())
-    }
-
     fn search(&self) -> Option<&connect::Search> {
         self.connect.as_ref()?.search.as_ref()
     }
@@ -213,7 +199,7 @@ impl Studio {
         self.next_id
     }
 
-    fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
+    pub(super) fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
         let Some(encoder) = self.encoders.iter().find(|encoder| encoder.id == id) else { return };
         match (action, &encoder.source) {
             (hiperface::Action::Reconnect, Source::Link(url)) => self.reconnect(id, url.clone()),
@@ -333,7 +319,7 @@ impl Studio {
         }
     }
 
-    fn stop(&mut self) {
+    pub(super) fn stop(&mut self) {
         for encoder in &mut self.encoders {
             encoder.stop(&mut self.services);
         }
@@ -361,71 +347,6 @@ impl Studio {
             return;
         }
         self.stop();
-    }
-
-    fn close_session(&mut self, id: SessionId) {
-        let Some(encoder) = self.encoder_mut(id) else { return };
-        if encoder.is_busy() || encoder.staged.is_dirty() {
-            let text = match &encoder.source {
-                _ if encoder.is_busy() => "question.session_busy",
-                Source::Link(_) => "question.session_edits",
-                Source::File { .. } => "question.profile_edits",
-            };
-            let text = Text::new(text).with("name", encoder.name());
-            let confirm = Text::new("question.close_session");
-            self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
-        } else {
-            self.remove(id);
-        }
-    }
-
-    fn remove(&mut self, id: SessionId) {
-        self.with_encoder(id, |encoder, services| {
-            encoder.leave_draft(services);
-            encoder.let_go(JobEnd::Cancelled, services);
-        });
-        self.encoders.retain(|encoder| encoder.id != id);
-        if self.shown == Some(id) {
-            self.shown = self.encoders.last().map(|encoder| encoder.id);
-        }
-    }
-
-    fn close(&mut self) {
-        let busy = self.encoders.iter().any(Encoder::is_busy);
-        let edits = self.encoders.iter().any(|encoder| encoder.staged.is_dirty());
-        if busy || edits {
-            let text = Text::new(if busy { "question.busy" } else { "question.edits" });
-            let confirm = Text::new("question.close_window");
-            self.question = Some(Question { text, confirm, then: Then::CloseWindow });
-        } else {
-            self.begin_to_close();
-        }
-    }
-
-    fn begin_to_close(&mut self) {
-        if std::mem::replace(&mut self.closing, true) {
-            return;
-        }
-        let patience = self.services.world.patience;
-        let limits = [(Waited::Disk, patience.disk), (Waited::Jobs, patience.job), (Waited::Writes, patience.write)];
-        for (what, limit) in limits {
-            self.services.tasks.run("close", move || {
-                std::thread::sleep(limit);
-                Action::Done(Done::Waited(what))
-            });
-        }
-    }
-
-    fn confirm(&mut self) {
-        match self.question.take().map(|question| question.then) {
-            Some(Then::CloseWindow) => {
-                self.stop();
-                self.begin_to_close();
-            }
-            Some(Then::CloseSession(id)) => self.remove(id),
-            Some(Then::Save(id, path)) => self.act_hiperface(id, hiperface::Action::Save(path)),
-            None => {}
-        }
     }
 }
 

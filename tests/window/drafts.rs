@@ -120,6 +120,9 @@ fn a_draft_has_one_owner() {
     desk.settle();
     assert_eq!(fs::read_to_string(desk.outside.path(DRAFT)).unwrap(), draft);
     assert_eq!(desk.times_told("session.draft_elsewhere"), 1);
+    desk.act(Action::Close);
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost", "they would not come back");
+    desk.act(Action::Escape);
     drop(first);
     let mut desk = desk.crash();
     desk.studio.begin(None, None);
@@ -153,6 +156,10 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
     desk.put(0, 1, b"Y");
     desk.settle();
     assert_eq!(desk.times_told("session.draft_none"), 1);
+    let id = desk.encoder().id;
+    desk.act(Action::CloseSession(id));
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost");
+    desk.act(Action::Escape);
     let replug = |desk: &mut Desk, query: Option<&str>| {
         desk.wire().unplug();
         desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());

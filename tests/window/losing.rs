@@ -305,7 +305,7 @@ fn other_settings_are_followed_from_the_restart_on() {
     desk.until_written();
     desk.ask(Hiperface::CloseReview);
     assert_eq!(link(&desk), at(&format!("{old}?baud=9600&parity=even")), "before the restart it talks as before");
-    desk.ask(Hiperface::Reset);
+    desk.ask(Hiperface::Check { restart: true });
     desk.until("the link follows", |studio| studio.encoder().unwrap().source == at(&new));
     desk.until_ready();
     desk.wire().unplug();
@@ -334,6 +334,9 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
     desk.ask(Hiperface::Review);
     assert!(desk.encoder().review.is_none());
     desk.wire().exchange("");
+    desk.ask(Hiperface::ReadAnalogue(0x07));
+    desk.until_ready();
+    assert_eq!(*desk.phase(), Phase::Connected, "a refusal is an answer too");
     desk.ask(Hiperface::Read);
     desk.until_ready();
     assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));

@@ -102,6 +102,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     fs::write(&path, settings.emit()).unwrap();
     fs::remove_file(&path).unwrap();
     desk.until("they are read", |studio| studio.settings.theme == Theme::Light);
+    assert!(desk.studio.services.log.standing().is_none(), "they are here");
     settings.language = Language::German;
     assert_eq!(desk.studio.settings, settings);
     kept(&mut desk);

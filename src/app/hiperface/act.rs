@@ -17,6 +17,7 @@ use crate::bits::hex;
 use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
 use crate::profile::{Body, Consent, Document, PlanId};
+use crate::protocol::hiperface::LineSettings;
 use crate::store::write_atomically;
 use crate::worker::SubmitError;
 use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
@@ -41,12 +42,13 @@ impl Encoder {
             Action::ClearCurve => self.curve.clear(),
             Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
-            Action::Check { restart } => self.submit(HiperfaceJob::Check { restart }, services),
-            Action::Reset => self.submit(HiperfaceJob::Reset, services),
+            Action::Check { restart } => {
+                let then = self.stored_settings().filter(|_| restart);
+                self.submit_to_settings(HiperfaceJob::Check { restart }, then, services);
+            }
+            Action::Reset => self.submit_to_settings(HiperfaceJob::Reset, self.stored_settings(), services),
             Action::ConfigureForNow(settings) => {
-                if self.try_submit(HiperfaceJob::ConfigureForNow(settings), services) {
-                    self.configured = Some(settings);
-                }
+                self.submit_to_settings(HiperfaceJob::ConfigureForNow(settings), Some(settings), services);
             }
             Action::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
@@ -87,6 +89,17 @@ impl Encoder {
         self.try_submit(job, services);
     }
 
+    fn stored_settings(&self) -> Option<LineSettings> {
+        self.identity.as_ref().map(|identity| identity.label.settings)
+    }
+
+    /// Starts a job after which the encoder talks with other settings.
+    fn submit_to_settings(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
+        if self.try_submit(job, services) {
+            self.settings_then = then;
+        }
+    }
+
     /// Starts a job, or says why not and gives false.
     fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
         let what = what(&job);
@@ -103,6 +116,7 @@ impl Encoder {
         match line.submit(job, what.clone(), writes, services.now()) {
             Ok(id) => {
                 self.asked = asked;
+                self.settings_then = None;
                 services.job_begins(self.id, id, &name, what);
                 return true;
             }

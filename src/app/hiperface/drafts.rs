@@ -199,6 +199,11 @@ impl Encoder {
         }
     }
 
+    /// Its edits come back after it was closed.
+    pub(in crate::app) fn keeps_edits(&self) -> bool {
+        self.drafting.looked && self.draft_key().is_some()
+    }
+
     /// Every edit is on disk, as far as the disk takes it.
     pub(in crate::app) fn is_draft_kept(&self) -> bool {
         !self.drafting.busy

@@ -111,8 +111,8 @@ pub struct Encoder {
     pub(super) asked: Option<Item>,
     /// Access codes that are given to the session again, once it is known who is connected.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
-    /// Interface settings that are being taken up until the next restart.
-    pub(super) configured: Option<LineSettings>,
+    /// Interface settings with which the encoder talks when the job that runs is done.
+    pub(super) settings_then: Option<LineSettings>,
     /// Nothing has been read since the link was opened.
     pub(super) just_connected: bool,
     /// The access code that the user gave last: whether it fits shows when the fields are read.
@@ -147,7 +147,7 @@ impl Encoder {
             access_codes: Vec::new(),
             asked: None,
             codes_due: Vec::new(),
-            configured: None,
+            settings_then: None,
             just_connected: false,
             tried_code: None,
             save_to: None,
@@ -376,6 +376,7 @@ impl Encoder {
         self.backups = None;
         self.writes = None;
         self.access_codes.clear();
+        self.tried_code = None;
         self.review = None;
     }
 

@@ -10,7 +10,7 @@ use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
 use crate::profile::hiperface::Op;
-use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings, StatusCode};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
 use crate::worker::hiperface::{
     Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
@@ -24,10 +24,11 @@ impl Encoder {
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
-        services.log.settle("session.not_connected", &self.name());
+        services.log.settle("session.not_connected", Some(&self.name()));
         self.curve.forget();
         self.just_connected = true;
         self.codes_due.clear();
+        self.tried_code = None;
         self.read_encoder(services);
     }
 
@@ -63,6 +64,7 @@ impl Encoder {
         let (frames, missed) = line.frames();
         if !samples.is_empty() || dropped > 0 {
             self.curve.add(samples, dropped);
+            self.answers();
         }
         if !frames.is_empty() {
             let meaning = &mut self.meaning;
@@ -77,7 +79,9 @@ impl Encoder {
             Event::Remark(Remark::Found(_)) => {}
             Event::Finished(id, output) => {
                 services.job_ends(self.id, id, JobEnd::Done);
-                self.answers(&output);
+                if !matches!(*output, HiperfaceOutput::CodeNoted) {
+                    self.answers();
+                }
                 self.finished(*output, services);
             }
             Event::Failed(id, error) => self.failed(id, &error, services),
@@ -101,9 +105,9 @@ impl Encoder {
         }
     }
 
-    /// The encoder has answered, unless the job asked it nothing.
-    fn answers(&mut self, output: &HiperfaceOutput) {
-        if matches!(self.phase, Phase::Silent(_)) && !matches!(output, HiperfaceOutput::CodeNoted) {
+    /// The encoder has answered, if only with a refusal.
+    fn answers(&mut self) {
+        if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
     }
@@ -129,19 +133,18 @@ impl Encoder {
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.curve.add(vec![Sample::Position(reading)], 0),
             HiperfaceOutput::Value(value) => self.take_value(value),
-            HiperfaceOutput::Check(lines) => self.check = Some(lines),
+            HiperfaceOutput::Check(lines) => {
+                self.check = Some(lines);
+                self.follow_settings();
+            }
             HiperfaceOutput::Reset(codes) => {
                 self.codes = Some(codes);
-                if let Some(stored) = self.identity.as_ref().map(|identity| identity.label.settings) {
-                    self.follow_settings(stored);
-                }
+                self.follow_settings();
                 services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Configured => {
-                if let Some(settings) = self.configured.take() {
-                    self.follow_settings(settings);
-                }
+                self.follow_settings();
                 services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
@@ -201,8 +204,9 @@ impl Encoder {
         }
     }
 
-    /// From now on the encoder talks like that, in the next session too.
-    fn follow_settings(&mut self, settings: LineSettings) {
+    /// The encoder talks by now as the job was to bring about, so the next session begins like that.
+    fn follow_settings(&mut self) {
+        let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.source, settings.format()) else { return };
         let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
         if now.format.baud != format.baud {
@@ -257,6 +261,7 @@ impl Encoder {
         {
             // The encoder has no such channel: that is an answer, and stands where it was asked for.
             self.analogue.insert(channel, Err(first));
+            self.answers();
             return;
         }
         self.save_to = None;
@@ -264,9 +269,13 @@ impl Encoder {
         let begun = matches!(error, JobError::Interrupted { .. });
         self.follow_what_was_done(error, services);
         let silent = gone.is_none() && self.is_silence(error);
+        let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
+        if gone.is_none() && !silent && !garbled {
+            self.answers();
+        }
         if silent {
             self.phase = Phase::Silent(first.clone());
-            services.log.settle("session.not_connected", &self.name());
+            services.log.settle("session.not_connected", Some(&self.name()));
         }
         match &mut self.review {
             Some(review) if matches!(review.state, ReviewState::Planning | ReviewState::Writing(_)) => {
