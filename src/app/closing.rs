@@ -1,4 +1,4 @@
-//! Closing a session or the window: what would be lost is asked about, what runs is waited for, within limits.
+//! Closing a session or the window: what would be lost or cut off is asked about once, and waited for.
 
 use super::Text;
 use super::action::{Action, Done, Question, Then, Waited};
@@ -24,12 +24,11 @@ impl Studio {
     pub(super) fn close_session(&mut self, id: SessionId) {
         let Some(encoder) = self.encoder_mut(id) else { return };
         if encoder.is_busy() || encoder.staged.is_dirty() {
-            let lost = encoder.staged.is_dirty() && !encoder.keeps_edits();
-            let text = match &encoder.source {
-                _ if lost => "question.session_lost",
+            let text = match (&encoder.source, encoder.staged.is_dirty() && !encoder.keeps_edits()) {
+                (_, true) => "question.session_lost",
                 _ if encoder.is_busy() => "question.session_busy",
-                Source::Link(_) => "question.session_edits",
-                Source::File { .. } => "question.profile_edits",
+                (Source::Link(_), false) => "question.session_edits",
+                (Source::File { .. }, false) => "question.profile_edits",
             };
             let text = Text::new(text).with("name", encoder.name());
             let confirm = Text::new("question.close_session");
