@@ -5,7 +5,7 @@ use egui::{RichText, Stroke, Ui};
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::{Skin, Views, icons};
 use crate::app::connect;
-use crate::app::hiperface::{self, Encoder, Phase, Source};
+use crate::app::hiperface::{self, Encoder, Phase};
 use crate::app::{Action, Language, Notice, Studio, Theme};
 
 /// Draws the header.
@@ -157,10 +157,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
 
 fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     let Some(encoder) = studio.encoder() else { return };
-    let words = match &encoder.source {
-        Source::Link(url) => url.to_string(),
-        Source::File { path, .. } => path.display().to_string(),
-    };
+    let words = encoder.place();
     let label = egui::Label::new(skin.mono(&words).color(skin.palette.muted)).truncate().sense(egui::Sense::click());
     let hint = format!("{words}\n{}", skin.say("shell.copy_link"));
     if ui.add(label).on_hover_text(hint).clicked() {

@@ -25,13 +25,15 @@ struct Wishes {
     /// The end of the running job, or of the last.
     job: Cancel,
     interval: Option<Duration>,
+    /// Counts the wishes to poll, so that what fails ends the one it was done for and no later one.
+    number: u64,
 }
 
 impl Live {
     /// Nothing is wished; the thread listens for changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
-        let wishes = Arc::new(Mutex::new(Wishes { job: Cancel::default(), interval: None }));
+        let wishes = Arc::new(Mutex::new(Wishes { job: Cancel::default(), interval: None, number: 0 }));
         (Live { wishes, sampling: Cancel::default(), changed }, changes)
     }
 
@@ -50,7 +52,10 @@ impl Live {
     }
 
     pub(super) fn poll(&self, interval: Option<Duration>) {
-        self.lock().interval = interval.map(|interval| interval.min(LONGEST));
+        let mut wishes = self.lock();
+        wishes.interval = interval.map(|interval| interval.min(LONGEST));
+        wishes.number += 1;
+        drop(wishes);
         if interval.is_none() {
             self.interrupt_sample();
         }
@@ -61,9 +66,17 @@ impl Live {
         self.lock().interval
     }
 
-    /// Ends polling from the thread's side, where a sample failed.
-    pub(super) fn poll_failed(&self) {
-        self.lock().interval = None;
+    /// Which wish to poll is in force.
+    pub(super) fn number(&self) -> u64 {
+        self.lock().number
+    }
+
+    /// Ends polling from the thread's side, where a sample for that wish failed.
+    pub(super) fn poll_failed(&self, number: u64) {
+        let mut wishes = self.lock();
+        if wishes.number == number {
+            wishes.interval = None;
+        }
     }
 
     /// Whoever calls this has wished what it is for before: the thread takes the token back first and looks for wishes
@@ -99,5 +112,22 @@ impl Stopper {
     /// Ends polling, and the running job at the next point at which it can end. One that is submitted later is not meant.
     pub fn stop(&self) {
         self.0.stop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fails_ends_its_own_wish_and_no_later_one() {
+        let (live, _changes) = Live::new();
+        live.poll(Some(Duration::from_millis(50)));
+        let earlier = live.number();
+        live.poll(Some(Duration::from_millis(200)));
+        live.poll_failed(earlier);
+        assert_eq!(live.polling(), Some(Duration::from_millis(200)));
+        live.poll_failed(live.number());
+        assert_eq!(live.polling(), None);
     }
 }

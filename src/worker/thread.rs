@@ -115,11 +115,12 @@ impl<D: Device> Bench<D> {
     /// False when a job or another wish came in between: the sample is still due.
     fn take_sample(&mut self) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
+        let wish = self.live.number();
         match self.session.sample() {
             Ok(sample) => self.samples.push(sample),
             Err(error) if D::is_cancelled(&error) => return false,
             Err(error) => {
-                self.live.poll_failed();
+                self.live.poll_failed(wish);
                 if let Some(remark) = self.session.take_remark() {
                     self.outbox.send(Event::Remark(remark));
                 }

@@ -219,6 +219,14 @@ impl Encoder {
         self.is_ready() || self.phase == Phase::Offline
     }
 
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        match &self.source {
+            Source::Link(url) => without_codes(url),
+            Source::File { path, .. } => path.display().to_string(),
+        }
+    }
+
     /// The name by which the log and the jobs call it.
     pub fn name(&self) -> String {
         match (&self.source, &self.identity) {
