@@ -127,8 +127,7 @@ impl Display {
             .stderr(Stdio::null())
             .spawn()
             .ok()?;
-        let socket = std::path::Path::new("/tmp/.X11-unix/X97");
-        wait_for(|| socket.exists().then_some(0));
+        wait_for(|| std::os::unix::net::UnixStream::connect("/tmp/.X11-unix/X97").ok().map(|_| 0));
         Some(Display { name, server: Some(server) })
     }
 
