@@ -198,7 +198,14 @@ pub(super) fn notice_ui(ctx: &egui::Context, skin: &Skin, notice: &Notice, actio
                     let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
                     let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
                     let text = egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true);
-                    ui.add_sized([width - 76.0, 0.0], text.halign(egui::Align::Min));
+                    ui.allocate_ui_with_layout(
+                        egui::vec2(width - 76.0, 0.0),
+                        egui::Layout::left_to_right(egui::Align::Center),
+                        |ui| {
+                            ui.set_min_width(width - 76.0);
+                            ui.add(text);
+                        },
+                    );
                     if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
                         actions.push(Action::Dismiss);
                     }
