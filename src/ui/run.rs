@@ -85,7 +85,7 @@ impl eframe::App for Shown {
 
 const NO_DISPLAY: &str = "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are not set); without one: \
                           encoder-studio identify, status, position, save, diff, restore, verify, read, write, do, \
-                          find, decode, simulate, ports (see encoder-studio help).";
+                          find, decode, analyse, simulate, ports (see encoder-studio help).";
 const NOT_OPENED: &str = "The window cannot be opened: the display does not answer, or a run-time package is missing (the \
                           README lists them; the log file says more). Without a window: encoder-studio help.";
 

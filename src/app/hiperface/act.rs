@@ -79,7 +79,6 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
             }
             Action::Save(path) => self.save(path, services),
-            Action::ListBackups => self.list_backups(services),
             Action::Restore(path) => self.read_backup(path, services),
         }
     }

@@ -78,8 +78,6 @@ pub enum Action {
     AskSave,
     /// Save the profile.
     Save(PathBuf),
-    /// List the backups and the writes of this encoder.
-    ListBackups,
     /// Show what restoring a backup would do.
     Restore(PathBuf),
     /// Show what writing this profile into a connected encoder would do.
