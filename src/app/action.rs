@@ -1,12 +1,13 @@
 //! What a person, a view or a finished task asks of the studio.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::connect;
 use super::hiperface;
 use super::keep::SettingsRead;
+use super::recorder::{self, Exported};
 use super::studio::{SessionId, Tab};
-use super::{Language, Text, Theme};
+use super::{Language, Picture, Text, Theme};
 use crate::link::LinkError;
 use crate::profile::{Document, ProfileError};
 use crate::protocol::hiperface::EncoderTypes;
@@ -53,6 +54,19 @@ pub enum Action {
     /// A path was typed. What is there already is not replaced without a question, which the system's dialogs ask
     /// themselves.
     Typed(FileQuestion, PathBuf),
+    /// A file was chosen, and what is there may be replaced.
+    Chosen(FileQuestion, PathBuf),
+    /// Something with the recorder of a desk.
+    Recorder(Desk, recorder::Action),
+    /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
+    AskTable {
+        /// Whose recorder.
+        desk: Desk,
+        /// Only what is visible.
+        visible: bool,
+    },
+    /// Ask where to save a picture.
+    AskPicture(Picture),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
     Hiperface(SessionId, hiperface::Action),
     /// A task has come back.
@@ -63,10 +77,10 @@ pub enum Action {
 
 /// What tasks come back with.
 pub enum Done {
-    /// Whether there is something at the place where a profile is to be saved.
+    /// Whether there is something at the place where a file is to be written.
     Looked {
-        /// Whose profile it is.
-        session: SessionId,
+        /// What is to be written.
+        question: FileQuestion,
         /// The place.
         path: PathBuf,
         /// There is.
@@ -116,6 +130,10 @@ pub enum Done {
         /// How it went.
         result: Result<(), FileError>,
     },
+    /// A table was written, or not.
+    TableWritten(Desk, Exported),
+    /// A picture was saved, or not.
+    PictureSaved(PathBuf, Result<(), FileError>),
     /// What closing waits for has had time enough.
     Waited(Waited),
     /// A session that was let go has ended.
@@ -175,6 +193,13 @@ pub enum ReadError {
     Profile(ProfileError),
 }
 
+/// Whose recorder it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Desk {
+    /// An encoder's.
+    Encoder(SessionId),
+}
+
 /// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
@@ -187,6 +212,43 @@ pub enum FileQuestion {
         /// A name to begin with.
         suggested: PathBuf,
     },
+    /// Where to write a table of samples.
+    Table {
+        /// Whose they are.
+        desk: Desk,
+        /// Only what is visible.
+        visible: bool,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+    /// Where to save a picture.
+    Picture {
+        /// The picture.
+        picture: Picture,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+}
+
+impl FileQuestion {
+    /// How the names of such files end.
+    pub fn ending(&self) -> &'static str {
+        match self {
+            FileQuestion::Open | FileQuestion::Save { .. } => "ron",
+            FileQuestion::Table { .. } => "csv",
+            FileQuestion::Picture { .. } => "png",
+        }
+    }
+
+    /// A name to begin with, where a file is to be written.
+    pub fn suggested(&self) -> Option<&Path> {
+        match self {
+            FileQuestion::Open => None,
+            FileQuestion::Save { suggested, .. }
+            | FileQuestion::Table { suggested, .. }
+            | FileQuestion::Picture { suggested, .. } => Some(suggested),
+        }
+    }
 }
 
 /// A question that has to be answered before something is done.
@@ -204,5 +266,5 @@ pub struct Question {
 pub(super) enum Then {
     CloseWindow,
     CloseSession(SessionId),
-    Save(SessionId, PathBuf),
+    Write(FileQuestion, PathBuf),
 }

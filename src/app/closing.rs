@@ -2,7 +2,7 @@
 
 use super::Text;
 use super::action::{Action, Done, Question, Then, Waited};
-use super::hiperface::{self, Encoder, Source};
+use super::hiperface::{Encoder, Source};
 use super::services::JobEnd;
 use super::studio::{SessionId, Studio};
 
@@ -86,7 +86,7 @@ impl Studio {
                 self.begin_to_close();
             }
             Some(Then::CloseSession(id)) => self.remove(id),
-            Some(Then::Save(id, path)) => self.act_hiperface(id, hiperface::Action::Save(path)),
+            Some(Then::Write(question, path)) => self.chosen(question, path),
             None => {}
         }
     }

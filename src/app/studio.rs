@@ -103,6 +103,10 @@ impl Studio {
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),
             Action::Typed(question, path) => self.typed(question, path),
+            Action::Chosen(question, path) => self.chosen(question, path),
+            Action::Recorder(desk, action) => self.act_recorder(desk, action),
+            Action::AskTable { desk, visible } => self.ask_table(desk, visible),
+            Action::AskPicture(picture) => self.ask_picture(picture),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -125,6 +129,7 @@ impl Studio {
             search.pump();
         }
         self.services.pump_leaving();
+        self.feed_exports();
         self.keep();
     }
 
@@ -239,14 +244,14 @@ impl Studio {
             }
             Done::Read { path, key, result, types } => self.read(path, key, result, types),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
-            Done::Looked { session, path, exists: true } => {
+            Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
                 let confirm = Text::new("question.replace_it");
-                self.question = Some(Question { text, confirm, then: Then::Save(session, path) });
+                self.question = Some(Question { text, confirm, then: Then::Write(question, path) });
             }
-            Done::Looked { session, path, exists: false } => {
-                self.act_hiperface(session, hiperface::Action::Save(path));
-            }
+            Done::Looked { question, path, exists: false } => self.chosen(question, path),
+            Done::TableWritten(desk, exported) => self.table_written(desk, exported),
+            Done::PictureSaved(path, result) => self.picture_saved(&path, result),
             // That was to be looked at.
             Done::Left => {}
             Done::Written { session, path, key, document, remarks, result } => {
@@ -261,16 +266,6 @@ impl Studio {
                 }
             }
             Done::Hiperface(id, done) => self.done_for_encoder(id, done),
-        }
-    }
-
-    fn typed(&mut self, question: FileQuestion, path: PathBuf) {
-        match question {
-            FileQuestion::Open => self.act(Action::Open(path)),
-            FileQuestion::Save { session, .. } => self.services.tasks.run("look", move || {
-                let exists = path.exists();
-                Action::Done(Done::Looked { session, path, exists })
-            }),
         }
     }
 

@@ -63,6 +63,11 @@ impl Mailbox {
     pub fn send(&self, action: Action) {
         // The studio is gone: nobody waits for it any more.
         let _ = self.sender.send(action);
+        self.wake();
+    }
+
+    /// Wakes the window.
+    pub(super) fn wake(&self) {
         (self.wake)();
     }
 }

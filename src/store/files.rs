@@ -23,10 +23,22 @@ pub const MAX_TEXT: u64 = 16 << 20;
 /// # Errors
 /// With the old content in place: the folder is missing, the target is a folder or write-protected, the disk is full.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
+        return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
+    }
+    write_by(path, |file| file.write_all(content))
+}
+
+/// Writes a file as [`write_atomically`] does, with content that comes bit by bit. When `write` fails, there is the old
+/// file as before.
+///
+/// # Errors
+/// As [`write_atomically`], or what `write` gives; a device or a pipe is not written to.
+pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileProblem::IsFolder)),
-        Ok(target) if !target.is_file() => return write_directly(path, content).map_err(|e| failed(e.into())),
+        Ok(target) if !target.is_file() => return Err(failed(FileProblem::NotAFile)),
         // Renaming would not mind, but whoever protected the file does.
         Ok(target) if target.permissions().readonly() => return Err(failed(FileProblem::WriteProtected)),
         Ok(target) => Some(target.permissions()),
@@ -35,7 +47,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let target = through_links(path).map_err(|e| failed(e.into()))?;
     let failed = |problem: FileProblem| problem.of(FileTask::Write, &target);
     let folder = folder_of(&target).map_err(failed)?;
-    let staged = stage(folder, content, permissions).map_err(|e| failed(FileProblem::while_making(e)))?;
+    let staged = stage(folder, write, permissions).map_err(|e| failed(FileProblem::while_making(e)))?;
     staged.persist(&target).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -47,7 +59,8 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let folder = folder_of(path).map_err(failed)?;
-    let staged = stage(folder, content, None).map_err(|e| failed(FileProblem::while_making(e)))?;
+    let staged =
+        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileProblem::while_making(e)))?;
     staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -147,14 +160,18 @@ fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
 }
 
 /// A flushed temporary file beside the target; it is gone when dropped.
-fn stage(folder: &Path, content: &[u8], permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
+fn stage(
+    folder: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    permissions: Option<Permissions>,
+) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".encoder-studio-").suffix(".tmp");
     if permissions.is_none() {
         platform::with_usual_permissions(&mut builder);
     }
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(content)?;
+    write(&mut file)?;
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }

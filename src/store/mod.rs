@@ -19,7 +19,7 @@ pub use backups::{Backup, Backups};
 pub use captures::{OnProgress, ReadCaptureError, read_capture};
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
-pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_in_folder};
+pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder};
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
 

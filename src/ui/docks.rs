@@ -78,7 +78,7 @@ fn first_layout() -> Tree<Pane> {
     let live = tiles.insert_tab_tile(vec![live]);
     let lower = [Pane::Trace, Pane::Jobs, Pane::Log].map(|pane| tiles.insert_pane(pane));
     let lower = tiles.insert_tab_tile(lower.to_vec());
-    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 0.76);
+    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 0.7);
     let upper = tiles.insert_container(Container::Linear(upper));
     let root = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Vertical, [upper, lower], 0.78);
     let root = tiles.insert_container(Container::Linear(root));

@@ -49,3 +49,7 @@ pub const X: &str = "\u{E4F6}";
 pub const X_CIRCLE: &str = "\u{E4F8}";
 pub const ARROWS_OUT_LINE_HORIZONTAL: &str = "\u{E534}";
 pub const BOOK_OPEN_TEXT: &str = "\u{E8F2}";
+pub const CORNERS_IN: &str = "\u{E1CE}";
+pub const CORNERS_OUT: &str = "\u{E1D0}";
+pub const FAST_FORWARD: &str = "\u{E6A6}";
+pub const LINE_VERTICAL: &str = "\u{ED70}";

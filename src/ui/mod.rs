@@ -8,6 +8,7 @@ mod header;
 mod hiperface;
 pub mod icons;
 mod panels;
+mod plot;
 mod run;
 mod skin;
 pub mod widgets;

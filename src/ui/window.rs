@@ -22,6 +22,8 @@ pub struct Views {
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
+    /// The plot of the encoder that is shown.
+    pub(super) plot: super::plot::View,
     /// How often the position is read, in milliseconds.
     pub(super) rate: u64,
 }
@@ -84,7 +86,7 @@ impl Window {
             self.studio.act(action);
         }
         if let Some(question) = self.studio.take_file_question() {
-            dialogs::ask(question, skin.say("file.profiles"), self.studio.mailbox());
+            dialogs::ask(question, &skin, self.studio.mailbox());
         }
         if let Some(question) = self.studio.take_path_question() {
             self.type_path(question);

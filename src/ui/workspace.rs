@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
+use super::panels::plot_ui;
 use super::{Skin, Views, hiperface, icons};
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Studio, Tab};
@@ -22,6 +23,10 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         return;
     };
     match studio.settings.tab {
+        Tab::Hiperface if views.plot.large => {
+            let margin = egui::Margin::same(skin.space.groups as i8);
+            egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, encoder, views, actions));
+        }
         Tab::Hiperface => {
             running(ui, skin, encoder, actions);
             lost(ui, skin, encoder, actions);

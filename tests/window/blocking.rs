@@ -196,8 +196,8 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     desk.ask(Hiperface::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 6_000);
     desk.studio.poll();
-    let curve = &desk.encoder().curve;
-    assert!(curve.dropped() > 0 && curve.points().len() >= 4_096, "{} {}", curve.dropped(), curve.points().len());
+    let record = &desk.encoder().record;
+    assert!(record.dropped() > 0 && record.positions() >= 4_096, "{} {}", record.dropped(), record.positions());
     assert!(desk.encoder().trace.dropped() > 0);
     // In between, a job is taken at once.
     desk.ask(Hiperface::ReadCounter);

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, ReviewState};
-use encoder_studio::app::{Action, JobEnd, Language, Severity, Studio, Text};
+use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, Text, recorder};
 use encoder_studio::protocol::hiperface::CodeNumber;
 use encoder_studio::store::read_text;
 use encoder_studio::units::{Baud, CharacterFormat, Parity};
@@ -16,7 +16,7 @@ fn failed(studio: &Studio) -> bool {
     is_review(studio, |state| matches!(state, ReviewState::Failed { .. }))
 }
 
-fn lost(studio: &Studio) -> bool {
+pub(crate) fn lost(studio: &Studio) -> bool {
     studio.encoder().is_some_and(|encoder| matches!(encoder.phase, Phase::Lost(_)))
 }
 
@@ -342,7 +342,7 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
     assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));
 
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     desk.until("it is silent", silent);
     assert!(!desk.studio.is_live());
@@ -400,14 +400,14 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     let mut desk = Desk::at_port("rpm=60");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
-    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 10);
-    let position = desk.encoder().curve.last().unwrap();
+    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 10);
+    let position = desk.encoder().record.last().unwrap();
     assert!(position.valid && position.position.is_some());
     desk.put(0, 0, b"X");
     desk.write();
-    let points = desk.encoder().curve.points().len();
-    desk.until("samples go on", |studio| studio.encoder().unwrap().curve.points().len() > points + 10);
-    assert!(desk.encoder().curve.points().iter().all(|point| point.value.is_some()));
+    let points = desk.encoder().record.positions();
+    desk.until("samples go on", |studio| studio.encoder().unwrap().record.positions() > points + 10);
+    assert_eq!(desk.bad_positions(), 0);
     assert!(desk.told(Severity::Warning).is_empty());
 
     desk.wire().unplug();
@@ -426,7 +426,7 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
 fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     let mut desk = Desk::at_port("");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     let began = std::time::Instant::now();
     while desk.encoder().line().unwrap().polling().is_some() {
@@ -437,8 +437,8 @@ fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     std::thread::sleep(Duration::from_millis(50));
     desk.wire().exchange("");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    let points = desk.encoder().curve.points().len();
-    desk.until("samples go on", |studio| studio.encoder().unwrap().curve.points().len() > points + 3);
+    let points = desk.encoder().record.positions();
+    desk.until("samples go on", |studio| studio.encoder().unwrap().record.positions() > points + 3);
     assert!(desk.studio.is_live());
     assert_eq!(desk.times_told("session.poll_failed"), 0);
 }
@@ -448,14 +448,15 @@ fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::begun("");
         desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-        desk.until("samples come", |studio| studio.encoder().unwrap().curve.points().len() > 3);
+        desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
         desk.act(stop());
         assert!(!desk.studio.is_live());
         desk.settle();
         let sent = desk.wire().sent();
         desk.settle();
         assert_eq!(desk.wire().sent(), sent);
-        desk.ask(Hiperface::ClearCurve);
-        assert!(desk.encoder().curve.points().is_empty() && desk.encoder().curve.last().is_some());
+        let id = desk.encoder().id;
+        desk.act(Action::Recorder(Of::Encoder(id), recorder::Action::Clear));
+        assert!(desk.encoder().record.positions() == 0 && desk.encoder().record.last().is_some());
     }
 }

@@ -10,6 +10,7 @@ mod leaving;
 mod losing;
 mod monkey;
 mod profiles;
+mod recording;
 mod remembering;
 mod screen;
 mod state;

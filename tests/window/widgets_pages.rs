@@ -86,7 +86,7 @@ fn every_page_is_drawn_with_all_that_an_encoder_tells() {
     }
     screen.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(5))));
     look_at_everything(&mut screen, LARGE);
-    assert!(screen.encoder().curve.points().len() > 2);
+    assert!(screen.encoder().record.positions() > 2);
     screen.click("shell.stop");
     assert!(!screen.studio().is_live());
 }

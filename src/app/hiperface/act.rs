@@ -39,7 +39,6 @@ impl Encoder {
                     line.poll(interval);
                 }
             }
-            Action::ClearCurve => self.curve.clear(),
             Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             Action::Check { restart } => {

@@ -23,8 +23,6 @@ pub enum Action {
     ReadPosition,
     /// Read the position all the time, or no more.
     Poll(Option<Duration>),
-    /// Forget the curve of the position.
-    ClearCurve,
     /// Read an analogue channel.
     ReadAnalogue(u8),
     /// Read the counter.

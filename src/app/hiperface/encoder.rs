@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use super::curve::Curve;
 use super::drafts::Drafting;
 use super::meaning::Meaning;
+use super::record::Record;
 use super::review::Review;
 use super::{Done, Staged};
 use crate::app::line::Line;
@@ -14,7 +14,7 @@ use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
-use crate::device::hiperface::{Identity, Survey, profile_of};
+use crate::device::hiperface::{Identity, Sample, Survey, profile_of};
 use crate::link::LinkUrl;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
 use crate::profile::{Body, Document};
@@ -93,8 +93,8 @@ pub struct Encoder {
     pub position_set: Option<(u32, u32)>,
     /// Analogue values as last read, with their limits; or why the encoder does not give them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
-    /// Positions.
-    pub curve: Curve,
+    /// What was recorded while it was polled.
+    pub record: Record,
     /// A write on its way.
     pub review: Option<Review>,
     /// Backups, or why there are none.
@@ -137,7 +137,7 @@ impl Encoder {
             counter: None,
             position_set: None,
             analogue: BTreeMap::new(),
-            curve: Curve::default(),
+            record: Record::default(),
             review: None,
             backups: None,
             writes: None,
@@ -340,13 +340,19 @@ impl Encoder {
         self.counter = counter;
         self.codes = Some(codes);
         if let Some(position) = position {
-            self.curve.add(vec![position], 0);
+            self.add_samples(vec![position], 0);
         }
         if first {
             self.load_draft(services);
         }
         self.tell_of_code(services);
         self.list_backups(services);
+    }
+
+    /// Records what was sampled, or read on its own.
+    pub(super) fn add_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
+        let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+        self.record.add(samples, dropped, geometry);
     }
 
     /// Whether the access code that the user gave opens the fields that it guards; never the code itself.
@@ -380,7 +386,7 @@ impl Encoder {
         self.check = None;
         self.position_set = None;
         self.analogue.clear();
-        self.curve.forget();
+        self.record.forget();
         self.backups = None;
         self.writes = None;
         self.access_codes.clear();

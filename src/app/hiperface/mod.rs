@@ -2,22 +2,22 @@
 
 mod act;
 mod action;
-mod curve;
 mod drafts;
 mod encoder;
 pub mod forms;
 mod meaning;
 mod news;
+mod record;
 pub mod review;
 pub mod rules;
 mod staged;
 
 pub use action::{Action, Done};
-pub use curve::{Curve, Point, Unit};
 pub use drafts::DraftKey;
 pub(in crate::app) use drafts::file_key;
 pub use encoder::{Encoder, Phase, Source};
 pub(in crate::app) use encoder::{Opening, without_codes};
 pub(in crate::app) use news::{LastWords, last_words};
+pub use record::Record;
 pub use review::{Review, ReviewState};
 pub use staged::{Staged, StagedError};

@@ -22,10 +22,10 @@ impl Encoder {
         self.let_go(JobEnd::Cancelled, services);
         self.opening = None;
         self.trace.begin(opened.began.clone());
+        self.record.begin(&opened.began);
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
         services.log.settle("session.not_connected", Some(&self.name()));
-        self.curve.forget();
         self.just_connected = true;
         self.codes_due.clear();
         self.tried_code = None;
@@ -63,7 +63,7 @@ impl Encoder {
         let (samples, dropped) = line.samples();
         let (frames, missed) = line.frames();
         if !samples.is_empty() || dropped > 0 {
-            self.curve.add(samples, dropped);
+            self.add_samples(samples, dropped);
             self.answers();
         }
         if !frames.is_empty() {
@@ -131,7 +131,7 @@ impl Encoder {
                 self.give_codes(services);
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
-            HiperfaceOutput::Position(reading) => self.curve.add(vec![Sample::Position(reading)], 0),
+            HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
             HiperfaceOutput::Value(value) => self.take_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);

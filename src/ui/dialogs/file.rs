@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::app::hiperface::Action as Hiperface;
 use crate::app::{Action, FileQuestion, Mailbox};
 use crate::ui::controls::{button, modal, primary, text_entry};
 use crate::ui::{Skin, icons};
@@ -20,7 +19,8 @@ pub(in crate::ui) struct FileView {
 const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the question. The answer comes as an action; where the system has no dialogs, [`file_ui`] asks.
-pub(in crate::ui) fn ask(question: FileQuestion, filter: String, mailbox: Mailbox) {
+pub(in crate::ui) fn ask(question: FileQuestion, skin: &Skin, mailbox: Mailbox) {
+    let filter = skin.say(kind(&question));
     if !has_dialogs() {
         mailbox.send(Action::TypePath(question));
         return;
@@ -28,10 +28,10 @@ pub(in crate::ui) fn ask(question: FileQuestion, filter: String, mailbox: Mailbo
     let fallback = (question.clone(), mailbox.clone());
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
-        let dialog = rfd::FileDialog::new().add_filter(filter, &["ron"]);
-        let chosen = match &question {
-            FileQuestion::Open => dialog.pick_file(),
-            FileQuestion::Save { suggested, .. } => {
+        let dialog = rfd::FileDialog::new().add_filter(filter, &[question.ending()]);
+        let chosen = match question.suggested() {
+            None => dialog.pick_file(),
+            Some(suggested) => {
                 let dialog = match suggested.file_name() {
                     Some(name) => dialog.set_file_name(name.to_string_lossy()),
                     None => dialog,
@@ -44,7 +44,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, filter: String, mailbox: Mailbo
             }
         };
         mailbox.send(match chosen {
-            Some(path) => answer(&question, path),
+            Some(path) => Action::Chosen(question, path),
             None if began.elapsed() < TOO_FAST => Action::TypePath(question),
             None => Action::FileNotChosen,
         });
@@ -60,19 +60,21 @@ fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
 
-fn answer(question: &FileQuestion, path: PathBuf) -> Action {
+/// What the system's dialog calls such files.
+fn kind(question: &FileQuestion) -> &'static str {
     match question {
-        FileQuestion::Open => Action::Open(path),
-        FileQuestion::Save { session, .. } => Action::Hiperface(*session, Hiperface::Save(path)),
+        FileQuestion::Open | FileQuestion::Save { .. } => "file.profiles",
+        FileQuestion::Table { .. } => "file.tables",
+        FileQuestion::Picture { .. } => "file.pictures",
     }
 }
 
 impl FileView {
     /// Asks for a path to be typed, beginning in `folder`.
     pub(in crate::ui) fn new(question: FileQuestion, folder: &std::path::Path) -> Self {
-        let path = match &question {
-            FileQuestion::Open => folder.join(""),
-            FileQuestion::Save { suggested, .. } => folder.join(suggested),
+        let path = match question.suggested() {
+            None => folder.join(""),
+            Some(suggested) => folder.join(suggested),
         };
         FileView { question, path: path.display().to_string(), fresh: true }
     }
@@ -83,6 +85,8 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
     let (title, confirm, icon) = match view.question {
         FileQuestion::Open => ("file.open_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),
     };
     let mut done = false;
     modal(ctx, skin, "file", 520.0, |ui| {

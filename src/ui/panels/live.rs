@@ -1,15 +1,14 @@
-//! The position, large, and its curve.
+//! The position, large, and the plot of what was recorded.
 
 use std::time::Duration;
 
 use egui::{RichText, Ui};
-use egui_plot::{Line, Plot, PlotPoints, Points};
 
 use super::nothing;
-use crate::app::hiperface::{Action as Hiperface, Curve, Encoder, Phase, Unit};
-use crate::app::{Action, Studio};
-use crate::ui::controls::{choice, enabled_button, icon_button, row};
-use crate::ui::{Skin, Views, icons};
+use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::app::{Action, Desk, Studio, Text};
+use crate::ui::controls::{choice, enabled_button, row};
+use crate::ui::{Skin, Views, icons, plot};
 
 /// How often the position may be read; back to back first.
 const RATES: [(u64, &str); 4] =
@@ -25,12 +24,32 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     ui.add_space(skin.space.inside);
     controls(ui, skin, encoder, views, actions);
     ui.add_space(skin.space.between);
-    curve(ui, skin, encoder, actions);
+    if !views.plot.large {
+        plot_ui(ui, skin, encoder, views, actions);
+    }
+}
+
+/// The plot of what was recorded of an encoder.
+pub(in crate::ui) fn plot_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    views: &mut Views,
+    actions: &mut Vec<Action>,
+) {
+    let empty = skin.say(if encoder.line().is_some() { "live.no_curve" } else { "live.nothing" });
+    let desk = Desk::Encoder(encoder.id);
+    plot::plot_ui(ui, skin, &encoder.record.recorder, desk, &mut views.plot, &empty, actions);
+    let dropped = encoder.record.dropped();
+    if dropped > 0 {
+        let text = Text::new("live.dropped").with("count", dropped);
+        ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(skin.palette.warn));
+    }
 }
 
 fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    let curve = &encoder.curve;
-    let reading = curve.last();
+    let record = &encoder.record;
+    let reading = record.last();
     let position = reading.and_then(|reading| reading.position);
     let number = |value: f64, decimals: usize| skin.number(value, decimals);
     let (main, unit) = match (reading, position) {
@@ -46,7 +65,7 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(colour));
         ui.label(skin.label(unit));
-        if curve.refused() {
+        if record.refused() {
             ui.label(RichText::new(skin.say("live.refused")).color(skin.palette.bad));
         } else if reading.is_some_and(|reading| !reading.valid) {
             ui.label(RichText::new(skin.say("live.invalid")).color(skin.palette.bad));
@@ -80,76 +99,4 @@ fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, acti
             actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
         }
     });
-}
-
-fn curve(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let (connected, curve) = (encoder.line().is_some(), &encoder.curve);
-    let unit = match curve.unit() {
-        Unit::Turns => skin.say("live.unit_turns"),
-        Unit::Millimetres => "mm".to_owned(),
-        Unit::Steps => skin.say("live.steps"),
-    };
-    ui.horizontal(|ui| {
-        ui.label(skin.caption(format!("{} / {unit}", skin.say("live.position"))));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, curve.points().len() > 1, icons::TRASH, &skin.say("live.clear")).clicked() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::ClearCurve));
-            }
-        });
-    });
-    let colour = skin.palette.series.first().copied().unwrap_or(skin.palette.accent);
-    skin.sunken().inner_margin(4).show(ui, |ui| {
-        let height = ui.available_height().max(80.0);
-        if curve.points().len() < 2 {
-            ui.set_min_size(egui::vec2(ui.available_width().max(0.0), height));
-            nothing(ui, skin, &skin.say(if connected { "live.no_curve" } else { "live.nothing" }));
-            return;
-        }
-        // Ticks fade from one colour into the other as they come closer together.
-        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = skin.palette.muted.into();
-        ui.visuals_mut().override_text_color = Some(skin.palette.muted.into());
-        let plot = Plot::new("position")
-            .allow_scroll(false)
-            .allow_drag(false)
-            .allow_boxed_zoom(false)
-            .show_background(false)
-            .grid_spacing(egui::Rangef::new(48.0, 300.0))
-            .set_margin_fraction(egui::vec2(0.0, 0.15))
-            .x_axis_formatter(|mark, _| format!("{} s", mark.value))
-            .auto_bounds(true);
-        plot.height(height).show(ui, |plot| {
-            for (at, run) in runs(curve).into_iter().enumerate() {
-                if run.len() == 1 {
-                    plot.points(Points::new(at.to_string(), PlotPoints::Owned(run)).color(colour).radius(2.0));
-                } else {
-                    plot.line(Line::new(at.to_string(), PlotPoints::Owned(run)).color(colour).width(1.5));
-                }
-            }
-        });
-    });
-}
-
-/// Seconds between readings from which they do not belong together.
-const APART: f64 = 2.5;
-
-/// The stretches of the curve between its gaps.
-fn runs(curve: &Curve) -> Vec<Vec<egui_plot::PlotPoint>> {
-    let mut runs = vec![Vec::new()];
-    for point in curve.points() {
-        match (point.value, runs.last_mut()) {
-            (Some(value), _) => {
-                let point = egui_plot::PlotPoint::new(point.seconds, value);
-                match runs.last_mut() {
-                    // A line between readings far apart would tell of a movement that nobody has seen.
-                    Some(run) if run.last().is_none_or(|last: &egui_plot::PlotPoint| point.x - last.x < APART) => {
-                        run.push(point);
-                    }
-                    _ => runs.push(vec![point]),
-                }
-            }
-            (None, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
-            (None, _) => {}
-        }
-    }
-    runs
 }

@@ -1,0 +1,122 @@
+//! Files that the user is asked for: what happens when one was chosen. Whatever touches the disk runs as a task.
+
+use std::path::{Path, PathBuf};
+
+use super::action::{Action, Desk, Done, FileQuestion};
+use super::hiperface;
+use super::recorder::{self, Exported, Recorder};
+use super::studio::Studio;
+use super::{Picture, Severity, Text, explain};
+use crate::store::{FileError, write_atomically};
+
+impl Studio {
+    /// A path was typed: what is there already is not replaced without a question.
+    pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
+        if question == FileQuestion::Open {
+            return self.chosen(question, path);
+        }
+        self.services.tasks.run("look", move || {
+            let exists = path.exists();
+            Action::Done(Done::Looked { question, path, exists })
+        });
+    }
+
+    /// A file was chosen.
+    pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
+        match question {
+            FileQuestion::Open => self.act(Action::Open(path)),
+            FileQuestion::Save { session, .. } => self.act_hiperface(session, hiperface::Action::Save(path)),
+            FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
+            FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
+                let result = write_atomically(&path, &picture.png());
+                Action::Done(Done::PictureSaved(path, result))
+            }),
+        }
+    }
+
+    /// The recorder of a desk.
+    pub fn recorder(&self, desk: Desk) -> Option<&Recorder> {
+        match desk {
+            Desk::Encoder(id) => {
+                self.encoders.iter().find(|encoder| encoder.id == id).map(|encoder| &encoder.record.recorder)
+            }
+        }
+    }
+
+    fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
+        match desk {
+            Desk::Encoder(id) => self.encoder_mut(id).map(|encoder| &mut encoder.record.recorder),
+        }
+    }
+
+    pub(super) fn act_recorder(&mut self, desk: Desk, action: recorder::Action) {
+        if let Some(recorder) = self.recorder_mut(desk) {
+            recorder.act(action);
+        }
+    }
+
+    pub(super) fn ask_table(&mut self, desk: Desk, visible: bool) {
+        let suggested = self.suggested("csv");
+        self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
+    }
+
+    pub(super) fn ask_picture(&mut self, picture: Picture) {
+        let suggested = self.suggested("png");
+        self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
+    }
+
+    /// A name after the time of day: what is recorded is not recorded again.
+    fn suggested(&self, ending: &str) -> PathBuf {
+        PathBuf::from(format!("{}.{ending}", self.services.now().strftime("recording-%Y%m%d-%H%M%S")))
+    }
+
+    fn write_table(&mut self, desk: Desk, visible: bool, path: &Path) {
+        let mailbox = self.services.tasks.mailbox();
+        let Some(recorder) = self.recorder_mut(desk) else { return };
+        let busy = recorder.export().is_some();
+        match recorder.begin_export(path, visible) {
+            Some(writing) => self
+                .services
+                .tasks
+                .run("table", move || Action::Done(Done::TableWritten(desk, writing.run(&|| mailbox.wake())))),
+            None => {
+                let text = Text::new(if busy { "recorder.still_writing" } else { "recorder.nothing_to_write" });
+                self.services.tell(Severity::Warning, vec![text], None);
+            }
+        }
+    }
+
+    pub(super) fn table_written(&mut self, desk: Desk, exported: Exported) {
+        let lost = self.recorder_mut(desk).map_or(0, Recorder::end_export);
+        let path = exported.path.display();
+        let (severity, mut texts) = match &exported.rows {
+            Ok(Some(rows)) => {
+                (Severity::Good, vec![Text::new("recorder.written").with("rows", rows).with("path", path)])
+            }
+            Ok(None) => (Severity::Note, vec![Text::new("recorder.given_up").with("path", path)]),
+            Err(error) => (Severity::Error, vec![explain::file(error)]),
+        };
+        if lost > 0 {
+            texts.push(Text::new("recorder.lost").with("count", lost));
+        }
+        let severity = if lost > 0 { severity.max(Severity::Warning) } else { severity };
+        self.services.tell(severity, texts, None);
+    }
+
+    pub(super) fn picture_saved(&mut self, path: &Path, result: Result<(), FileError>) {
+        match result {
+            Ok(()) => {
+                let text = Text::new("picture.saved").with("path", path.display());
+                self.services.tell(Severity::Good, vec![text], None);
+            }
+            Err(error) => self.services.tell(Severity::Error, vec![explain::file(&error)], None),
+        }
+    }
+
+    /// Hands samples over to the tables that are being written.
+    pub(super) fn feed_exports(&mut self) {
+        for encoder in &mut self.encoders {
+            encoder.record.recorder.feed_export();
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! What is recorded of an encoder while it is polled: its position without the wrap, speed and acceleration.
+
+use jiff::Zoned;
+
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::device::hiperface::{PositionReading, Sample};
+use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
+use crate::signal::history::{Flags, Kind, Part};
+use crate::signal::{Motion, Rates, Time, Unwrap};
+use crate::units::Moment;
+
+/// Positions that are kept: more than a day at the fastest rate.
+const CAPACITY: usize = 4_000_000;
+/// Nanoseconds between positions from which they are not joined: a line would tell of a movement that nobody has seen.
+const APART: i64 = 2_500_000_000;
+/// Nanoseconds over which speed is averaged.
+const WINDOW: i64 = 250_000_000;
+/// Nanoseconds that are shown to begin with.
+const SPAN: i64 = 30_000_000_000;
+
+/// The recorder of an encoder, and what is needed to fill it.
+#[derive(Debug)]
+pub struct Record {
+    /// Position, speed and acceleration as lines.
+    pub recorder: Recorder,
+    positions: GroupId,
+    /// What the position words mean; `None` until the first position.
+    follower: Option<Follower>,
+    last: Option<PositionReading>,
+    no_position: Option<Sample>,
+    dropped: u64,
+    /// When the clock of the first session began, and how much later that of the present one did.
+    began: Option<Zoned>,
+    shift: i64,
+    newest: Option<Time>,
+}
+
+/// Makes positions that go on from position words.
+#[derive(Debug)]
+struct Follower {
+    geometry: Option<Geometry>,
+    unwrap: Unwrap,
+    motion: Motion,
+}
+
+impl Follower {
+    fn new(geometry: Option<Geometry>) -> Self {
+        let range = match geometry {
+            Some(Geometry::Linear { .. }) => None,
+            Some(Geometry::Rotary { .. }) => geometry.and_then(Geometry::range),
+            // The whole word, which goes round at its end.
+            None => Some(1 << 32),
+        };
+        let range = range.and_then(|range| i64::try_from(range).ok());
+        let unwrap = range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear);
+        Follower { geometry, unwrap, motion: Motion::over(WINDOW) }
+    }
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Record::about(None)
+    }
+}
+
+impl Record {
+    /// A recorder for positions that have this meaning.
+    fn about(geometry: Option<Geometry>) -> Self {
+        let mut recorder = Recorder::new(SPAN);
+        let columns = [Kind::Whole, Kind::Real, Kind::Real];
+        let positions = recorder.add_group(&columns, CAPACITY, Some(APART));
+        let [position, speed, acceleration] = scales(geometry);
+        let line = |column, name, heading, scales| Line::of(positions, column, Text::new(name), heading, scales);
+        recorder.add_line(line(0, "recorder.position", "position", position));
+        let linear = matches!(geometry, Some(Geometry::Linear { .. }));
+        let name = if linear { "recorder.speed_linear" } else { "recorder.speed" };
+        recorder.add_line(line(1, name, "speed", speed).derived());
+        recorder.add_line(line(2, "recorder.acceleration", "acceleration", acceleration).derived().hidden());
+        Record {
+            recorder,
+            positions,
+            follower: None,
+            last: None,
+            no_position: None,
+            dropped: 0,
+            began: None,
+            shift: 0,
+            newest: None,
+        }
+    }
+
+    /// A session has begun. What was recorded before stays: its samples are earlier by as much as the clocks say.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        self.last = None;
+        self.no_position = None;
+        let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
+        let later = i64::try_from(since.as_nanos()).unwrap_or(0);
+        // A clock of the wall may be set back.
+        let newest = self.newest.map_or(0, Time::nanoseconds);
+        self.shift = later.max(newest);
+        self.gap();
+    }
+
+    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
+        self.dropped += dropped;
+        if dropped > 0 {
+            self.gap();
+        }
+        for sample in samples {
+            match sample {
+                Sample::Position(reading) => {
+                    self.follow(&reading, geometry);
+                    self.last = Some(reading);
+                    self.no_position = None;
+                }
+                Sample::NoPosition { at, codes } => {
+                    let before = self.last.as_ref().map_or(0, |reading| i64::from(reading.raw));
+                    self.append(at, before, Rates::default(), Flags::BAD);
+                    self.gap();
+                    self.no_position = Some(Sample::NoPosition { at, codes });
+                }
+            }
+        }
+    }
+
+    /// The last position, as long as the encoder has one to give.
+    pub fn last(&self) -> Option<&PositionReading> {
+        self.last.as_ref().filter(|_| self.no_position.is_none())
+    }
+
+    /// The encoder has no position to give at the moment.
+    pub fn refused(&self) -> bool {
+        self.no_position.is_some()
+    }
+
+    /// Samples that came too fast to be recorded.
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// Positions that are recorded.
+    pub fn positions(&self) -> u64 {
+        let line = self.recorder.lines().first();
+        let all = line.and_then(|line| self.recorder.history(line)).map(|history| history.all());
+        all.map_or(0, |all| all.end - all.start)
+    }
+
+    /// Another encoder: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        let began = self.began.take();
+        *self = Record { began, ..Record::default() };
+    }
+
+    fn follow(&mut self, reading: &PositionReading, geometry: Option<Geometry>) {
+        if self.follower.as_ref().is_none_or(|follower| follower.geometry != geometry) {
+            // Steps mean something else now: what was recorded cannot be seen in the same units.
+            let (began, shift, newest, dropped) = (self.began.take(), self.shift, self.newest, self.dropped);
+            *self = Record { began, shift, newest, dropped, ..Record::about(geometry) };
+            self.follower = Some(Follower::new(geometry));
+        }
+        let time = self.time(reading.at);
+        let late = self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > APART);
+        let Some(follower) = &mut self.follower else { return };
+        if late || !reading.valid {
+            follower.unwrap.gap();
+            follower.motion.reset();
+        }
+        let word = i64::from(reading.raw);
+        let next = follower.unwrap.next(word).filter(|_| reading.valid);
+        let Some(next) = next else {
+            follower.unwrap.gap();
+            return self.append(reading.at, word, Rates::default(), Flags::BAD);
+        };
+        if next.broken {
+            follower.motion.reset();
+        }
+        let rates = follower.motion.next(time, next.steps);
+        let mut flags = if next.broken { Flags::BREAK } else { Flags::NONE };
+        if !reading.codes.is_empty() {
+            flags |= Flags::WARNING;
+        }
+        self.append(reading.at, next.steps, rates, flags);
+    }
+
+    fn append(&mut self, at: Moment, steps: i64, rates: Rates, flags: Flags) {
+        // One that is read between two that were sampled may be told a little late.
+        let time = self.newest.map_or(self.time(at), |newest| self.time(at).max(newest));
+        self.newest = Some(time);
+        // What is not known is no number, which breaks the line and counts nowhere.
+        let (speed, acceleration) = (rates.speed.unwrap_or(f64::NAN), rates.acceleration.unwrap_or(f64::NAN));
+        let (steps, speed, acceleration, flags) = ([steps], [speed], [acceleration], [flags]);
+        let parts = [
+            Part::whole(&steps).flagged(&flags),
+            Part::real(&speed).flagged(&flags),
+            Part::real(&acceleration).flagged(&flags),
+        ];
+        let appended = self.recorder.append(self.positions, &[time], &parts);
+        debug_assert_eq!(appended, Ok(()), "three columns, and no time goes back");
+    }
+
+    fn gap(&mut self) {
+        self.recorder.break_before_next(self.positions);
+        if let Some(follower) = &mut self.follower {
+            follower.unwrap.gap();
+            follower.motion.reset();
+        }
+    }
+
+    fn time(&self, at: Moment) -> Time {
+        Time::from(at).plus(self.shift)
+    }
+}
+
+/// The units of position, speed and acceleration, whose samples are in steps.
+fn scales(geometry: Option<Geometry>) -> [Vec<Scale>; 3] {
+    match geometry {
+        Some(Geometry::Linear { period_nm, .. }) => {
+            let millimetres = f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6;
+            [
+                vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
+                vec![
+                    Scale::new("unit.millimetres_per_second", millimetres, 3),
+                    Scale::new("unit.metres_per_minute", millimetres * 0.06, 4),
+                    Scale::new("unit.steps_per_second", 1.0, 0),
+                ],
+                vec![
+                    Scale::new("unit.millimetres_per_second_squared", millimetres, 1),
+                    Scale::new("unit.steps_per_second_squared", 1.0, 0),
+                ],
+            ]
+        }
+        Some(rotary @ Geometry::Rotary { .. }) => {
+            let turns = 1.0 / rotary.steps_per_turn().unwrap_or(1) as f64;
+            [
+                vec![
+                    Scale::new("unit.turns", turns, 5),
+                    Scale::new("unit.degrees", 360.0 * turns, 3),
+                    Scale::new("unit.steps", 1.0, 0),
+                ],
+                vec![
+                    Scale::new("unit.revolutions_per_minute", 60.0 * turns, 2),
+                    Scale::new("unit.degrees_per_second", 360.0 * turns, 1),
+                    Scale::new("unit.steps_per_second", 1.0, 0),
+                ],
+                vec![
+                    Scale::new("unit.revolutions_per_second_squared", turns, 3),
+                    Scale::new("unit.radians_per_second_squared", std::f64::consts::TAU * turns, 2),
+                    Scale::new("unit.steps_per_second_squared", 1.0, 0),
+                ],
+            ]
+        }
+        None => [
+            vec![Scale::new("unit.steps", 1.0, 0)],
+            vec![Scale::new("unit.steps_per_second", 1.0, 0)],
+            vec![Scale::new("unit.steps_per_second_squared", 1.0, 0)],
+        ],
+    }
+}

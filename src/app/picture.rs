@@ -1,0 +1,57 @@
+//! A picture of a part of the window, to be saved as PNG.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Pixels, row by row from the top.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    /// Red, green, blue of each pixel.
+    bytes: Arc<[u8]>,
+}
+
+impl fmt::Debug for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Picture({} × {})", self.width, self.height)
+    }
+}
+
+impl Picture {
+    /// Pixels as red, green and blue; `None` where there are none, or not as many as the size says.
+    pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
+        let wanted = u64::from(width) * u64::from(height) * 3;
+        let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
+        fits.then(|| Picture { width, height, bytes: bytes.into() })
+    }
+
+    /// The file's content.
+    pub(super) fn png(&self) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        // It goes into memory, and the size was checked.
+        let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&self.bytes));
+        debug_assert!(written.is_ok(), "{written:?}");
+        file
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_as_many_pixels_as_it_says() {
+        assert!(Picture::new(2, 1, vec![0; 5]).is_none());
+        assert!(Picture::new(0, 7, Vec::new()).is_none());
+        let pixels = vec![255, 0, 0, 0, 0, 255];
+        let picture = Picture::new(2, 1, pixels.clone()).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(picture.png())).read_info().unwrap();
+        let mut read = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut read).unwrap();
+        assert_eq!((info.width, info.height, read), (2, 1, pixels));
+    }
+}

@@ -1,0 +1,120 @@
+//! Two cursors, and what lies between them: from the raw samples, not from what was reduced for a picture.
+
+use super::{Line, Recorder};
+use crate::signal::Time;
+
+/// One of the two cursors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Cursor {
+    /// The first.
+    A,
+    /// The second.
+    B,
+}
+
+impl Cursor {
+    /// Both.
+    pub const BOTH: [Cursor; 2] = [Cursor::A, Cursor::B];
+
+    /// A or B.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Cursor::A => "A",
+            Cursor::B => "B",
+        }
+    }
+}
+
+/// What the cursors tell of a line, in its unit. What is `None` has no sample to believe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The raw sample nearest to cursor A.
+    pub a: Option<f64>,
+    /// The raw sample nearest to cursor B.
+    pub b: Option<f64>,
+    /// B minus A.
+    pub difference: Option<f64>,
+    /// Mean, least, greatest value and standard deviation of the samples from one cursor to the other, both included.
+    pub between: Option<Between>,
+}
+
+/// Of the samples between two cursors, in the line's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// Samples with a value.
+    pub count: u64,
+    /// Samples without a value to believe.
+    pub bad: u64,
+    /// Mean.
+    pub mean: f64,
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+impl Recorder {
+    /// Where a cursor stands.
+    pub fn cursor(&self, cursor: Cursor) -> Option<Time> {
+        match cursor {
+            Cursor::A => self.cursors[0],
+            Cursor::B => self.cursors[1],
+        }
+    }
+
+    /// Nanoseconds from A to B.
+    pub fn between_cursors(&self) -> Option<i64> {
+        Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
+    }
+
+    /// What the cursors tell of a line; `None` without a cursor.
+    pub fn measure(&self, line: &Line) -> Option<Measured> {
+        let [a, b] = self.cursors;
+        if a.is_none() && b.is_none() {
+            return None;
+        }
+        let at = |time: Option<Time>| self.nearest(line, time?).filter(|sample| line.value(sample).is_finite());
+        let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::signal::history::Flags::BAD));
+        let (at_a, at_b) = (good(a), good(b));
+        let difference = at_a.zip(at_b).map(|(a, b)| line.difference(&a, &b));
+        let between = a.zip(b).and_then(|(a, b)| self.between(line, a.min(b), a.max(b)));
+        Some(Measured {
+            a: at_a.map(|sample| line.value(&sample)),
+            b: at_b.map(|sample| line.value(&sample)),
+            difference,
+            between,
+        })
+    }
+
+    fn between(&self, line: &Line, from: Time, to: Time) -> Option<Between> {
+        let history = self.history(line)?;
+        let statistics = history.statistics(line.column, history.indices(from, to.plus(1)))?;
+        let factor = line.factor();
+        let ends = (statistics.min.to_f64() * factor, statistics.max.to_f64() * factor);
+        Some(Between {
+            count: statistics.count,
+            bad: statistics.bad,
+            mean: statistics.mean * factor,
+            // A unit may count the other way round.
+            min: ends.0.min(ends.1),
+            max: ends.0.max(ends.1),
+            deviation: statistics.deviation * factor.abs(),
+        })
+    }
+
+    pub(super) fn cursor_mut(&mut self, cursor: Cursor) -> &mut Option<Time> {
+        let [a, b] = &mut self.cursors;
+        match cursor {
+            Cursor::A => a,
+            Cursor::B => b,
+        }
+    }
+
+    pub(super) fn show_cursors(&mut self, shown: bool) {
+        let (from, _) = self.window();
+        let third = self.span() / 3;
+        self.cursors = if shown { [Some(from.plus(third)), Some(from.plus(2 * third))] } else { [None; 2] };
+    }
+}

@@ -1,0 +1,299 @@
+//! Samples as a table of text (CSV). They are handed in portions to a thread that writes: neither the window waits for the
+//! disk, nor the samples for the table.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
+
+use super::{GroupId, Line, Recorder};
+use crate::signal::Time;
+use crate::signal::history::Flags;
+use crate::store::{FileError, write_by};
+
+/// Rows of a portion, and portions that wait.
+const ROWS: usize = 16_384;
+const WAITING: usize = 2;
+
+/// A table that is being written.
+#[derive(Debug)]
+pub struct Export {
+    /// Where to.
+    pub path: PathBuf,
+    cancelled: Arc<AtomicBool>,
+    written: Arc<AtomicU64>,
+    total: u64,
+    sender: Option<Sender<Rows>>,
+    next: Option<Rows>,
+    heads: Vec<Head>,
+    columns: Vec<Column>,
+    lost: u64,
+}
+
+/// How a table was written.
+#[derive(Debug)]
+pub struct Exported {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Rows in it; `None`: it was given up, and there is none.
+    pub rows: Result<Option<u64>, FileError>,
+}
+
+/// How far a group of samples has been handed over.
+#[derive(Debug)]
+struct Head {
+    group: GroupId,
+    next: u64,
+    end: u64,
+}
+
+#[derive(Clone, Debug)]
+struct Column {
+    heading: String,
+    head: usize,
+    column: usize,
+    factor: f64,
+}
+
+/// A portion of the table: for each row a time and as many cells as there are columns.
+#[derive(Debug, Default)]
+struct Rows {
+    times: Vec<Time>,
+    cells: Vec<Cell>,
+}
+
+/// A cell: nothing where the line has no sample at that time, or none to believe.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    value: Option<f64>,
+    flags: Flags,
+}
+
+/// What remains to be done on a thread: writes the table as its rows come.
+pub(in crate::app) struct Writing {
+    path: PathBuf,
+    headings: Vec<String>,
+    receiver: Receiver<Rows>,
+    cancelled: Arc<AtomicBool>,
+    written: Arc<AtomicU64>,
+}
+
+impl Export {
+    /// Rows written and rows to be written, about.
+    pub fn progress(&self) -> (u64, u64) {
+        (self.written.load(Ordering::Relaxed).min(self.total), self.total)
+    }
+
+    /// Samples that went while the table was written.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    pub(super) fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Recorder {
+    /// The table that is being written.
+    pub fn export(&self) -> Option<&Export> {
+        self.export.as_ref()
+    }
+
+    /// Begins to write a table of the lines that are shown: of what is visible, or of all that was recorded. Gives what
+    /// has to be done on a thread; [`feed_export`](Self::feed_export) hands the rows over. `None`: there is nothing to
+    /// write, or one is being written.
+    pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
+        if self.export.is_some() {
+            return None;
+        }
+        let (from, to) = self.window();
+        let mut heads: Vec<Head> = Vec::new();
+        let mut columns = Vec::new();
+        for line in self.shown() {
+            let history = self.history(line)?;
+            let range = if visible { history.indices(from, to.plus(1)) } else { history.all() };
+            let head = heads.iter().position(|head| head.group == line.group).unwrap_or(heads.len());
+            if head == heads.len() {
+                heads.push(Head { group: line.group, next: range.start, end: range.end });
+            }
+            columns.push(Column { heading: heading(line), head, column: line.column, factor: line.factor() });
+        }
+        let total = heads.iter().map(|head| head.end.saturating_sub(head.next)).sum();
+        if total == 0 {
+            return None;
+        }
+        let (sender, receiver) = bounded(WAITING);
+        let (cancelled, written) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
+        let headings = columns.iter().map(|column: &Column| column.heading.clone()).collect();
+        let writing = Writing {
+            path: path.to_owned(),
+            headings,
+            receiver,
+            cancelled: cancelled.clone(),
+            written: written.clone(),
+        };
+        self.export = Some(Export {
+            path: path.to_owned(),
+            cancelled,
+            written,
+            total,
+            sender: Some(sender),
+            next: None,
+            heads,
+            columns,
+            lost: 0,
+        });
+        self.feed_export();
+        Some(writing)
+    }
+
+    /// Hands over as many rows as the thread can take, and waits for nothing.
+    pub(in crate::app) fn feed_export(&mut self) {
+        let Some(mut export) = self.export.take() else { return };
+        while let Some(sender) = &export.sender {
+            let rows = match export.next.take() {
+                Some(rows) => rows,
+                None => self.rows(&mut export.heads, &export.columns, &mut export.lost),
+            };
+            let sent =
+                if rows.times.is_empty() { Err(TrySendError::Disconnected(rows)) } else { sender.try_send(rows) };
+            match sent {
+                Ok(()) => {}
+                Err(TrySendError::Full(rows)) => {
+                    export.next = Some(rows);
+                    break;
+                }
+                // All is handed over, or nobody takes it: the thread says why.
+                Err(TrySendError::Disconnected(_)) => export.sender = None,
+            }
+        }
+        self.export = Some(export);
+    }
+
+    /// The thread has ended. Gives the samples that were lost on the way.
+    pub(in crate::app) fn end_export(&mut self) -> u64 {
+        self.export.take().map_or(0, |export| export.lost)
+    }
+
+    /// The next rows: the samples of all groups in the order of time, those of the same time in one row.
+    fn rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Rows {
+        let mut rows = Rows::default();
+        for head in heads.iter_mut() {
+            // What was evicted meanwhile is not there any more.
+            let start = self.groups.get(&head.group).map_or(head.end, |group| group.history.all().start.min(head.end));
+            *lost += start.saturating_sub(head.next);
+            head.next = head.next.max(start);
+        }
+        while rows.times.len() < ROWS {
+            let time = |head: &Head| {
+                let history = &self.groups.get(&head.group)?.history;
+                (head.next < head.end).then(|| history.time(head.next)).flatten()
+            };
+            let Some(now) = heads.iter().filter_map(time).min() else { break };
+            let due: Vec<bool> = heads.iter().map(|head| time(head) == Some(now)).collect();
+            rows.times.push(now);
+            for column in columns {
+                let is_due = due.get(column.head).copied().unwrap_or(false);
+                let sample = heads
+                    .get(column.head)
+                    .filter(|_| is_due)
+                    .and_then(|head| self.groups.get(&head.group)?.history.sample(column.column, head.next));
+                rows.cells.push(sample.map_or_else(Cell::default, |sample| {
+                    Cell {
+                        value: Some(sample.value.to_f64() * column.factor)
+                            .filter(|value| value.is_finite() && !sample.flags.contains(Flags::BAD)),
+                        flags: sample.flags,
+                    }
+                }));
+            }
+            for (head, due) in heads.iter_mut().zip(due) {
+                head.next += u64::from(due);
+            }
+        }
+        rows
+    }
+}
+
+/// The name and unit as a column of a table has them, which do not depend on the window's language.
+fn heading(line: &Line) -> String {
+    match line.scale() {
+        Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
+        None => line.heading.clone(),
+    }
+}
+
+impl Writing {
+    /// Writes until all rows have come; `wake` tells that more can be handed over.
+    pub(in crate::app) fn run(self, wake: &dyn Fn()) -> Exported {
+        let rows = write_by(&self.path, |file| self.write(file, wake));
+        let cancelled = self.cancelled.load(Ordering::Relaxed);
+        let rows = match rows {
+            Ok(()) => Ok(Some(self.written.load(Ordering::Relaxed))),
+            Err(_) if cancelled => Ok(None),
+            Err(error) => Err(error),
+        };
+        Exported { path: self.path, rows }
+    }
+
+    fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<()> {
+        let mut text = String::from("time [s]");
+        for heading in &self.headings {
+            text.push(',');
+            // No heading has a quote; a comma in one would be another column.
+            text.push_str(&heading.replace([',', '"'], " "));
+        }
+        text.push_str(",remark\n");
+        file.write_all(text.as_bytes())?;
+        for rows in &self.receiver {
+            wake();
+            if self.cancelled.load(Ordering::Relaxed) {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            text.clear();
+            rows.text(self.headings.len(), &mut text);
+            file.write_all(text.as_bytes())?;
+            self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
+
+impl Rows {
+    fn text(&self, columns: usize, text: &mut String) {
+        use std::fmt::Write as _;
+        for (time, cells) in self.times.iter().zip(self.cells.chunks(columns.max(1))) {
+            let nanoseconds = time.nanoseconds();
+            let sign = if nanoseconds < 0 { "-" } else { "" };
+            let whole = nanoseconds.unsigned_abs();
+            // Writing into a text cannot fail.
+            let _ = write!(text, "{sign}{}.{:09}", whole / 1_000_000_000, whole % 1_000_000_000);
+            let mut flags = Flags::NONE;
+            for cell in cells {
+                flags |= cell.flags;
+                text.push(',');
+                if let Some(value) = cell.value {
+                    let _ = write!(text, "{value}");
+                }
+            }
+            text.push(',');
+            text.push_str(remark(flags));
+            text.push('\n');
+        }
+    }
+}
+
+/// The gravest of what is remarkable in a row.
+fn remark(flags: Flags) -> &'static str {
+    if flags.contains(Flags::BAD) {
+        "bad"
+    } else if flags.contains(Flags::WARNING) {
+        "warning"
+    } else if flags.contains(Flags::BREAK) {
+        "gap"
+    } else {
+        ""
+    }
+}

@@ -1,0 +1,131 @@
+//! A line of a recorder: a column of samples with its name and the units in which it can be seen.
+
+use super::GroupId;
+use crate::app::Text;
+use crate::signal::history::{Sample, Value};
+
+/// A line's number in its recorder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LineId(pub(super) u32);
+
+/// A unit in which a line can be seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale {
+    /// The unit's sign or word.
+    pub unit: Text,
+    /// How much of it one of the samples' own unit is; not zero.
+    pub factor: f64,
+    /// Decimals that make sense.
+    pub decimals: usize,
+}
+
+impl Scale {
+    /// A unit of which one of the samples' own unit is `factor`.
+    pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
+        Scale { unit: Text::new(unit), factor, decimals }
+    }
+}
+
+/// A column of samples over time.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Its number.
+    pub id: LineId,
+    /// What it shows.
+    pub name: Text,
+    /// Its name as a column of a table.
+    pub heading: String,
+    /// Which of the eight colours it has; beyond them they begin again.
+    pub colour: usize,
+    /// It is shown.
+    pub shown: bool,
+    /// The stretch of values that is shown, in the line's unit; `None`: what is visible fits.
+    pub range: Option<(f64, f64)>,
+    /// Its values are calculated from another line: where there is none, that is no fault of the device.
+    pub derived: bool,
+    pub(super) group: GroupId,
+    pub(super) column: usize,
+    pub(super) scales: Vec<Scale>,
+    pub(super) scale: usize,
+}
+
+impl Line {
+    /// The column of a group as a line; the first of the scales, which are one at least, is shown.
+    pub(in crate::app) fn of(
+        group: GroupId,
+        column: usize,
+        name: Text,
+        heading: impl Into<String>,
+        scales: Vec<Scale>,
+    ) -> Self {
+        Line {
+            id: LineId::default(),
+            name,
+            heading: heading.into(),
+            colour: 0,
+            shown: true,
+            range: None,
+            derived: false,
+            group,
+            column,
+            scales,
+            scale: 0,
+        }
+    }
+
+    /// The same, hidden.
+    #[must_use]
+    pub(in crate::app) fn hidden(self) -> Self {
+        Line { shown: false, ..self }
+    }
+
+    /// The same, calculated from another line.
+    #[must_use]
+    pub(in crate::app) fn derived(self) -> Self {
+        Line { derived: true, ..self }
+    }
+
+    /// The column of its history.
+    pub fn column(&self) -> usize {
+        self.column
+    }
+
+    /// The units to choose from.
+    pub fn scales(&self) -> &[Scale] {
+        &self.scales
+    }
+
+    /// Which of them is shown.
+    pub fn scale_number(&self) -> usize {
+        self.scale
+    }
+
+    /// The unit that is shown.
+    pub fn scale(&self) -> Option<&Scale> {
+        self.scales.get(self.scale)
+    }
+
+    /// How much of the shown unit one of the samples' own unit is.
+    pub fn factor(&self) -> f64 {
+        self.scale().map_or(1.0, |scale| scale.factor)
+    }
+
+    /// Decimals that make sense in the shown unit.
+    pub fn decimals(&self) -> usize {
+        self.scale().map_or(0, |scale| scale.decimals)
+    }
+
+    /// The value of a sample in the shown unit.
+    pub fn value(&self, sample: &Sample) -> f64 {
+        sample.value.to_f64() * self.factor()
+    }
+
+    /// By how much `later` is more than `earlier`, in the shown unit: counts are subtracted before they are rounded.
+    pub fn difference(&self, earlier: &Sample, later: &Sample) -> f64 {
+        let difference = match (earlier.value, later.value) {
+            (Value::Whole(earlier), Value::Whole(later)) => (i128::from(later) - i128::from(earlier)) as f64,
+            (earlier, later) => later.to_f64() - earlier.to_f64(),
+        };
+        difference * self.factor()
+    }
+}

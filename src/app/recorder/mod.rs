@@ -1,0 +1,260 @@
+//! A chart recorder: samples as they come, as lines over time, and what a person does with them. It follows or stands
+//! still, is zoomed, has two cursors, waits for a trigger and gives its samples away as a table. It knows no device and
+//! draws nothing; whose samples these are, in which unit and how many are kept is said by whoever fills it.
+
+mod cursors;
+mod export;
+mod line;
+#[cfg(test)]
+mod tests;
+mod trigger;
+mod view;
+
+use std::collections::BTreeMap;
+
+pub use cursors::{Cursor, Measured};
+pub use export::{Export, Exported};
+pub use line::{Line, LineId, Scale};
+pub use trigger::{Trigger, TriggerState, When};
+pub use view::View;
+
+use crate::signal::Time;
+use crate::signal::history::{History, Kind, Part, Refused, Sample};
+use trigger::Watch;
+
+/// Something that is done with a recorder.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Show a line, or hide it.
+    Show(LineId, bool),
+    /// Show a line in the unit of this number.
+    SetScale(LineId, usize),
+    /// A stretch of values for a line, in its unit; `None`: what is visible fits.
+    SetRange(LineId, Option<(f64, f64)>),
+    /// All lines over one axis, or each over its own.
+    ShareAxis(bool),
+    /// Go on with the newest samples.
+    Follow,
+    /// Stand still; samples are recorded on.
+    Pause,
+    /// Everything that was recorded.
+    Fit,
+    /// This stretch of time.
+    Look(Time, Time),
+    /// As many nanoseconds, to where the picture ends now.
+    SetSpan(i64),
+    /// Longer (above 1) or shorter (below 1) about a point in time.
+    Zoom(Time, f64),
+    /// A cursor to a point in time, or away.
+    SetCursor(Cursor, Option<Time>),
+    /// Both cursors into what is visible, or away.
+    ShowCursors(bool),
+    /// Wait for this.
+    Arm(Trigger),
+    /// Wait for nothing.
+    Disarm,
+    /// Forget the samples.
+    Clear,
+    /// Give up a table that is being written.
+    CancelExport,
+}
+
+/// Samples that are taken together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct GroupId(u32);
+
+#[derive(Debug)]
+struct Group {
+    history: History,
+    columns: Vec<Kind>,
+    capacity: usize,
+    longest_pause: Option<i64>,
+}
+
+impl Group {
+    fn history(columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> History {
+        let history = History::new(columns, capacity);
+        match longest_pause {
+            Some(pause) => history.with_longest_pause(pause),
+            None => history,
+        }
+    }
+}
+
+/// Lines over time.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    groups: BTreeMap<GroupId, Group>,
+    lines: Vec<Line>,
+    next: u32,
+    view: View,
+    one_axis: bool,
+    cursors: [Option<Time>; 2],
+    watch: Option<Watch>,
+    export: Option<Export>,
+}
+
+impl Recorder {
+    /// Nothing is recorded yet; this many nanoseconds are shown while it follows.
+    pub fn new(span: i64) -> Self {
+        Recorder { view: View::Follow { span: span.max(1) }, ..Recorder::default() }
+    }
+
+    /// Samples of these columns, of which so many are kept; those further apart than so many nanoseconds are not joined.
+    pub(in crate::app) fn add_group(
+        &mut self,
+        columns: &[Kind],
+        capacity: usize,
+        longest_pause: Option<i64>,
+    ) -> GroupId {
+        let history = Group::history(columns, capacity, longest_pause);
+        let id = GroupId(self.new_number());
+        self.groups.insert(id, Group { history, columns: columns.to_vec(), capacity, longest_pause });
+        id
+    }
+
+    /// A line for a column of a group. The first of its scales is shown.
+    pub(in crate::app) fn add_line(&mut self, line: Line) -> LineId {
+        let id = LineId(self.new_number());
+        let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
+        let colour = (0..).find(taken).unwrap_or(0);
+        self.lines.push(Line { id, colour, ..line });
+        id
+    }
+
+    /// Appends samples to a group.
+    ///
+    /// # Errors
+    /// The batch does not have the group's columns, or its time goes back.
+    pub(in crate::app) fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+        let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(Refused::Shape) };
+        let before = history.all().end;
+        history.append(times, parts)?;
+        self.look_for_trigger(group, before);
+        Ok(())
+    }
+
+    /// Samples are missing before the next ones of a group.
+    pub(in crate::app) fn break_before_next(&mut self, group: GroupId) {
+        if let Some(group) = self.groups.get_mut(&group) {
+            group.history.break_before_next();
+        }
+    }
+
+    /// Does what is asked.
+    pub fn act(&mut self, action: Action) {
+        match action {
+            Action::Show(id, shown) => self.with_line(id, |line| line.shown = shown),
+            Action::SetScale(id, scale) => self.set_scale(id, scale),
+            Action::SetRange(id, range) => {
+                let sound = range.filter(|(low, high)| low.is_finite() && high.is_finite() && low < high);
+                self.with_line(id, |line| line.range = sound);
+            }
+            Action::ShareAxis(one_axis) => {
+                self.one_axis = one_axis;
+                self.lines.iter_mut().for_each(|line| line.range = None);
+            }
+            Action::Follow => self.follow(),
+            Action::Pause => self.pause(),
+            Action::Fit => self.fit(),
+            Action::Look(from, to) => self.look(from, to),
+            Action::SetSpan(span) => self.set_span(span),
+            Action::Zoom(about, factor) => self.zoom(about, factor),
+            Action::SetCursor(cursor, time) => *self.cursor_mut(cursor) = time,
+            Action::ShowCursors(shown) => self.show_cursors(shown),
+            Action::Arm(trigger) => self.arm(trigger),
+            Action::Disarm => self.disarm(),
+            Action::Clear => self.clear(),
+            Action::CancelExport => {
+                if let Some(export) = &self.export {
+                    export.cancel();
+                }
+            }
+        }
+    }
+
+    /// All lines, in the order in which they came.
+    pub fn lines(&self) -> &[Line] {
+        &self.lines
+    }
+
+    /// The line of that number.
+    pub fn line(&self, id: LineId) -> Option<&Line> {
+        self.lines.iter().find(|line| line.id == id)
+    }
+
+    /// The lines that are shown.
+    pub fn shown(&self) -> impl Iterator<Item = &Line> {
+        self.lines.iter().filter(|line| line.shown)
+    }
+
+    /// The samples of a line: the history that it is a column of.
+    pub fn history(&self, line: &Line) -> Option<&History> {
+        self.groups.get(&line.group).map(|group| &group.history)
+    }
+
+    /// All lines lie over one axis.
+    pub fn has_one_axis(&self) -> bool {
+        self.one_axis
+    }
+
+    /// There is nothing to show.
+    pub fn is_empty(&self) -> bool {
+        self.groups.values().all(|group| group.history.all().is_empty())
+    }
+
+    /// The raw sample of a line that is nearest to a point in time.
+    pub fn nearest(&self, line: &Line, time: Time) -> Option<Sample> {
+        let history = self.history(line)?;
+        history.sample(line.column, history.nearest(time)?)
+    }
+
+    /// Bytes that the samples take.
+    pub fn memory(&self) -> usize {
+        self.groups.values().map(|group| group.history.memory()).sum()
+    }
+
+    /// The first and the last sample of all, by time.
+    pub fn recorded(&self) -> Option<(Time, Time)> {
+        let ends = self.groups.values().filter_map(|Group { history, .. }| {
+            let all = history.all();
+            Some((history.time(all.start)?, history.time(all.end.checked_sub(1)?)?))
+        });
+        ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+    }
+
+    /// Forgets the samples; lines, units and the length of the view stay.
+    pub(in crate::app) fn clear(&mut self) {
+        for Group { history, columns, capacity, longest_pause } in self.groups.values_mut() {
+            *history = Group::history(columns, *capacity, *longest_pause);
+        }
+        self.cursors = [None; 2];
+        self.watch = self.watch.take().map(Watch::again);
+        self.lines.iter_mut().for_each(|line| line.range = None);
+        self.follow();
+    }
+
+    fn set_scale(&mut self, id: LineId, scale: usize) {
+        self.with_line(id, |line| {
+            if scale < line.scales.len() {
+                line.scale = scale;
+                line.range = None;
+            }
+        });
+        // A level is in the unit that it was typed in.
+        if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
+            self.watch = None;
+        }
+    }
+
+    fn with_line(&mut self, id: LineId, change: impl FnOnce(&mut Line)) {
+        if let Some(line) = self.lines.iter_mut().find(|line| line.id == id) {
+            change(line);
+        }
+    }
+
+    fn new_number(&mut self) -> u32 {
+        self.next += 1;
+        self.next
+    }
+}

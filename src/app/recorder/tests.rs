@@ -1,0 +1,263 @@
+//! What a recorder does with samples whose values are known.
+
+use super::*;
+use crate::app::Text;
+use crate::signal::history::Flags;
+
+const MILLISECOND: i64 = 1_000_000;
+
+fn at(milliseconds: i64) -> Time {
+    Time::from_nanoseconds(milliseconds * MILLISECOND)
+}
+
+/// A recorder with a line of counts, in steps and in degrees (360° are 4096 steps), and one of voltages.
+fn recorder(span: i64) -> (Recorder, GroupId, [LineId; 2]) {
+    let mut recorder = Recorder::new(span);
+    let group = recorder.add_group(&[Kind::Whole, Kind::Real], 100_000, Some(500 * MILLISECOND));
+    let degrees = Scale::new("unit.degrees", 360.0 / 4096.0, 3);
+    let scales = vec![Scale::new("unit.steps", 1.0, 0), degrees];
+    let name = || Text::new("recorder.position");
+    let counts = recorder.add_line(Line::of(group, 0, name(), "position", scales));
+    let volts = recorder.add_line(Line::of(group, 1, name(), "sine", vec![Scale::new("unit.steps", 1.0, 4)]));
+    (recorder, group, [counts, volts])
+}
+
+fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f64, flags: Flags) {
+    let (count, volts, flags) = ([count], [volts], [flags]);
+    let parts = [Part::whole(&count).flagged(&flags), Part::real(&volts).flagged(&flags)];
+    recorder.append(group, &[at(time)], &parts).unwrap();
+}
+
+/// A sample a millisecond, counts as the time.
+fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
+    (from..to).for_each(|time| add(recorder, group, time, time, time as f64 / 1000.0, Flags::NONE));
+}
+
+#[test]
+fn it_follows_the_newest_and_stands_still_when_asked() {
+    let (mut recorder, group, _) = recorder(100 * MILLISECOND);
+    assert_eq!(recorder.window(), (at(0), at(100)));
+    ramp(&mut recorder, group, 0, 50);
+    assert_eq!(recorder.window(), (at(0), at(100)), "filled from the left");
+    ramp(&mut recorder, group, 50, 301);
+    assert_eq!(recorder.window(), (at(200), at(300)));
+    recorder.act(Action::Pause);
+    ramp(&mut recorder, group, 301, 400);
+    assert_eq!(recorder.window(), (at(200), at(300)), "recorded on");
+    assert!(!recorder.follows());
+    recorder.act(Action::Follow);
+    assert_eq!(recorder.window(), (at(299), at(399)));
+    recorder.act(Action::Zoom(at(350), 0.5));
+    assert_eq!(recorder.window(), (at(349), at(399)), "the newest stays at the edge");
+    recorder.act(Action::Fit);
+    let (from, to) = recorder.window();
+    assert!(from == at(0) && to > at(399) && to < at(402));
+}
+
+#[test]
+fn zooming_keeps_what_is_under_the_pointer_and_has_limits() {
+    let (mut recorder, group, _) = recorder(100 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 1000);
+    recorder.act(Action::Look(at(400), at(200)));
+    assert_eq!(recorder.window(), (at(200), at(400)), "whichever end was first");
+    recorder.act(Action::Zoom(at(250), 0.5));
+    assert_eq!(recorder.window(), (at(225), at(325)));
+    for factor in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        recorder.act(Action::Zoom(at(250), factor));
+        assert_eq!(recorder.window(), (at(225), at(325)));
+    }
+    recorder.act(Action::SetSpan(10 * MILLISECOND));
+    assert_eq!(recorder.window(), (at(315), at(325)));
+    (0..100).for_each(|_| recorder.act(Action::Zoom(at(320), 0.1)));
+    assert_eq!(recorder.span(), 100);
+    (0..100).for_each(|_| recorder.act(Action::Zoom(at(320), 1e9)));
+    assert_eq!(recorder.span(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
+    recorder.act(Action::Look(at(5), at(5)));
+    assert_eq!(recorder.span(), 100);
+    recorder.act(Action::Look(Time::from_nanoseconds(i64::MIN), Time::from_nanoseconds(i64::MAX)));
+    assert!(recorder.span() > 0);
+}
+
+/// Python: statistics of 100…200 in steps of 1: mean 150, stdev 29.300170647967224, times 360/4096.
+#[test]
+fn cursors_measure_on_the_raw_samples() {
+    let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 150);
+    add(&mut recorder, group, 150, 1 << 50, 9.0, Flags::BAD);
+    ramp(&mut recorder, group, 151, 1000);
+    assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
+    recorder.act(Action::SetCursor(Cursor::A, Some(at(200))));
+    recorder.act(Action::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
+    assert_eq!(recorder.between_cursors(), Some(-100_200_000));
+    recorder.act(Action::SetScale(counts, 1));
+    let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
+    let degrees = 360.0 / 4096.0;
+    assert_eq!((measured.a, measured.b), (Some(200.0 * degrees), Some(100.0 * degrees)), "the nearest raw samples");
+    assert_eq!(measured.difference, Some(-100.0 * degrees));
+    let between = measured.between.unwrap();
+    assert_eq!((between.count, between.bad), (100, 1));
+    assert_eq!((between.min, between.max), (100.0 * degrees, 200.0 * degrees));
+    assert!((between.mean - 150.0 * degrees).abs() < 1e-12);
+    // Without the bad one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
+    assert!((between.deviation - 29.447_779_494_755_07 * degrees).abs() < 1e-9, "{}", between.deviation / degrees);
+    recorder.act(Action::SetCursor(Cursor::A, Some(at(150))));
+    let measured = recorder.measure(recorder.line(volts).unwrap()).unwrap();
+    assert_eq!((measured.a, measured.difference), (None, None), "what is bad is not read");
+    recorder.act(Action::ShowCursors(false));
+    assert_eq!(recorder.measure(recorder.line(volts).unwrap()), None);
+}
+
+fn arm(recorder: &mut Recorder, line: LineId, when: When, level: f64, repeat: bool) {
+    recorder.act(Action::Arm(Trigger { line, when, level, before: 0.25, repeat }));
+}
+
+fn state(recorder: &Recorder) -> TriggerState {
+    recorder.trigger().unwrap().1
+}
+
+#[test]
+fn a_trigger_shows_what_was_before_it_and_holds() {
+    let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 500);
+    recorder.act(Action::SetScale(counts, 1));
+    // 600 steps in degrees: a level is in the unit that is shown.
+    arm(&mut recorder, counts, When::Rising, 600.0 * 360.0 / 4096.0, false);
+    assert_eq!(state(&recorder), TriggerState::Armed);
+    ramp(&mut recorder, group, 500, 601);
+    assert_eq!(state(&recorder), TriggerState::Fired(at(600)));
+    assert_eq!(recorder.window(), (at(575), at(675)));
+    ramp(&mut recorder, group, 601, 674);
+    assert_eq!(state(&recorder), TriggerState::Fired(at(600)));
+    ramp(&mut recorder, group, 674, 2000);
+    assert_eq!(state(&recorder), TriggerState::Held(at(600)));
+    assert_eq!(recorder.window(), (at(575), at(675)), "held");
+    recorder.act(Action::SetScale(counts, 0));
+    assert_eq!(recorder.trigger(), None, "the level was in another unit");
+}
+
+#[test]
+fn each_kind_of_trigger_waits_for_its_own() {
+    let values = [5.0, 1.0, 9.0, 3.0];
+    for (when, level, fires) in [
+        (When::Rising, 4.0, Some(3)),
+        (When::Falling, 4.0, Some(2)),
+        (When::Above, 8.0, Some(3)),
+        (When::Above, 5.0, Some(1)),
+        (When::Below, 1.0, Some(2)),
+        (When::Rising, 9.5, None),
+        (When::Error, 0.0, Some(4)),
+    ] {
+        let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
+        arm(&mut recorder, volts, when, level, false);
+        for (number, value) in (1..).zip(values) {
+            let flags = if number == 4 { Flags::WARNING } else { Flags::NONE };
+            add(&mut recorder, group, number, 0, value, flags);
+        }
+        let expected = fires.map_or(TriggerState::Armed, |number| TriggerState::Fired(at(number)));
+        assert_eq!(state(&recorder), expected, "{when:?} {level}");
+    }
+}
+
+#[test]
+fn nobody_has_seen_an_edge_across_a_gap() {
+    let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
+    arm(&mut recorder, volts, When::Rising, 5.0, false);
+    add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
+    add(&mut recorder, group, 1, 0, 9.0, Flags::BAD);
+    add(&mut recorder, group, 2, 0, 9.0, Flags::NONE);
+    // Longer than the group's longest pause.
+    add(&mut recorder, group, 10, 0, 1.0, Flags::NONE);
+    add(&mut recorder, group, 700, 0, 9.0, Flags::NONE);
+    assert_eq!(state(&recorder), TriggerState::Armed);
+    recorder.act(Action::Arm(Trigger { line: volts, when: When::Rising, level: f64::NAN, before: 0.0, repeat: false }));
+    assert_eq!(recorder.trigger().unwrap().0.level, 5.0, "what is no level changes nothing");
+}
+
+#[test]
+fn a_repeated_trigger_shows_whole_pictures() {
+    let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
+    arm(&mut recorder, volts, When::Rising, 0.0, true);
+    let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
+    (0..400).for_each(|time| add(&mut recorder, group, time, 0, wave(time), Flags::NONE));
+    // Edges at 35, 105, 175, …: after 35 + 75 the next picture begins with the edge at 175, then at 315.
+    assert_eq!(recorder.window(), (at(290), at(390)));
+    assert_eq!(state(&recorder), TriggerState::Armed);
+}
+
+#[test]
+fn clearing_forgets_samples_and_nothing_else() {
+    let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 1000);
+    recorder.act(Action::SetScale(counts, 1));
+    recorder.act(Action::ShowCursors(true));
+    recorder.act(Action::Clear);
+    assert!(recorder.is_empty() && recorder.cursor(Cursor::A).is_none());
+    assert_eq!(recorder.line(counts).unwrap().scale_number(), 1);
+    add(&mut recorder, group, 5, 1, 1.0, Flags::NONE);
+    assert_eq!(recorder.recorded(), Some((at(5), at(5))), "time may begin anew");
+}
+
+fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.csv");
+    let writing = recorder.begin_export(&path, visible)?;
+    let exported = std::thread::scope(|scope| {
+        let written = scope.spawn(|| writing.run(&|| {}));
+        while !written.is_finished() {
+            recorder.feed_export();
+            std::thread::yield_now();
+        }
+        written.join().unwrap()
+    });
+    assert_eq!(recorder.end_export(), 0);
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(exported.rows.unwrap(), Some(text.lines().count() as u64 - 1));
+    Some(text)
+}
+
+#[test]
+fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
+    let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
+    let slow = recorder.add_group(&[Kind::Real], 100, None);
+    let celsius = vec![Scale::new("unit.degrees", 1.0, 1)];
+    recorder.add_line(Line::of(slow, 0, Text::new("recorder.position"), "temperature, \"inside\"", celsius));
+    add(&mut recorder, group, -1, 4096, 0.5, Flags::NONE);
+    add(&mut recorder, group, 2, 1024, f64::NAN, Flags::NONE);
+    add(&mut recorder, group, 3, 7, 0.25, Flags::BAD);
+    recorder.append(slow, &[at(2), at(1_000)], &[Part::real(&[21.5, 22.0])]).unwrap();
+    recorder.act(Action::SetScale(counts, 1));
+    let expected = "time [s],position [°],sine [steps],temperature   inside  [°],remark\n\
+                    -0.001000000,360,0.5,,\n\
+                    0.002000000,90,,21.5,bad\n\
+                    0.003000000,,,,bad\n\
+                    1.000000000,,,22,\n";
+    assert_eq!(exported(&mut recorder, false).unwrap(), expected);
+    recorder.act(Action::Look(at(-5), at(1)));
+    recorder.act(Action::Show(volts, false));
+    let visible = exported(&mut recorder, true).unwrap();
+    assert_eq!(visible.lines().skip(1).collect::<Vec<_>>(), ["-0.001000000,360,,"]);
+    recorder.act(Action::Look(at(10_000), at(20_000)));
+    assert_eq!(exported(&mut recorder, true), None, "nothing to write");
+}
+
+#[test]
+fn a_long_table_is_whole_and_can_be_given_up() {
+    let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 70_000);
+    let text = exported(&mut recorder, false).unwrap();
+    for (number, line) in text.lines().skip(1).enumerate() {
+        assert!(line.starts_with(&format!("{}.{:03}000000,{number},", number / 1000, number % 1000)), "{line}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.csv");
+    std::fs::write(&path, "the old one").unwrap();
+    let writing = recorder.begin_export(&path, false).unwrap();
+    assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
+    recorder.act(Action::CancelExport);
+    recorder.feed_export();
+    assert!(writing.run(&|| {}).rows.unwrap().is_none());
+    recorder.end_export();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
+    let nowhere = recorder.begin_export(&folder.path().join("no/table.csv"), false).unwrap();
+    assert!(nowhere.run(&|| {}).rows.is_err());
+}

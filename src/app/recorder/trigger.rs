@@ -1,0 +1,164 @@
+//! Waiting for something to happen in a line, and a picture of it with what was before.
+
+use super::{GroupId, LineId, Recorder, View};
+use crate::signal::Time;
+use crate::signal::history::{Flags, Sample};
+
+/// What a trigger waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// A sample at the level or above it.
+    Above,
+    /// A sample at the level or below it.
+    Below,
+    /// From below the level to it or above.
+    Rising,
+    /// From above the level to it or below.
+    Falling,
+    /// A sample that the device marks as bad, or with a warning.
+    Error,
+}
+
+impl When {
+    /// All of them.
+    pub const ALL: [When; 5] = [When::Rising, When::Falling, When::Above, When::Below, When::Error];
+
+    /// There is a level to it.
+    pub const fn has_level(self) -> bool {
+        !matches!(self, When::Error)
+    }
+}
+
+/// What to wait for, and what to show then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trigger {
+    /// In which line.
+    pub line: LineId,
+    /// For what.
+    pub when: When,
+    /// In the line's unit as it is shown.
+    pub level: f64,
+    /// Share of the picture that lies before it, 0 to 1.
+    pub before: f64,
+    /// After each picture wait again; else hold it.
+    pub repeat: bool,
+}
+
+/// How far a trigger is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TriggerState {
+    /// It waits.
+    Armed,
+    /// It has happened then, and what comes after it is still being recorded.
+    Fired(Time),
+    /// It has happened then, and the picture is complete.
+    Held(Time),
+}
+
+/// A trigger at work.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    trigger: Trigger,
+    /// What to wait for, and the level, in the samples' own unit.
+    when: When,
+    level: f64,
+    state: TriggerState,
+    /// The last value to believe, for an edge; none after a break.
+    last: Option<f64>,
+    /// Nanoseconds of the picture.
+    span: i64,
+}
+
+impl Watch {
+    pub(super) fn trigger(&self) -> &Trigger {
+        &self.trigger
+    }
+
+    /// Waits from the beginning.
+    pub(super) fn again(self) -> Self {
+        Watch { state: TriggerState::Armed, last: None, ..self }
+    }
+
+    fn window(&self, at: Time) -> (Time, Time) {
+        let from = at.plus(-((self.span as f64 * self.trigger.before) as i64));
+        (from, from.plus(self.span))
+    }
+
+    /// Looks at the next sample. True: it is the one.
+    fn is_it(&mut self, sample: &Sample) -> bool {
+        let bad = sample.flags.contains(Flags::BAD);
+        let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
+        // Across a gap nobody has seen an edge.
+        let last = self.last.filter(|_| !sample.flags.contains(Flags::BREAK));
+        self.last = value;
+        let level = self.level;
+        match (self.when, last, value) {
+            (When::Error, ..) => bad || sample.flags.contains(Flags::WARNING),
+            (When::Above, _, Some(value)) => value >= level,
+            (When::Below, _, Some(value)) => value <= level,
+            (When::Rising, Some(last), Some(value)) => last < level && value >= level,
+            (When::Falling, Some(last), Some(value)) => last > level && value <= level,
+            _ => false,
+        }
+    }
+}
+
+impl Recorder {
+    /// The trigger, and how far it is.
+    pub fn trigger(&self) -> Option<(&Trigger, TriggerState)> {
+        self.watch.as_ref().map(|watch| (&watch.trigger, watch.state))
+    }
+
+    pub(super) fn arm(&mut self, trigger: Trigger) {
+        let Some(factor) = self.line(trigger.line).map(super::Line::factor) else { return };
+        let level = trigger.level / factor;
+        if trigger.when.has_level() && !level.is_finite() {
+            return;
+        }
+        // In a unit that counts the other way round, what rises falls.
+        let when = match trigger.when {
+            When::Above if factor < 0.0 => When::Below,
+            When::Below if factor < 0.0 => When::Above,
+            When::Rising if factor < 0.0 => When::Falling,
+            When::Falling if factor < 0.0 => When::Rising,
+            when => when,
+        };
+        let before = if trigger.before.is_finite() { trigger.before.clamp(0.0, 1.0) } else { 0.5 };
+        let trigger = Trigger { before, ..trigger };
+        let span = self.span();
+        self.watch = Some(Watch { trigger, when, level, state: TriggerState::Armed, last: None, span });
+        self.view = View::Follow { span };
+    }
+
+    pub(super) fn disarm(&mut self) {
+        self.watch = None;
+    }
+
+    /// Looks at the samples of a group from `from` on, which have just come.
+    pub(super) fn look_for_trigger(&mut self, group: GroupId, from: u64) {
+        let Some(mut watch) = self.watch else { return };
+        let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };
+        let (Some(history), column) = (self.history(line), line.column) else { return };
+        let mut shown = None;
+        for index in from..history.all().end {
+            let Some(sample) = history.sample(column, index) else { continue };
+            if let TriggerState::Fired(at) = watch.state
+                && sample.time >= watch.window(at).1
+            {
+                watch.state = if watch.trigger.repeat { TriggerState::Armed } else { TriggerState::Held(at) };
+                shown = Some(at);
+            }
+            // Each sample is looked at, so that an edge is seen in the first one after a picture too.
+            if watch.is_it(&sample) && watch.state == TriggerState::Armed {
+                watch.state = TriggerState::Fired(sample.time);
+                // One that is repeated is shown when it is complete: it would never be seen whole otherwise.
+                shown = if watch.trigger.repeat { shown } else { Some(sample.time) };
+            }
+        }
+        self.watch = Some(watch);
+        if let Some(at) = shown {
+            let (from, to) = watch.window(at);
+            self.view = View::Fixed { from, to };
+        }
+    }
+}

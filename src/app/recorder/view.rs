@@ -1,0 +1,113 @@
+//! Which stretch of time is shown.
+
+use super::Recorder;
+use crate::signal::Time;
+
+/// Nanoseconds that a view never becomes shorter than.
+const SHORTEST: i64 = 100;
+/// Nanoseconds that a view never becomes longer than: a hundred days.
+const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
+
+/// Which stretch of time is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// The newest samples, over this many nanoseconds.
+    Follow {
+        /// Nanoseconds, at least 1.
+        span: i64,
+    },
+    /// This stretch, whatever comes.
+    Fixed {
+        /// From here.
+        from: Time,
+        /// To here, which is later.
+        to: Time,
+    },
+}
+
+impl Default for View {
+    fn default() -> Self {
+        View::Follow { span: 10_000_000_000 }
+    }
+}
+
+impl Recorder {
+    /// How it is looked at.
+    pub fn view(&self) -> View {
+        self.view
+    }
+
+    /// It goes on with the newest samples.
+    pub fn follows(&self) -> bool {
+        matches!(self.view, View::Follow { .. })
+    }
+
+    /// The stretch of time that is shown. While there is less than that, it begins with the first sample.
+    pub fn window(&self) -> (Time, Time) {
+        match self.view {
+            View::Fixed { from, to } => (from, to),
+            View::Follow { span } => match self.recorded() {
+                Some((first, last)) if last.nanoseconds_since(first) >= span => (last.plus(-span), last),
+                Some((first, _)) => (first, first.plus(span)),
+                None => (Time::ORIGIN, Time::ORIGIN.plus(span)),
+            },
+        }
+    }
+
+    /// Nanoseconds that are shown.
+    pub fn span(&self) -> i64 {
+        let (from, to) = self.window();
+        to.nanoseconds_since(from).max(1)
+    }
+
+    pub(super) fn follow(&mut self) {
+        // After everything was shown, a view of hours would follow; what is left out of a held picture stays its length.
+        self.view = View::Follow { span: self.span() };
+        self.lines.iter_mut().for_each(|line| line.range = None);
+    }
+
+    pub(super) fn pause(&mut self) {
+        let (from, to) = self.window();
+        self.view = View::Fixed { from, to };
+    }
+
+    pub(super) fn fit(&mut self) {
+        self.lines.iter_mut().for_each(|line| line.range = None);
+        let Some((first, last)) = self.recorded() else { return };
+        // A little more to the right, so that the last sample is to be seen.
+        let span = last.nanoseconds_since(first).max(SHORTEST);
+        self.view = View::Fixed { from: first, to: last.plus(span / 200 + 1) };
+    }
+
+    pub(super) fn look(&mut self, from: Time, to: Time) {
+        let (from, to) = (from.min(to), from.max(to));
+        let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
+        self.view = View::Fixed { from, to: from.plus(span) };
+    }
+
+    pub(super) fn set_span(&mut self, span: i64) {
+        let span = span.clamp(SHORTEST, LONGEST);
+        self.view = match self.view {
+            View::Follow { .. } => View::Follow { span },
+            View::Fixed { to, .. } => View::Fixed { from: to.plus(-span), to },
+        };
+    }
+
+    /// While it follows, the newest sample stays where it is.
+    pub(super) fn zoom(&mut self, about: Time, factor: f64) {
+        if !factor.is_finite() || factor <= 0.0 {
+            return;
+        }
+        let longer = |nanoseconds: i64| (nanoseconds as f64 * factor).round() as i64;
+        let span = longer(self.span()).clamp(SHORTEST, LONGEST);
+        match self.view {
+            View::Follow { .. } => self.view = View::Follow { span },
+            View::Fixed { from, to } => {
+                let share = about.seconds_since(from) / to.seconds_since(from);
+                let before = (span as f64 * share.clamp(0.0, 1.0)).round() as i64;
+                let from = about.clamp(from, to).plus(-before);
+                self.view = View::Fixed { from, to: from.plus(span) };
+            }
+        }
+    }
+}

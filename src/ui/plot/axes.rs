@@ -1,0 +1,284 @@
+//! Ticks and their labels: round steps of values, and of time in the unit that its steps have. Pure.
+
+use crate::app::Language;
+use crate::app::decimal;
+use crate::signal::Time;
+
+/// A step that is 1, 2 or 5 times a power of ten, so that `span` has at most so many of it.
+pub(super) fn step(span: f64, most: f64) -> f64 {
+    let least = span / most.max(1.0);
+    if !least.is_finite() || least <= 0.0 {
+        return 1.0;
+    }
+    let power = 10_f64.powf(least.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= least * 0.999_999);
+    step.unwrap_or(10.0 * power)
+}
+
+/// Decimals that a label needs at such steps.
+pub(super) fn decimals(step: f64) -> usize {
+    // 1e-300 and the like are no steps of anything that is measured.
+    (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
+}
+
+/// The multiples of `step` from `low` to `high`.
+pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
+    /// More than any picture has room for; a step of nothing would have no end.
+    const MOST: i64 = 200;
+    let (first, last) = ((low / step).ceil(), (high / step).floor());
+    let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
+    // Counted from the first, so that errors do not add up; −0 is 0.
+    (0..count).map(move |at| (first + at as f64) * step + 0.0)
+}
+
+/// A value as a label of an axis with such steps.
+pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
+    let decimals = decimals(step);
+    if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
+}
+
+/// A stretch of values that holds `low` to `high`, and ends at round steps so that it does not change with every sample;
+/// at least `least` of it is shown.
+pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
+    let (low, high) = if high - low < least {
+        let middle = f64::midpoint(low, high);
+        (middle - least / 2.0, middle + least / 2.0)
+    } else {
+        (low, high)
+    };
+    let span = high - low;
+    if !span.is_finite() || span <= 0.0 {
+        // So large that a double holds no difference: nothing that was measured.
+        return (f64::MIN / 4.0, f64::MAX / 4.0);
+    }
+    let (low, high) = (low - span * 0.04, high + span * 0.04);
+    let step = step(high - low, 6.0) / 2.0;
+    ((low / step).floor() * step, (high / step).ceil() * step)
+}
+
+/// Ticks of a time axis.
+#[derive(Debug, PartialEq)]
+pub(super) struct TimeTicks {
+    /// When, and what stands there.
+    pub(super) ticks: Vec<(Time, String)>,
+    /// The point that the labels count from, where they do not count from the beginning.
+    pub(super) base: Option<String>,
+}
+
+const SECOND: i64 = 1_000_000_000;
+
+/// Ticks from `from` to `to`, at most so many.
+pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
+    let span = to.nanoseconds_since(from).max(1);
+    let step = time_step(span, most.max(1));
+    // Where labels would differ in their last digits only, they count from a round point before them.
+    let coarse =
+        if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(coarse_base(from, step)) } else { None };
+    let origin = coarse.unwrap_or(0);
+    let first = from.nanoseconds().saturating_sub(origin).div_euclid(step);
+    let mut ticks = Vec::new();
+    for count in first..=first.saturating_add(most as i64 + 3) {
+        let offset = count.saturating_mul(step);
+        let at = Time::from_nanoseconds(origin.saturating_add(offset));
+        if at > to {
+            break;
+        }
+        if at >= from {
+            let plus = if coarse.is_some() && offset >= 0 { "+" } else { "" };
+            ticks.push((at, format!("{plus}{}", time_label(offset, step, language))));
+        }
+    }
+    TimeTicks { ticks, base: coarse.map(|base| clock(base, 1, language)) }
+}
+
+/// A second, minute or hour before `from`.
+fn coarse_base(from: Time, step: i64) -> i64 {
+    let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
+    from.nanoseconds().div_euclid(grain).saturating_mul(grain)
+}
+
+fn time_step(span: i64, most: usize) -> i64 {
+    let most = i64::try_from(most).unwrap_or(i64::MAX);
+    let least = span / most + i64::from(span % most > 0);
+    let mut decimal = 1_i64;
+    while decimal <= SECOND {
+        for factor in [1, 2, 5] {
+            // 20 and 50 seconds are no steps of a minute.
+            if factor * decimal >= least && factor * decimal <= 10 * SECOND {
+                return factor * decimal;
+            }
+        }
+        decimal *= 10;
+    }
+    const MINUTE: i64 = 60;
+    const HOUR: i64 = 60 * MINUTE;
+    let clock = [10, 15, 30, MINUTE, 2 * MINUTE, 5 * MINUTE, 10 * MINUTE, 15 * MINUTE, 30 * MINUTE, HOUR, 2 * HOUR];
+    let more = [3 * HOUR, 6 * HOUR, 12 * HOUR, 24 * HOUR, 48 * HOUR, 120 * HOUR, 240 * HOUR, 480 * HOUR, 1200 * HOUR];
+    let found = clock.into_iter().chain(more).map(|seconds| seconds * SECOND).find(|step| *step >= least);
+    found.unwrap_or(2400 * HOUR * SECOND)
+}
+
+/// A time as a label of an axis with such steps: in its unit below a second, else as a clock.
+fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
+    if nanoseconds == 0 {
+        return "0".to_owned();
+    }
+    let (unit, per, decimals) = match step {
+        0..100 => ("µs", 1e3, 2),
+        100..1_000 => ("µs", 1e3, 1),
+        1_000..1_000_000 => ("µs", 1e3, 0),
+        1_000_000..SECOND => ("ms", 1e6, 0),
+        _ => return clock(nanoseconds, step, language),
+    };
+    // Milliseconds of whole seconds are read as seconds.
+    if step >= 1_000_000 && nanoseconds.abs() >= SECOND {
+        let decimals = if step >= 100_000_000 {
+            1
+        } else if step >= 10_000_000 {
+            2
+        } else {
+            3
+        };
+        return format!("{} s", decimal(nanoseconds as f64 / 1e9, decimals, language));
+    }
+    if step >= 1_000 && unit == "µs" && nanoseconds.abs() >= 1_000_000 {
+        let decimals = if step >= 100_000 {
+            1
+        } else if step >= 10_000 {
+            2
+        } else {
+            3
+        };
+        return format!("{} ms", decimal(nanoseconds as f64 / 1e6, decimals, language));
+    }
+    format!("{} {unit}", decimal(nanoseconds as f64 / per, decimals, language))
+}
+
+/// Whole seconds as a person reads them; tenths where a point is meant that lies between.
+fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
+    let sign = if nanoseconds < 0 { "-" } else { "" };
+    let tenths = nanoseconds.unsigned_abs() / 100_000_000;
+    let (seconds, tenth) = (tenths / 10, tenths % 10);
+    let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds / 60 % 60);
+    let fraction = if step < SECOND { decimal(tenth as f64 / 10.0, 1, language).split_off(1) } else { String::new() };
+    match (days, hours, minutes) {
+        (0, 0, 0) => format!("{sign}{seconds}{fraction} s"),
+        (0, 0, _) => format!("{sign}{minutes}:{:02}{fraction}", seconds % 60),
+        (0, ..) => format!("{sign}{hours}:{minutes:02}:{:02}{fraction}", seconds % 60),
+        _ => format!("{sign}{days} d {hours}:{minutes:02}:{:02}{fraction}", seconds % 60),
+    }
+}
+
+/// A length of time as a person reads it, with four digits or so.
+pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
+    let sign = if nanoseconds < 0 { "-" } else { "" };
+    let length = nanoseconds.unsigned_abs() as f64;
+    let (unit, per) = match length {
+        ..1e3 => return format!("{sign}{} ns", nanoseconds.unsigned_abs()),
+        ..1e6 => ("µs", 1e3),
+        ..1e9 => ("ms", 1e6),
+        ..60e9 => ("s", 1e9),
+        _ => return clock(nanoseconds, 1, language),
+    };
+    format!("{sign}{} {unit}", decimal(length / per, 3, language))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_round_and_few() {
+        for (span, most, expected) in [
+            (10.0, 5.0, 2.0),
+            (10.0, 4.0, 5.0),
+            (1.0, 10.0, 0.1),
+            (0.000_37, 4.0, 0.000_1),
+            (7e6, 3.0, 5e6),
+            (0.0, 4.0, 1.0),
+            (f64::NAN, 4.0, 1.0),
+            (f64::INFINITY, 4.0, 1.0),
+        ] {
+            let found = step(span, most);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{span} {most}: {found}");
+        }
+        assert_eq!([2.0, 0.5, 0.01, 0.002, 1000.0].map(decimals), [0, 1, 2, 3, 0]);
+        assert_eq!(ticks(-1.0, 1.0, 0.5).collect::<Vec<_>>(), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(ticks(0.1, 0.2, 1.0).count(), 0);
+        assert_eq!(ticks(f64::NEG_INFINITY, 1.0, 0.5).count(), 0);
+        assert_eq!(ticks(0.0, 1e12, 1.0).count(), 200);
+    }
+
+    #[test]
+    fn a_range_holds_its_values_and_is_never_empty() {
+        for (low, high) in [(0.0, 1.0), (-3.2, 4.7), (5.0, 5.0), (1e9, 1e9 + 1.0), (0.0, 0.0), (-1e-7, 1e-7)] {
+            let (from, to) = round_range(low, high, 1e-3);
+            assert!(from <= low && to >= high && to - from >= 1e-3, "{low} {high}: {from} {to}");
+        }
+        let (from, to) = round_range(f64::MIN, f64::MAX, 1.0);
+        assert!(from < to && (to - from).is_finite());
+    }
+
+    fn labels(from: i64, to: i64) -> (Vec<String>, Option<String>) {
+        let ticks = time_ticks(Time::from_nanoseconds(from), Time::from_nanoseconds(to), 4, Language::English);
+        (ticks.ticks.into_iter().map(|(_, label)| label).collect(), ticks.base)
+    }
+
+    #[test]
+    fn time_is_labelled_in_the_unit_of_its_steps() {
+        let second = SECOND;
+        let cases: [(i64, i64, &[&str]); 8] = [
+            (0, 10 * second, &["0", "5 s", "10 s"]),
+            (55 * second, 130 * second, &["1:00", "1:30", "2:00"]),
+            (3590 * second, 3620 * second, &["59:50", "1:00:00", "1:00:10", "1:00:20"]),
+            (0, 3_000_000, &["0", "1 ms", "2 ms", "3 ms"]),
+            (-200_000, 200_000, &["-200 µs", "-100 µs", "0", "100 µs", "200 µs"]),
+            (0, 800, &["0", "0.2 µs", "0.4 µs", "0.6 µs", "0.8 µs"]),
+            (900_000_000, 1_500_000_000, &["1.0 s", "1.2 s", "1.4 s"]),
+            (86_400 * second, 86_430 * second, &["1 d 0:00:00", "1 d 0:00:10", "1 d 0:00:20", "1 d 0:00:30"]),
+        ];
+        for (from, to, expected) in cases {
+            let (found, base) = labels(from, to);
+            assert_eq!((found, base), (expected.iter().map(|own| (*own).to_owned()).collect(), None), "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn far_from_the_beginning_small_steps_count_from_a_round_point() {
+        let hour = 3600 * SECOND;
+        let (found, base) = labels(hour + 30_000, hour + 33_000);
+        assert_eq!(
+            (found, base),
+            (["+30 µs", "+31 µs", "+32 µs", "+33 µs"].map(ToOwned::to_owned).to_vec(), Some("1:00:00.0".to_owned()))
+        );
+    }
+
+    #[test]
+    fn every_stretch_of_time_has_ticks_and_not_too_many() {
+        let mut span = 1;
+        // A hundred days: no view is longer.
+        while span < 8_640_000 * SECOND {
+            for from in [0, -span, 123_456_789_012, i64::MAX / 2] {
+                let ticks =
+                    time_ticks(Time::from_nanoseconds(from), Time::from_nanoseconds(from + span), 6, Language::German);
+                assert!(ticks.ticks.len() <= 8, "{from} {span}: {}", ticks.ticks.len());
+                assert!(ticks.ticks.is_sorted_by(|a, b| a.0 < b.0));
+            }
+            span *= 3;
+        }
+    }
+
+    #[test]
+    fn lengths_of_time_have_their_unit() {
+        for (nanoseconds, expected) in [
+            (0, "0 ns"),
+            (-750, "-750 ns"),
+            (1_500, "1.500 µs"),
+            (26_000_000, "26.000 ms"),
+            (1_250_000_000, "1.250 s"),
+            (-61_500_000_000, "-1:01.5"),
+        ] {
+            assert_eq!(duration(nanoseconds, Language::English), expected);
+        }
+    }
+}

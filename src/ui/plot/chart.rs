@@ -1,0 +1,188 @@
+//! Paints the chart: grid, axes, lines, cursors, the trigger and what is under the pointer.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+
+use super::lanes::{Lane, Layout, Reduced};
+use super::pointer::Drag;
+use super::trace::{self, Pen};
+use super::{Context, axes};
+use crate::app::recorder::{Cursor, Line, TriggerState};
+use crate::ui::Skin;
+
+/// The colour of a line.
+pub(super) fn colour(skin: &Skin, line: &Line) -> Color32 {
+    let series = &skin.palette.series;
+    series.get(line.colour % series.len()).copied().unwrap_or(skin.palette.accent).into()
+}
+
+pub(super) fn paint(
+    painter: &Painter,
+    context: &Context<'_>,
+    layout: &Layout,
+    reduced: &Reduced,
+    drag: Option<&Drag>,
+    hovered: Option<Pos2>,
+) {
+    let skin = context.skin;
+    let font = FontId::monospace(skin.sizes.caption);
+    time_axis(painter, skin, layout, &font);
+    for lane in &layout.lanes {
+        value_axis(painter, skin, lane, &font);
+        lines(painter, context, layout, lane, reduced);
+        names(painter, context, lane);
+    }
+    trigger(painter, context, layout, &font);
+    cursors(painter, context, layout, &font);
+    if let Some(place) = hovered {
+        under_pointer(painter, context, layout, place);
+    }
+    if let Some(Drag::Box { from, to }) = drag {
+        let colour = Color32::from(skin.palette.accent);
+        let chosen = Rect::from_two_pos(*from, *to).intersect(layout.chart);
+        painter.rect(chosen, 0.0, colour.gamma_multiply(0.15), Stroke::new(1.0, colour), egui::StrokeKind::Inside);
+    }
+}
+
+fn time_axis(painter: &Painter, skin: &Skin, layout: &Layout, font: &FontId) {
+    let chart = layout.chart;
+    let most = (chart.width() / 76.0).max(1.0) as usize;
+    let (from, to) = (layout.time.time(chart.left()), layout.time.time(chart.right()));
+    let ticks = axes::time_ticks(from, to, most, skin.language);
+    let grid = Stroke::new(1.0, skin.palette.line);
+    let foot = chart.bottom() + 3.0;
+    let mut free = chart.left() - 30.0;
+    if let Some(base) = &ticks.base {
+        let words = painter.layout_no_wrap(base.clone(), font.clone(), skin.palette.text.into());
+        free = chart.left() + words.size().x + 8.0;
+        painter.galley(pos2(chart.left(), foot), words, Color32::PLACEHOLDER);
+    }
+    for (at, label) in ticks.ticks {
+        let x = layout.time.x(at).round();
+        if !chart.x_range().contains(x) {
+            continue;
+        }
+        for lane in &layout.lanes {
+            painter.vline(x, lane.rect.y_range(), grid);
+        }
+        let words = painter.layout_no_wrap(label, font.clone(), skin.palette.muted.into());
+        let left = (x - words.size().x / 2.0).min(painter.clip_rect().right() - words.size().x - 4.0);
+        if left >= free {
+            free = left + words.size().x + 8.0;
+            painter.galley(pos2(left, foot), words, Color32::PLACEHOLDER);
+        }
+    }
+}
+
+fn value_axis(painter: &Painter, skin: &Skin, lane: &Lane, font: &FontId) {
+    let axis = lane.axis();
+    let rect = lane.rect;
+    for value in axes::ticks(lane.range.0, lane.range.1, lane.step) {
+        let y = axis.y(value).round();
+        painter.hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
+        // A label stands beside its line, and inside its lane.
+        let y = y.clamp(rect.top() + 6.0, (rect.bottom() - 6.0).max(rect.top() + 6.0));
+        let label = axes::value_label(value, lane.step, skin.language);
+        let place = pos2(rect.left() - 6.0, y);
+        painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), skin.palette.muted.into());
+    }
+    painter.rect_stroke(rect, 0.0, Stroke::new(1.0, skin.palette.line), egui::StrokeKind::Inside);
+}
+
+fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &Reduced) {
+    let palette = context.skin.palette;
+    let clipped = painter.with_clip_rect(lane.rect.intersect(painter.clip_rect()));
+    let axis = lane.axis();
+    let mut shapes = Vec::new();
+    for id in &lane.lines {
+        let (Some(line), Some(picture)) = (context.recorder.line(*id), reduced.picture(*id)) else { continue };
+        let colour = colour(context.skin, line);
+        let (bad, warning) = (palette.bad.into(), palette.warn.into());
+        let pen = Pen { colour, factor: line.factor(), marks: !line.derived, bad, warning };
+        trace::shapes(picture, lane.rect, &layout.time, &axis, &pen, &mut shapes);
+    }
+    clipped.extend(shapes);
+}
+
+/// The name and unit of each line of a lane, in its colour.
+fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
+    let skin = context.skin;
+    let mut place = lane.rect.min + vec2(8.0, 4.0);
+    for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
+        let unit = line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default();
+        let words = format!("{} / {unit}", skin.words(&line.name));
+        let words = painter.layout_no_wrap(words, FontId::proportional(skin.sizes.caption), colour(skin, line));
+        let ground = Rect::from_min_size(place, words.size()).expand2(vec2(4.0, 1.0));
+        if ground.right() > lane.rect.right() {
+            break;
+        }
+        painter.rect_filled(ground, 2.0, Color32::from(skin.palette.sunken).gamma_multiply(0.85));
+        painter.galley(place, words.clone(), Color32::PLACEHOLDER);
+        place.x += words.size().x + 16.0;
+    }
+}
+
+fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
+    let palette = context.skin.palette;
+    for cursor in Cursor::BOTH {
+        let Some(time) = context.recorder.cursor(cursor) else { continue };
+        let x = layout.time.x(time).round();
+        if !layout.chart.x_range().contains(x) {
+            continue;
+        }
+        painter.vline(x, layout.chart.y_range(), Stroke::new(1.0, palette.text));
+        let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
+        painter.rect_filled(handle, 3.0, palette.text);
+        painter.text(handle.center(), Align2::CENTER_CENTER, cursor.word(), font.clone(), palette.sunken.into());
+        // Where it meets each line: the raw sample that it reads.
+        for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
+            if let Some(line) = context.recorder.line(*line) {
+                dot(painter, context, layout, lane, line, time);
+            }
+        }
+    }
+}
+
+/// The raw sample nearest to a time, as a dot.
+fn dot(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, line: &Line, time: crate::signal::Time) {
+    let Some(sample) = context.recorder.nearest(line, time) else { return };
+    let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));
+    if place.is_finite() && lane.rect.contains(place) {
+        painter.circle(place, 3.5, colour(context.skin, line), Stroke::new(1.0, context.skin.palette.sunken));
+    }
+}
+
+fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, place: Pos2) {
+    let faint = Stroke::new(1.0, Color32::from(context.skin.palette.muted).gamma_multiply(0.6));
+    painter.vline(place.x.round(), layout.chart.y_range(), faint);
+    let time = layout.time.time(place.x);
+    for lane in &layout.lanes {
+        for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
+            dot(painter, context, layout, lane, line, time);
+        }
+    }
+}
+
+/// The level that is waited for, and where it happened.
+fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
+    let Some((trigger, state)) = context.recorder.trigger() else { return };
+    let palette = context.skin.palette;
+    let colour = Color32::from(palette.accent);
+    if let Some(lane) = layout.lanes.iter().find(|lane| lane.lines.contains(&trigger.line))
+        && trigger.when.has_level()
+    {
+        let y = lane.axis().y(trigger.level).round();
+        if lane.rect.y_range().contains(y) {
+            let ends = [pos2(lane.rect.left(), y), pos2(lane.rect.right(), y)];
+            painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 6.0, 4.0));
+            let place = pos2(lane.rect.right() - 4.0, y - 2.0);
+            painter.text(place, Align2::RIGHT_BOTTOM, "T", font.clone(), colour);
+        }
+    }
+    if let TriggerState::Fired(at) | TriggerState::Held(at) = state {
+        let x = layout.time.x(at).round();
+        if layout.chart.x_range().contains(x) {
+            let ends = [pos2(x, layout.chart.top()), pos2(x, layout.chart.bottom())];
+            painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 2.0, 4.0));
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The plot: draws a recorder, and turns what the pointer and the keyboard do on it into actions.
+//!
+//! Drag: a box to look into; on a cursor: moves it. Right button or Shift: moves the picture. Wheel: longer or shorter about
+//! the pointer. Double click: everything. Keys: ← → move, + − zoom, Home everything, End the newest, A and B the cursors.
+
+mod axes;
+mod chart;
+mod lanes;
+mod pointer;
+mod readout;
+mod snapshot;
+mod toolbar;
+mod trace;
+mod trigger;
+
+use egui::{Rect, Sense, Ui, WidgetInfo, vec2};
+
+use super::Skin;
+use super::panels::nothing;
+use crate::app::recorder::{self, Recorder};
+use crate::app::{Action, Desk};
+
+/// What a plot remembers while the window is open.
+#[derive(Default)]
+pub(in crate::ui) struct View {
+    reduced: lanes::Reduced,
+    drag: Option<pointer::Drag>,
+    trigger: trigger::Form,
+    /// A picture of it that is wanted.
+    shot: snapshot::Shot,
+    /// It takes the place of the page.
+    pub(in crate::ui) large: bool,
+}
+
+/// Whose plot it is, and where its actions go.
+pub(super) struct Context<'a> {
+    skin: &'a Skin,
+    recorder: &'a Recorder,
+    desk: Desk,
+    actions: &'a mut Vec<Action>,
+}
+
+impl Context<'_> {
+    fn act(&mut self, action: recorder::Action) {
+        self.actions.push(Action::Recorder(self.desk, action));
+    }
+}
+
+/// Draws a recorder with its toolbar in what room there is. `empty` says what fills it.
+pub(in crate::ui) fn plot_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    recorder: &Recorder,
+    desk: Desk,
+    view: &mut View,
+    empty: &str,
+    actions: &mut Vec<Action>,
+) {
+    let context = &mut Context { skin, recorder, desk, actions };
+    let top = ui.cursor().top();
+    toolbar::toolbar_ui(ui, context, view);
+    let below = ui.available_height();
+    // The readout stands below the chart and takes what it took in the picture before.
+    let readout_id = ui.scope_id().with("readout");
+    let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
+    let height = (below - readout - ui.spacing().item_spacing.y).max(60.0);
+    let hovered = chart_ui(ui, context, view, height, empty);
+    let before = ui.cursor().top();
+    readout::readout_ui(ui, context, hovered);
+    let used = ui.cursor().top() - before;
+    if (used - readout).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(readout_id, used));
+        ui.ctx().request_repaint();
+    }
+    let whole = Rect::from_min_max(egui::pos2(ui.min_rect().left(), top), ui.min_rect().max);
+    view.shot.take(ui.ctx(), whole, context.actions);
+}
+
+/// Draws the chart; gives the time under the pointer.
+fn chart_ui(
+    ui: &mut Ui,
+    context: &mut Context<'_>,
+    view: &mut View,
+    height: f32,
+    empty: &str,
+) -> Option<crate::signal::Time> {
+    let (skin, recorder) = (context.skin, context.recorder);
+    let size = vec2(ui.available_width().max(0.0), height);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let word = skin.say("recorder.chart");
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &word));
+    ui.painter().rect_filled(rect, skin.radius, skin.palette.sunken);
+    if recorder.is_empty() || recorder.shown().next().is_none() || size.x < 80.0 {
+        let words = if recorder.is_empty() { empty.to_owned() } else { skin.say("recorder.no_line") };
+        let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
+        inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));
+        nothing(&mut inner, skin, &words);
+        return None;
+    }
+    let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
+    let hovered = response.hover_pos().filter(|place| layout.chart.contains(*place) && view.drag.is_none());
+    pointer::interact(ui, &response, context, &layout, &mut view.drag);
+    let painter = ui.painter().with_clip_rect(rect);
+    chart::paint(&painter, context, &layout, &view.reduced, view.drag.as_ref(), hovered);
+    if response.has_focus() {
+        let stroke = egui::Stroke::new(1.0, skin.palette.accent);
+        ui.painter().rect_stroke(rect, skin.radius, stroke, egui::StrokeKind::Inside);
+    }
+    hovered.map(|place| layout.time.time(place.x))
+}

@@ -1,0 +1,171 @@
+//! What the pointer and the keyboard do on the chart.
+
+use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
+
+use super::Context;
+use super::lanes::Layout;
+use crate::app::recorder::{Action, Cursor};
+use crate::signal::Time;
+
+/// So near, in points, the pointer is on a cursor, and a cursor on a sample.
+const NEAR: f32 = 6.0;
+/// A box that is smaller, in points, was a click.
+const CLICK: f32 = 5.0;
+
+/// What is being dragged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Drag {
+    /// A cursor.
+    Cursor(Cursor),
+    /// A box to look into.
+    Box { from: Pos2, to: Pos2 },
+    /// The picture: what lay under the pointer.
+    Picture { under: Time, window: (Time, Time) },
+}
+
+pub(super) fn interact(
+    ui: &Ui,
+    response: &Response,
+    context: &mut Context<'_>,
+    layout: &Layout,
+    drag: &mut Option<Drag>,
+) {
+    let place = response.interact_pointer_pos();
+    if response.drag_started()
+        && let Some(place) = ui.input(|input| input.pointer.press_origin()).or(place)
+    {
+        *drag = Some(begin(ui, response, context, layout, place));
+        response.request_focus();
+    }
+    if response.clicked() {
+        response.request_focus();
+    }
+    if let (Some(held), Some(place)) = (drag.as_mut(), place) {
+        follow(held, place, context, layout);
+    }
+    if response.drag_stopped()
+        && let Some(Drag::Box { from, to }) = drag.take()
+    {
+        look_into(Rect::from_two_pos(from, to), context, layout);
+    }
+    if !response.dragged() {
+        *drag = None;
+    }
+    if response.double_clicked() {
+        context.act(Action::Fit);
+    }
+    hover(ui, response, context, layout, drag.is_some());
+    keys(ui, response, context, layout);
+}
+
+fn begin(ui: &Ui, response: &Response, context: &Context<'_>, layout: &Layout, place: Pos2) -> Drag {
+    let shifted = ui.input(|input| input.modifiers.shift) || !response.dragged_by(PointerButton::Primary);
+    match cursor_at(context, layout, place) {
+        Some(cursor) if !shifted => Drag::Cursor(cursor),
+        _ if shifted => Drag::Picture { under: layout.time.time(place.x), window: context.recorder.window() },
+        _ => Drag::Box { from: place, to: place },
+    }
+}
+
+fn cursor_at(context: &Context<'_>, layout: &Layout, place: Pos2) -> Option<Cursor> {
+    let near = |cursor: &Cursor| {
+        let time = context.recorder.cursor(*cursor);
+        time.is_some_and(|time| (layout.time.x(time) - place.x).abs() <= NEAR)
+    };
+    Cursor::BOTH.into_iter().find(near)
+}
+
+fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layout) {
+    match drag {
+        Drag::Cursor(cursor) => {
+            let time = snapped(context, layout, place.x.clamp(layout.chart.left(), layout.chart.right()));
+            context.act(Action::SetCursor(*cursor, Some(time)));
+        }
+        Drag::Box { to, .. } => *to = place,
+        Drag::Picture { under, window: (from, to) } => {
+            // Seen from where it began: the layout moves with it.
+            let here = from.plus((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
+            let by = under.nanoseconds_since(here);
+            context.act(Action::Look(from.plus(by), to.plus(by)));
+        }
+    }
+}
+
+/// The time of the sample that is near, else the time there.
+fn snapped(context: &Context<'_>, layout: &Layout, x: f32) -> Time {
+    let time = layout.time.time(x);
+    let samples = context.recorder.shown().filter_map(|line| context.recorder.nearest(line, time));
+    let nearest = samples.map(|sample| sample.time).min_by_key(|own| own.nanoseconds_since(time).abs());
+    nearest.filter(|own| (layout.time.x(*own) - x).abs() <= NEAR).unwrap_or(time)
+}
+
+/// A wide box chooses a time, a high one values, one that is both chooses both.
+fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
+    let chosen = chosen.intersect(layout.chart);
+    if chosen.width() >= CLICK {
+        context.act(Action::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));
+    }
+    let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
+    let part = chosen.intersect(lane.rect).height();
+    // Nobody draws along a line exactly: a flat box is about time alone, and one over the whole lane too.
+    if part >= CLICK * 3.0 && part < lane.rect.height() * 0.9 {
+        let axis = lane.axis();
+        let low = axis.value(chosen.bottom().min(lane.rect.bottom()));
+        let high = axis.value(chosen.top().max(lane.rect.top()));
+        for line in &lane.lines {
+            context.act(Action::SetRange(*line, Some((low, high))));
+        }
+    }
+}
+
+fn hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout, dragging: bool) {
+    let Some(place) = response.hover_pos().filter(|place| layout.chart.contains(*place)) else { return };
+    if !dragging && cursor_at(context, layout, place).is_some() {
+        ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
+    }
+    let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta()));
+    let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
+    if (factor - 1.0).abs() > 1e-4 {
+        context.act(Action::Zoom(layout.time.time(place.x), factor));
+    }
+    if scroll.x != 0.0 {
+        shift(context, -f64::from(scroll.x) / f64::from(layout.chart.width().max(1.0)));
+    }
+}
+
+fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout) {
+    if !response.has_focus() {
+        return;
+    }
+    // Else the arrows would lead to the next widget.
+    let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let middle = layout.time.time(layout.chart.center().x);
+    let at = response.hover_pos().map_or(middle, |place| snapped(context, layout, place.x));
+    for (key, action) in [
+        (Key::Plus, Action::Zoom(middle, 0.5)),
+        (Key::Equals, Action::Zoom(middle, 0.5)),
+        (Key::Minus, Action::Zoom(middle, 2.0)),
+        (Key::Home, Action::Fit),
+        (Key::End, Action::Follow),
+        (Key::A, Action::SetCursor(Cursor::A, Some(at))),
+        (Key::B, Action::SetCursor(Cursor::B, Some(at))),
+    ] {
+        if pressed(key) {
+            context.act(action);
+        }
+    }
+    for (key, share) in [(Key::ArrowLeft, -0.1), (Key::ArrowRight, 0.1)] {
+        if pressed(key) {
+            shift(context, share);
+        }
+    }
+}
+
+/// Moves the picture by a share of its length.
+fn shift(context: &mut Context<'_>, share: f64) {
+    let (from, to) = context.recorder.window();
+    let by = (context.recorder.span() as f64 * share) as i64;
+    context.act(Action::Look(from.plus(by), to.plus(by)));
+}

@@ -1,0 +1,193 @@
+//! The plot's tools: standing still and going on, how long a stretch, cursors, trigger, lines and their units, export.
+
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{PopupCloseBehavior, RichText, Ui};
+
+use super::{Context, View, chart, snapshot, trigger};
+use crate::app::Action as Studio;
+use crate::app::recorder::{Action, Cursor, TriggerState};
+use crate::ui::controls::{choice, icon_button, name};
+use crate::ui::icons;
+
+/// Seconds that can be chosen.
+const SPANS: [(i64, &str); 10] = [
+    (1, "recorder.span_1"),
+    (5, "recorder.span_5"),
+    (10, "recorder.span_10"),
+    (30, "recorder.span_30"),
+    (60, "recorder.span_60"),
+    (300, "recorder.span_300"),
+    (1_800, "recorder.span_1800"),
+    (3_600, "recorder.span_3600"),
+    (14_400, "recorder.span_14400"),
+    (86_400, "recorder.span_86400"),
+];
+
+pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View) {
+    let (skin, recorder) = (context.skin, context.recorder);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(skin.space.inside, skin.space.inside);
+        // In one row beside each other in a panel at the side of the window.
+        ui.spacing_mut().button_padding.x = 6.0;
+        let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
+            icon_button(ui, enabled, icon, &skin.say(id)).clicked()
+        };
+        let some = !recorder.is_empty();
+        if recorder.follows() {
+            if tool(ui, some, icons::PAUSE, "recorder.pause") {
+                context.act(Action::Pause);
+            }
+        } else if tool(ui, true, icons::FAST_FORWARD, "recorder.follow") {
+            context.act(Action::Follow);
+        }
+        span(ui, context);
+        if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
+            context.act(Action::Fit);
+        }
+        let cursors = Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some());
+        if switch(ui, context, some, cursors, icons::LINE_VERTICAL, "recorder.cursors") {
+            context.act(Action::ShowCursors(!cursors));
+        }
+        trigger_menu(ui, context, &mut view.trigger);
+        lines_menu(ui, context);
+        export_menu(ui, context, &mut view.shot);
+        if tool(ui, some, icons::TRASH, "live.clear") {
+            context.act(Action::Clear);
+        }
+        let (icon, id) =
+            if view.large { (icons::CORNERS_IN, "recorder.small") } else { (icons::CORNERS_OUT, "recorder.large") };
+        if tool(ui, true, icon, id) {
+            view.large = !view.large;
+        }
+    });
+    state(ui, context);
+}
+
+/// A button that stays in.
+fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
+    let word = context.skin.say(id);
+    let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));
+    let response = ui.add_enabled(enabled, button);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Switch, enabled, on, &word));
+    response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
+}
+
+/// How long a stretch is shown: one of those to choose from, or what zooming made of it.
+fn span(ui: &mut Ui, context: &mut Context<'_>) {
+    const SECOND: i64 = 1_000_000_000;
+    let (skin, span) = (context.skin, context.recorder.span());
+    let mut chosen = span;
+    let mut options: Vec<(i64, String)> =
+        SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, skin.say(id))).collect();
+    if options.iter().all(|(own, _)| *own != span) {
+        options.insert(0, (span, super::axes::duration(span, skin.language)));
+    }
+    ui.scope(|ui| {
+        ui.spacing_mut().combo_width = 48.0;
+        if choice(ui, &skin.say("recorder.span"), &mut chosen, options) {
+            context.act(Action::SetSpan(chosen));
+        }
+    });
+}
+
+fn menu<R>(ui: &mut Ui, context: &Context<'_>, icon: &str, id: &'static str, content: impl FnOnce(&mut Ui) -> R) {
+    let word = context.skin.say(id);
+    // What is ticked and typed in it does not close it.
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let button = egui::Button::new(icon).min_size(egui::vec2(28.0, 28.0));
+    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, content);
+    name(response, true, &word).on_hover_text(&word);
+}
+
+fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
+    let icon = icons::LIGHTNING;
+    let lines = context.recorder.shown().next().is_some();
+    if !lines {
+        icon_button(ui, false, icon, &context.skin.say("recorder.trigger"));
+        return;
+    }
+    let skin = context.skin;
+    let mut actions = Vec::new();
+    menu(ui, context, icon, "recorder.trigger", |ui| trigger::form_ui(ui, skin, context.recorder, form, &mut actions));
+    actions.into_iter().for_each(|action| context.act(action));
+}
+
+/// Which lines are shown, each in which unit.
+fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
+    let (skin, recorder) = (context.skin, context.recorder);
+    let mut actions = Vec::new();
+    menu(ui, context, icons::LIST_CHECKS, "recorder.lines", |ui| {
+        egui::Grid::new("lines").num_columns(2).spacing(egui::vec2(16.0, 4.0)).show(ui, |ui| {
+            for line in recorder.lines() {
+                let mut shown = line.shown;
+                let words = skin.words(&line.name);
+                let text = RichText::new(&words).color(chart::colour(skin, line));
+                if ui.checkbox(&mut shown, text).changed() {
+                    actions.push(Action::Show(line.id, shown));
+                }
+                let mut scale = line.scale_number();
+                let units = line.scales().iter().map(|scale| skin.words(&scale.unit)).enumerate();
+                let label = format!("{words}: {}", skin.say("recorder.unit"));
+                if choice(ui, &label, &mut scale, units) {
+                    actions.push(Action::SetScale(line.id, scale));
+                }
+                ui.end_row();
+            }
+        });
+        let mut one_axis = recorder.has_one_axis();
+        if ui.checkbox(&mut one_axis, skin.say("recorder.one_axis")).changed() {
+            actions.push(Action::ShareAxis(one_axis));
+        }
+    });
+    actions.into_iter().for_each(|action| context.act(action));
+}
+
+fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot) {
+    let skin = context.skin;
+    let (some, desk) = (!context.recorder.is_empty(), context.desk);
+    let mut chosen = None;
+    menu(ui, context, icons::DOWNLOAD_SIMPLE, "recorder.export", |ui| {
+        ui.set_min_width(200.0);
+        for (id, visible) in [("recorder.csv_visible", true), ("recorder.csv_all", false)] {
+            if ui.add_enabled(some, egui::Button::new(skin.say(id))).clicked() {
+                chosen = Some(Studio::AskTable { desk, visible });
+                ui.close();
+            }
+        }
+        if ui.button(skin.say("recorder.png")).clicked() {
+            shot.wish(ui.ctx());
+            ui.close();
+        }
+    });
+    context.actions.extend(chosen);
+}
+
+/// What is going on: a trigger that waits, a table that is being written.
+fn state(ui: &mut Ui, context: &mut Context<'_>) {
+    let (skin, recorder) = (context.skin, context.recorder);
+    if let Some((_, state)) = recorder.trigger() {
+        let id = match state {
+            TriggerState::Armed => "recorder.armed",
+            TriggerState::Fired(_) => "recorder.fired",
+            TriggerState::Held(_) => "recorder.held",
+        };
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(icons::LIGHTNING).color(skin.palette.accent));
+            ui.label(skin.caption(skin.say(id)));
+            if ui.small_button(skin.say("recorder.disarm")).clicked() {
+                context.act(Action::Disarm);
+            }
+        });
+    }
+    if let Some(export) = recorder.export() {
+        let (done, total) = export.progress();
+        ui.horizontal(|ui| {
+            let part = done as f32 / total.max(1) as f32;
+            ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(80.0));
+            ui.label(skin.caption(skin.say("recorder.writing")));
+            if ui.small_button(skin.say("shell.cancel")).clicked() {
+                context.act(Action::CancelExport);
+            }
+        });
+    }
+}

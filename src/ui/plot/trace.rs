@@ -1,0 +1,306 @@
+//! A line of samples as shapes: dense ones as one mesh without smoothed edges, which costs little to fill; sparse ones as
+//! a smooth line with its points. Breaks stay gaps, and what is marked bad or with a warning stays to be seen.
+
+use egui::epaint::{Vertex, WHITE_UV};
+use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
+
+use crate::signal::Time;
+use crate::signal::history::{Flags, Picture};
+
+/// Thickness of a line in points.
+const WIDTH: f32 = 1.5;
+/// Points of a line up to which it is drawn smoothly.
+const SMOOTH: usize = 1500;
+/// Least distance of samples, in points, from which each gets a dot.
+const DOTS: f32 = 8.0;
+
+/// From time to points on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TimeAxis {
+    /// The time at `left`.
+    pub(super) from: Time,
+    pub(super) left: f32,
+    /// Points a nanosecond.
+    pub(super) scale: f64,
+    /// Width of a pixel in points.
+    pub(super) pixel: f32,
+}
+
+impl TimeAxis {
+    pub(super) fn x(&self, time: Time) -> f32 {
+        self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
+    }
+
+    /// Where the pixel column begins that a time lies in. A column's samples lie anywhere in it; it does not move with them.
+    fn column(&self, time: Time) -> f32 {
+        self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
+    }
+
+    pub(super) fn time(&self, x: f32) -> Time {
+        self.from.plus((f64::from(x - self.left) / self.scale) as i64)
+    }
+}
+
+/// From values to points on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ValueAxis {
+    /// The value at `bottom`.
+    pub(super) low: f64,
+    pub(super) bottom: f32,
+    /// Points a unit, not zero.
+    pub(super) scale: f64,
+}
+
+impl ValueAxis {
+    pub(super) fn new(rect: Rect, (low, high): (f64, f64)) -> Self {
+        let span = high - low;
+        let span = if span.is_finite() && span > 0.0 { span } else { 1.0 };
+        ValueAxis { low, bottom: rect.bottom(), scale: f64::from(rect.height().max(1.0)) / span }
+    }
+
+    pub(super) fn y(&self, value: f64) -> f32 {
+        // Far outside it makes no difference where; beyond what an f32 holds it would.
+        let y = f64::from(self.bottom) - (value - self.low) * self.scale;
+        y.clamp(-1e6, 1e6) as f32
+    }
+
+    pub(super) fn value(&self, y: f32) -> f64 {
+        self.low + f64::from(self.bottom - y) / self.scale
+    }
+}
+
+/// How a line is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pen {
+    pub(super) colour: Color32,
+    /// From the samples' own unit to the one that is shown.
+    pub(super) factor: f64,
+    /// What is remarkable is marked.
+    pub(super) marks: bool,
+    /// What is bad, and what comes with a warning.
+    pub(super) bad: Color32,
+    pub(super) warning: Color32,
+}
+
+/// The shapes of a line in a lane.
+pub(super) fn shapes(
+    picture: &Picture,
+    lane: Rect,
+    time: &TimeAxis,
+    value: &ValueAxis,
+    pen: &Pen,
+    out: &mut Vec<Shape>,
+) {
+    if picture.raw {
+        sparse(picture, lane, time, value, pen, out)
+    } else {
+        dense(picture, lane, time, value, pen, out)
+    }
+    if pen.marks {
+        marks(picture, lane, time, pen, out);
+    }
+}
+
+/// One upright bar a pixel column, from the least to the greatest value, reaching to where the column before it ended.
+fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
+    let mut mesh = Mesh::default();
+    mesh.reserve_vertices(picture.pixels.len() * 4);
+    mesh.reserve_triangles(picture.pixels.len() * 2);
+    let mut before: Option<(f32, f32)> = None;
+    for pixel in &picture.pixels {
+        let Some(values) = pixel.values else { continue };
+        let y = |own: f64| value.y(own * pen.factor);
+        let (one, other) = (y(values.min), y(values.max));
+        let (mut top, mut bottom) = (one.min(other), one.max(other));
+        let left = time.column(pixel.from);
+        if let Some((x, y)) = before.filter(|_| pixel.joined) {
+            (top, bottom) = (top.min(y), bottom.max(y));
+            // Columns between which there are no samples are bridged.
+            if left > x + 0.01 {
+                bar(
+                    &mut mesh,
+                    Rect::from_min_max(pos2(x, y - WIDTH / 2.0), pos2(left, y + WIDTH / 2.0)),
+                    lane,
+                    pen.colour,
+                );
+            }
+        }
+        let right = left + time.pixel;
+        let thick = (WIDTH - (bottom - top)).max(0.0) / 2.0;
+        bar(&mut mesh, Rect::from_min_max(pos2(left, top - thick), pos2(right, bottom + thick)), lane, pen.colour);
+        before = Some((right, y(values.last)));
+    }
+    out.push(Shape::mesh(mesh));
+}
+
+fn bar(mesh: &mut Mesh, rect: Rect, lane: Rect, colour: Color32) {
+    let rect = rect.intersect(lane);
+    if rect.is_positive() {
+        mesh.add_colored_rect(rect, colour);
+    }
+}
+
+fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
+    let smooth = picture.pixels.len() <= SMOOTH;
+    let dots = picture.pixels.len() as f32 * DOTS < lane.width();
+    let around = lane.expand(WIDTH * 4.0);
+    let mut mesh = Mesh::default();
+    let mut run: Vec<Pos2> = Vec::new();
+    let mut before: Option<Pos2> = None;
+    let end = |run: &mut Vec<Pos2>, out: &mut Vec<Shape>| {
+        if run.len() > 1 {
+            out.push(Shape::line(std::mem::take(run), Stroke::new(WIDTH, pen.colour)));
+        }
+        run.clear();
+    };
+    for (at, pixel) in picture.pixels.iter().enumerate() {
+        let Some(values) = pixel.values else { continue };
+        let here = pos2(time.x(pixel.from), value.y(values.first * pen.factor));
+        // One that is joined to neither side would not be seen.
+        let lonely = !pixel.joined && picture.pixels.get(at + 1).is_none_or(|next| !next.joined);
+        if (dots || lonely) && lane.contains(here) {
+            out.push(Shape::circle_filled(here, 2.0, pen.colour));
+        }
+        match before.filter(|_| pixel.joined).and_then(|before| clip(before, here, around)) {
+            Some((from, to)) if smooth => {
+                if run.last() != Some(&from) {
+                    end(&mut run, out);
+                    run.push(from);
+                }
+                run.push(to);
+            }
+            Some((from, to)) => segment(&mut mesh, from, to, pen.colour),
+            None => end(&mut run, out),
+        }
+        before = Some(here);
+    }
+    end(&mut run, out);
+    if !mesh.is_empty() {
+        out.push(Shape::mesh(mesh));
+    }
+}
+
+/// A straight piece as two triangles.
+fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
+    let along = (to - from).normalized() * (WIDTH / 2.0);
+    let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
+    // A little longer than it is, so that pieces at an angle leave no notch.
+    let (from, to) = (from - along * 0.5, to + along * 0.5);
+    mesh.vertices.extend([from + across, to + across, from - across, to - across].map(|pos| Vertex {
+        pos,
+        uv: WHITE_UV,
+        color,
+    }));
+    mesh.add_triangle(first, first + 1, first + 2);
+    mesh.add_triangle(first + 2, first + 1, first + 3);
+}
+
+/// The part of a straight piece that lies in a rectangle (Liang and Barsky).
+fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
+    if rect.contains(from) && rect.contains(to) {
+        return Some((from, to));
+    }
+    let along = to - from;
+    let (mut enters, mut leaves) = (0.0_f32, 1.0_f32);
+    for (step, room) in [
+        (-along.x, from.x - rect.left()),
+        (along.x, rect.right() - from.x),
+        (-along.y, from.y - rect.top()),
+        (along.y, rect.bottom() - from.y),
+    ] {
+        if step == 0.0 {
+            if room < 0.0 {
+                return None;
+            }
+        } else if step < 0.0 {
+            enters = enters.max(room / step);
+        } else {
+            leaves = leaves.min(room / step);
+        }
+    }
+    (enters <= leaves).then(|| (from + along * enters, from + along * leaves))
+}
+
+/// Ticks at the foot of the lane for what is bad or comes with a warning, at any zoom.
+fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
+    for pixel in &picture.pixels {
+        let (colour, height) = if pixel.flags.contains(Flags::BAD) {
+            (pen.bad, 6.0)
+        } else if pixel.flags.contains(Flags::WARNING) {
+            (pen.warning, 4.0)
+        } else {
+            continue;
+        };
+        let x = time.x(pixel.from);
+        if lane.x_range().contains(x) {
+            let rect = Rect::from_min_size(pos2(x - 1.0, lane.bottom() - height), vec2(2.0, height));
+            out.push(Shape::rect_filled(rect, 0.0, colour));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::history::{Grid, History, Kind, Part};
+
+    const LANE: Rect = Rect { min: Pos2::ZERO, max: pos2(100.0, 50.0) };
+    const PEN: Pen =
+        Pen { colour: Color32::WHITE, factor: 1.0, marks: true, bad: Color32::RED, warning: Color32::YELLOW };
+
+    #[test]
+    fn a_piece_is_cut_where_it_leaves() {
+        assert_eq!(clip(pos2(-100.0, 25.0), pos2(200.0, 25.0), LANE), Some((pos2(0.0, 25.0), pos2(100.0, 25.0))));
+        assert_eq!(clip(pos2(10.0, 10.0), pos2(20.0, 10.0), LANE), Some((pos2(10.0, 10.0), pos2(20.0, 10.0))));
+        assert_eq!(clip(pos2(10.0, -10.0), pos2(20.0, -10.0), LANE), None);
+        assert_eq!(clip(pos2(-10.0, 10.0), pos2(-5.0, 40.0), LANE), None);
+        assert_eq!(clip(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
+    }
+
+    /// 100 columns of a nanosecond each: `count` samples evenly over them, of which some are marked.
+    fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
+        let mut history = History::new(&[Kind::Real], 100_000);
+        let times: Vec<Time> = (0..count).map(|at| Time::from_nanoseconds(at * 100_000 / count)).collect();
+        let values: Vec<f64> = (0..count).map(value).collect();
+        let flags: Vec<Flags> = (0..count).map(flags).collect();
+        history.append(&times, &[Part::real(&values).flagged(&flags)]).unwrap();
+        let grid = Grid::new(Time::ORIGIN, Time::from_nanoseconds(100_000), 100);
+        let mut picture = Picture::default();
+        history.picture(0, &history.cut(&grid), &mut picture);
+        let time = TimeAxis { from: Time::ORIGIN, left: 0.0, scale: 1e-3, pixel: 1.0 };
+        let mut shapes = Vec::new();
+        super::shapes(&picture, LANE, &time, &ValueAxis::new(LANE, (0.0, 1.0)), &PEN, &mut shapes);
+        shapes
+    }
+
+    fn reach(shapes: &[Shape]) -> Rect {
+        shapes.iter().fold(Rect::NOTHING, |all, shape| all.union(shape.visual_bounding_rect()))
+    }
+
+    #[test]
+    fn a_spike_of_one_sample_in_many_is_drawn_to_its_end() {
+        let shapes = drawn(50_000, |at| if at == 31_234 { 1.0 } else { 0.5 }, |_| Flags::NONE);
+        assert_eq!(shapes.len(), 1, "one mesh");
+        let reach = reach(&shapes);
+        assert!(reach.top() <= 0.5 && reach.bottom() < 27.0, "{reach}");
+    }
+
+    #[test]
+    fn gaps_stay_gaps_and_marks_are_seen() {
+        let gap = |at| if at == 5 { Flags::BAD } else { Flags::NONE };
+        let shapes = drawn(10, |_| 0.5, gap);
+        let lines = shapes.iter().filter(|shape| matches!(shape, Shape::Path(_))).count();
+        assert_eq!(lines, 2, "before and behind the gap");
+        assert!(shapes.iter().any(|shape| matches!(shape, Shape::Rect(rect) if rect.fill == Color32::RED)));
+        let many = drawn(50_000, |_| 0.5, |at| if at == 31_234 { Flags::BAD } else { Flags::NONE });
+        assert!(many.iter().any(|shape| matches!(shape, Shape::Rect(rect) if rect.fill == Color32::RED)));
+    }
+
+    #[test]
+    fn values_beyond_the_lane_stay_in_it() {
+        for count in [10, 3_000, 50_000] {
+            let reach = reach(&drawn(count, |at| if at % 2 == 0 { 1e30 } else { -1e30 }, |_| Flags::NONE));
+            assert!(LANE.expand(20.0).contains_rect(reach), "{count}: {reach}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The form of a trigger: which line, what to wait for, at which level, how much before it is kept.
+
+use egui::{RichText, Ui};
+
+use crate::app::Text;
+use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
+use crate::ui::Skin;
+use crate::ui::controls::{choice, entry, primary, text_entry};
+use crate::ui::icons;
+
+/// What is being typed.
+pub(super) struct Form {
+    line: LineId,
+    when: When,
+    level: String,
+    before: u32,
+    repeat: bool,
+    problem: Option<Text>,
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Form {
+            line: LineId::default(),
+            when: When::Rising,
+            level: "0".to_owned(),
+            before: 25,
+            repeat: false,
+            problem: None,
+        }
+    }
+}
+
+fn word(when: When) -> &'static str {
+    match when {
+        When::Above => "trigger.above",
+        When::Below => "trigger.below",
+        When::Rising => "trigger.rising",
+        When::Falling => "trigger.falling",
+        When::Error => "trigger.error",
+    }
+}
+
+pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut Form, actions: &mut Vec<Action>) {
+    ui.set_width(300.0);
+    if recorder.line(form.line).is_none_or(|line| !line.shown)
+        && let Some(first) = recorder.shown().next()
+    {
+        form.line = first.id;
+    }
+    entry(ui, skin, &skin.say("trigger.line"), |ui| {
+        let lines = recorder.shown().map(|line| (line.id, skin.words(&line.name)));
+        choice(ui, &skin.say("trigger.line"), &mut form.line, lines);
+    });
+    entry(ui, skin, &skin.say("trigger.when"), |ui| {
+        let whens = When::ALL.map(|when| (when, skin.say(word(when))));
+        choice(ui, &skin.say("trigger.when"), &mut form.when, whens);
+    });
+    let mut enter = false;
+    if form.when.has_level() {
+        entry(ui, skin, &skin.say("trigger.level"), |ui| {
+            let response = text_entry(ui, &mut form.level, 88.0, &skin.say("trigger.level"), "");
+            enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let unit = recorder.line(form.line).and_then(|line| line.scale());
+            ui.label(skin.label(unit.map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
+        });
+    }
+    entry(ui, skin, &skin.say("trigger.before"), |ui| {
+        let shares = [0, 10, 25, 50, 75, 90].map(|share| (share, format!("{share} %")));
+        choice(ui, &skin.say("trigger.before"), &mut form.before, shares);
+    });
+    ui.checkbox(&mut form.repeat, skin.say("trigger.repeat"));
+    if let Some(problem) = &form.problem {
+        ui.label(RichText::new(skin.words(problem)).color(skin.palette.bad));
+    }
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        if primary(ui, skin, true, icons::LIGHTNING, &skin.say("trigger.arm")).clicked() || enter {
+            match form.trigger() {
+                Ok(trigger) => {
+                    form.problem = None;
+                    actions.push(Action::Arm(trigger));
+                    ui.close();
+                }
+                Err(problem) => form.problem = Some(problem),
+            }
+        }
+    });
+}
+
+impl Form {
+    fn trigger(&self) -> Result<Trigger, Text> {
+        let level = match crate::app::number(&self.level) {
+            _ if !self.when.has_level() => 0.0,
+            Some(level) => level,
+            None => return Err(Text::new("trigger.no_level")),
+        };
+        let before = f64::from(self.before) / 100.0;
+        Ok(Trigger { line: self.line, when: self.when, level, before, repeat: self.repeat })
+    }
+}

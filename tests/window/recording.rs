@@ -1,0 +1,151 @@
+//! What is recorded of a polled encoder, and what can be done with it.
+
+use std::fs;
+use std::time::Duration;
+
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::recorder::{self, Line, Recorder};
+use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
+use encoder_studio::signal::history::Flags;
+
+use crate::losing::lost;
+use crate::support::Desk;
+
+const FAST: Hiperface = Hiperface::Poll(Some(Duration::from_millis(2)));
+
+fn recorded(studio: &Studio) -> u64 {
+    studio.encoder().unwrap().record.positions()
+}
+
+fn own(desk: &Desk) -> Of {
+    Of::Encoder(desk.encoder().id)
+}
+
+fn recorder(desk: &Desk) -> &Recorder {
+    &desk.encoder().record.recorder
+}
+
+fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Line {
+    recorder.lines().iter().find(|line| line.heading == name).unwrap()
+}
+
+/// Least and greatest value of all that was recorded of a line, in its unit.
+fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
+    let line = line(recorder, name);
+    let history = recorder.history(line).unwrap();
+    let statistics = history.statistics(line.column(), history.all()).unwrap();
+    (statistics.min.to_f64() * line.factor(), statistics.max.to_f64() * line.factor())
+}
+
+/// The 4096 turns end while it is recorded: without unwrapping, position and speed would jump by 4096 turns.
+#[test]
+fn the_end_of_the_range_is_no_spike() {
+    let mut desk = Desk::begun("rpm=600&position=16600000");
+    desk.ask(FAST);
+    desk.until("the range has ended", |studio| {
+        recorded(studio) > 200 && studio.encoder().unwrap().record.last().is_some_and(|reading| reading.raw < 1 << 23)
+    });
+    desk.act(Action::Stop);
+    let (least, most) = extent(recorder(&desk), "position");
+    assert!(least < 4096.0 && most > 4096.0 && most < 4300.0, "{least} {most}");
+    let (slowest, fastest) = extent(recorder(&desk), "speed");
+    assert!(slowest > 550.0 && fastest < 650.0, "{slowest} {fastest}");
+    assert_eq!(desk.bad_positions(), 0);
+}
+
+#[test]
+fn a_linear_encoder_is_recorded_in_millimetres() {
+    let mut desk = Desk::begun("type=0x90");
+    desk.ask(FAST);
+    desk.until("samples come", |studio| recorded(studio) > 5);
+    let line = line(recorder(&desk), "position");
+    assert_eq!(line.scale().unwrap().unit.id(), "unit.millimetres");
+    let reading = desk.encoder().record.last().unwrap();
+    let (_, most) = extent(recorder(&desk), "position");
+    assert!((most - reading.position.unwrap().millimetres().unwrap()).abs() < 1e-6);
+}
+
+#[test]
+fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
+    let mut desk = Desk::at_port("rpm=60");
+    desk.ask(FAST);
+    desk.until("samples come", |studio| recorded(studio) > 20);
+    let before = recorded(&desk.studio);
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    assert!(recorded(&desk.studio) >= before);
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    desk.ask(FAST);
+    let before = recorded(&desk.studio);
+    desk.until("samples go on", |studio| recorded(studio) > before + 20);
+    let recorder = recorder(&desk);
+    let history = recorder.history(line(recorder, "position")).unwrap();
+    let flags = |index| history.sample(0, index).unwrap().flags;
+    let breaks = history.all().filter(|index| flags(*index).contains(Flags::BREAK)).count();
+    assert!(breaks >= 1, "the line is broken where the cable was out");
+    let times: Vec<_> = history.all().map(|index| history.time(index).unwrap()).collect();
+    assert!(times.is_sorted());
+}
+
+#[test]
+fn another_encoder_begins_another_recording() {
+    let mut desk = Desk::at_port("rpm=60");
+    desk.ask(FAST);
+    desk.until("samples come", |studio| recorded(studio) > 20);
+    desk.wire().unplug();
+    desk.until("it is lost", lost);
+    desk.wire().exchange("serial=OTHER0001&model=sks36");
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert!(recorded(&desk.studio) <= 1, "the position that is read with the rest");
+}
+
+#[test]
+fn the_recording_is_saved_as_a_table() {
+    let mut desk = Desk::begun("rpm=60");
+    let desk_of = own(&desk);
+    desk.act(Action::Recorder(desk_of, recorder::Action::Clear));
+    let path = desk.outside.path("table.csv");
+    let question = |visible| FileQuestion::Table { desk: desk_of, visible, suggested: "x.csv".into() };
+    desk.act(Action::Chosen(question(false), path.clone()));
+    assert_eq!(desk.told(Severity::Warning), ["recorder.nothing_to_write"]);
+    desk.ask(FAST);
+    desk.until("samples come", |studio| recorded(studio) > 50);
+    desk.act(Action::Stop);
+    desk.settle();
+    desk.act(Action::AskTable { desk: desk_of, visible: false });
+    let asked = desk.studio.take_file_question().unwrap();
+    let FileQuestion::Table { visible: false, suggested, .. } = &asked else { panic!("{asked:?}") };
+    assert!(suggested.to_str().unwrap().ends_with(".csv"));
+    desk.act(Action::Chosen(asked, path.clone()));
+    desk.until("it is written", |studio| {
+        studio.services.log.notices().any(|own| own.texts[0].id() == "recorder.written")
+    });
+    let text = fs::read_to_string(&path).unwrap();
+    assert_eq!(text.lines().next(), Some("time [s],position [turns],speed [rpm],remark"));
+    assert_eq!(text.lines().count() as u64, 1 + recorded(&desk.studio));
+    // What is there already is not replaced without a question where a path was typed.
+    desk.act(Action::Typed(question(false), path.clone()));
+    desk.until("it asks", |studio| studio.question.is_some());
+    desk.act(Action::Escape);
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    let nowhere = desk.outside.path("no/table.csv");
+    desk.act(Action::Chosen(question(false), nowhere));
+    desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
+    assert!(recorder(&desk).export().is_none());
+}
+
+#[test]
+fn a_picture_is_saved() {
+    let mut desk = Desk::begun("");
+    let picture = Picture::new(1, 1, vec![1, 2, 3]).unwrap();
+    desk.act(Action::AskPicture(picture));
+    let asked = desk.studio.take_file_question().unwrap();
+    let path = desk.outside.path("plot.png");
+    desk.act(Action::Chosen(asked, path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    assert_eq!(fs::read(&path).unwrap()[..4], [0x89, b'P', b'N', b'G']);
+}
