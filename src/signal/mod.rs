@@ -21,6 +21,7 @@ pub mod spectrum;
 pub mod synchronise;
 mod time;
 mod unwrap;
+pub mod wires;
 
 pub use motion::{Motion, Rates};
 pub use time::Time;

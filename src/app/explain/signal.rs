@@ -8,6 +8,7 @@ use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
 use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::signal::quality::{Finding, Verdict};
+use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
 /// A file that could not be read as a capture.
@@ -81,5 +82,73 @@ pub fn finding(finding: &Finding) -> Text {
         Finding::GainRatio(ratio) => Text::new("signal.gain").with_number("ratio", ratio, 3),
         Finding::PhaseError(degrees) => Text::new("signal.phase").with_number("degrees", degrees, 2),
         Finding::Residual(share) => percent("signal.residual", share),
+    }
+}
+
+/// The name of a setting of the virtual sine/cosine source, without its unit.
+pub fn quantity(quantity: Quantity) -> Text {
+    Text::new(match quantity {
+        Quantity::Periods => "source.periods",
+        Quantity::Speed => "source.speed",
+        Quantity::Rate => "source.rate",
+        Quantity::Amplitude => "source.amplitude",
+        Quantity::OffsetSine => "source.offset_sine",
+        Quantity::OffsetCosine => "source.offset_cosine",
+        Quantity::GainRatio => "source.gain_ratio",
+        Quantity::PhaseError => "source.phase_error",
+        Quantity::Level => "source.level",
+        Quantity::ThirdHarmonic => "source.third_harmonic",
+        Quantity::Modulation => "source.modulation",
+        Quantity::Noise => "source.noise",
+        Quantity::InterferenceFrequency => "source.interference_frequency",
+        Quantity::Interference => "source.interference",
+        Quantity::HumFrequency => "source.hum_frequency",
+        Quantity::Hum => "source.hum",
+        Quantity::Eccentricity => "source.eccentricity",
+    })
+}
+
+/// A setting of the virtual source that is outside of its range.
+pub fn setting(error: &SettingError) -> Text {
+    let SettingError { quantity: of, value, least, most } = *error;
+    let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };
+    // As many as it has, three at most.
+    let whole = |value: f64, decimals: usize| (value * 10_f64.powi(decimals as i32)).fract() == 0.0;
+    let decimals = |value: f64| (0..3).find(|decimals| whole(value, *decimals)).unwrap_or(3);
+    Text::new(id)
+        .with_text("quantity", quantity(of))
+        .with_number("least", least, decimals(least))
+        .with_number("most", most, decimals(most))
+        .with("unit", format_args!("{}{}", if of.unit().is_empty() { "" } else { " " }, of.unit()))
+        .with_number("value", value, decimals(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::sim::sine_cosine::Settings;
+
+    #[test]
+    fn a_setting_out_of_range_is_told_with_its_range() {
+        let said = |quantity, value| {
+            let error = Settings::default().with(quantity, value).checked().unwrap_err();
+            [Language::English, Language::German].map(|language| setting(&error).words(language))
+        };
+        assert_eq!(
+            said(Quantity::GainRatio, 0.1234),
+            [
+                "Gain ratio, cosine over sine: 0.123 is outside 0.2 … 5.",
+                "Verstärkungsverhältnis Kosinus zu Sinus: 0,123 liegt außerhalb von 0,2 … 5."
+            ]
+        );
+        assert_eq!(
+            said(Quantity::Amplitude, 3.0),
+            ["Amplitude: 3 is outside 0 … 2 V.", "Amplitude: 3 liegt außerhalb von 0 … 2 V."]
+        );
+        assert_eq!(
+            said(Quantity::Periods, 16.5)[0],
+            "Periods in a revolution: 16.5 is no whole number from 1 to 65536."
+        );
     }
 }

@@ -1,0 +1,72 @@
+//! The four wires of a sine/cosine signal against ground, as SICK 8010701 names them: SIN, REFSIN, COS, REFCOS. What a
+//! source of analogue samples gives; says nothing about when they were taken.
+
+/// Voltages of the four wires, all columns equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wires {
+    /// SIN in volts.
+    pub sin_v: Vec<f64>,
+    /// REFSIN in volts.
+    pub refsin_v: Vec<f64>,
+    /// COS in volts.
+    pub cos_v: Vec<f64>,
+    /// REFCOS in volts.
+    pub refcos_v: Vec<f64>,
+    /// The shaft's angle by a reference encoder in mechanical degrees, from 0 up to but not including 360; empty without
+    /// one.
+    pub reference_deg: Vec<f64>,
+}
+
+/// One of the four wires.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wire {
+    /// SIN.
+    Sin,
+    /// REFSIN.
+    Refsin,
+    /// COS.
+    Cos,
+    /// REFCOS.
+    Refcos,
+}
+
+impl Wire {
+    /// Every wire.
+    pub const ALL: [Wire; 4] = [Wire::Sin, Wire::Refsin, Wire::Cos, Wire::Refcos];
+
+    /// As the manual spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Wire::Sin => "SIN",
+            Wire::Refsin => "REFSIN",
+            Wire::Cos => "COS",
+            Wire::Refcos => "REFCOS",
+        }
+    }
+}
+
+impl Wires {
+    /// Samples.
+    pub fn len(&self) -> usize {
+        self.sin_v.len()
+    }
+
+    /// There is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.sin_v.is_empty()
+    }
+
+    /// SIN − REFSIN in volts, as a differential receiver gives it.
+    pub fn sine_v(&self) -> Vec<f64> {
+        difference(&self.sin_v, &self.refsin_v)
+    }
+
+    /// COS − REFCOS in volts.
+    pub fn cosine_v(&self) -> Vec<f64> {
+        difference(&self.cos_v, &self.refcos_v)
+    }
+}
+
+fn difference(wire: &[f64], reference: &[f64]) -> Vec<f64> {
+    wire.iter().zip(reference).map(|(wire, reference)| wire - reference).collect()
+}

@@ -1,0 +1,269 @@
+//! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a speed, with errors that can be set.
+//! Deterministic: the same settings, changes and sample numbers give the same voltages, in whatever stretches they are
+//! asked for. Never in here: a clock, a thread, a device.
+//!
+//! The model is that of Heydemann (Applied Optics 20, 3382), section 7 of the project's sine/cosine reference, with θ the
+//! true angle: cosine channel R·cos θ + p, sine channel R·sin(θ − α)/r + q. Both tracks have the same shape a quarter of a
+//! period apart, so that a third harmonic h makes cos θ − h·cos 3θ and sin θ + h·sin 3θ of them.
+//!
+//! Angles are kept as whole parts of a turn and times as whole nanoseconds: nothing drifts, however long it runs.
+//!
+//! What is assumed, and stands in no manual: at a receiver with a resistor between the wires of a pair an open wire goes
+//! where its partner is, so that their difference is zero; without the resistor it stays at the mean level, where the
+//! receiver's bias holds it. Interference and hum reach SIN and COS and not their references, which is what a receiver
+//! does not reject of them; the interference is half as strong in the cosine channel and has the opposite sign there.
+
+mod settings;
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+pub use settings::{Checked, Quantity, References, SettingError, Settings};
+
+use crate::signal::Time;
+use crate::signal::wires::{Wire, Wires};
+
+/// Parts of a turn: so many that 0.001 rev/min for a nanosecond is one of them.
+const TURN: u64 = 60_000 * 1_000_000_000;
+/// Parts of a period of an interference: 0.001 Hz for a nanosecond is one.
+const CYCLE: u64 = 1_000 * 1_000_000_000;
+/// Changes that are remembered.
+const REMEMBERED: usize = 64;
+
+/// The source. Its samples are counted from 0.
+#[derive(Clone, Debug)]
+pub struct Source {
+    start: Time,
+    /// Never empty; the latest last.
+    segments: VecDeque<Segment>,
+}
+
+/// Samples between two changes.
+#[derive(Clone, Debug)]
+struct Segment {
+    /// Its first sample.
+    from: u64,
+    /// Nanoseconds from the start to that.
+    elapsed: u64,
+    /// Where the shaft is then, in parts of a turn.
+    turn: u64,
+    checked: Checked,
+}
+
+impl Source {
+    /// A source whose first sample is taken at `start`, at the angle 0.
+    pub fn new(checked: Checked, start: Time) -> Self {
+        Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
+    }
+
+    /// From the sample `at` on other settings count; the shaft goes on from where it is. A change before the latest one
+    /// takes its place.
+    pub fn change(&mut self, at: u64, checked: Checked) {
+        let at = self.segments.back().map_or(at, |last| at.max(last.from));
+        let Some(before) = self.segments.back() else { return };
+        let segment = Segment { from: at, elapsed: before.elapsed_at(at), turn: before.turn_at(at), checked };
+        if before.from == at {
+            self.segments.pop_back();
+        } else if self.segments.len() == REMEMBERED {
+            self.segments.pop_front();
+        }
+        self.segments.push_back(segment);
+    }
+
+    /// The settings in force after the latest change.
+    pub fn settings(&self) -> Option<&Settings> {
+        self.segments.back().map(|segment| segment.checked.settings())
+    }
+
+    /// When a sample is taken; `None` where the changes before it are forgotten.
+    pub fn time(&self, index: u64) -> Option<Time> {
+        let segment = self.segment(index)?;
+        Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
+    }
+
+    /// The samples from `first` on, `count` of them; `None` where the changes before them are forgotten, of which the
+    /// latest 64 are known.
+    pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
+        let mut wires = Wires::default();
+        let end = first.saturating_add(count as u64);
+        let mut next = first;
+        while next < end {
+            let segment = self.segment(next)?;
+            let follower = self.segments.iter().map(|segment| segment.from).find(|from| *from > next);
+            let until = follower.map_or(end, |from| from.min(end));
+            segment.append(next, until - next, &mut wires);
+            next = until;
+        }
+        Some(wires)
+    }
+
+    /// The segment of a sample.
+    fn segment(&self, index: u64) -> Option<&Segment> {
+        self.segments.iter().rev().find(|segment| segment.from <= index)
+    }
+}
+
+impl Segment {
+    fn period(&self) -> u64 {
+        self.checked.settings().period_ns().unsigned_abs()
+    }
+
+    fn elapsed_at(&self, index: u64) -> u64 {
+        self.elapsed.saturating_add(index.saturating_sub(self.from).saturating_mul(self.period()))
+    }
+
+    /// Parts of a turn from one sample to the next, modulo a turn.
+    fn step(&self) -> u64 {
+        let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
+        remainder(speed * i128::from(self.period()), TURN)
+    }
+
+    fn turn_at(&self, index: u64) -> u64 {
+        let samples = i128::from(index.saturating_sub(self.from));
+        remainder(i128::from(self.turn) + samples * i128::from(self.step()), TURN)
+    }
+
+    /// Appends `count` samples from `first` on.
+    fn append(&self, first: u64, count: u64, wires: &mut Wires) {
+        let settings = self.checked.settings();
+        let model = Model::of(settings);
+        let elapsed = i128::from(self.elapsed_at(first));
+        let line = |hertz: f64| {
+            let millihertz = (hertz * 1_000.0).round() as i128;
+            let (now, step) = (elapsed * millihertz, i128::from(self.period()) * millihertz);
+            Wheel { at: remainder(now, CYCLE), step: remainder(step, CYCLE), whole: CYCLE }
+        };
+        let mut shaft = Wheel { at: self.turn_at(first), step: self.step(), whole: TURN };
+        let (mut interference, mut hum) = (line(settings.interference_hz), line(settings.hum_hz));
+        for index in first..first + count {
+            let common = settings.hum_v * hum.angle().sin();
+            let disturbed = settings.interference_v * interference.angle().sin();
+            let (sine, cosine) = model.channels(shaft);
+            let [sin, refsin, cos, refcos] =
+                model.wires(index, [sine + common + disturbed, cosine + common - disturbed / 2.0]);
+            wires.sin_v.push(sin);
+            wires.refsin_v.push(refsin);
+            wires.cos_v.push(cos);
+            wires.refcos_v.push(refcos);
+            wires.reference_deg.push(360.0 * shaft.share());
+            [&mut shaft, &mut interference, &mut hum].into_iter().for_each(Wheel::turn);
+        }
+    }
+}
+
+/// Something that turns by equal steps, in whole parts.
+#[derive(Clone, Copy)]
+struct Wheel {
+    at: u64,
+    step: u64,
+    whole: u64,
+}
+
+impl Wheel {
+    fn turn(&mut self) {
+        self.at += self.step;
+        self.at -= if self.at >= self.whole { self.whole } else { 0 };
+    }
+
+    /// Where it is, from 0 up to 1.
+    fn share(self) -> f64 {
+        self.at as f64 / self.whole as f64
+    }
+
+    fn angle(self) -> f64 {
+        TAU * self.share()
+    }
+}
+
+/// The settings as they are used for each sample.
+struct Model<'a> {
+    settings: &'a Settings,
+    periods: u64,
+    /// Radians of the signal that the eccentricity shifts by.
+    eccentricity: f64,
+    phase_error: f64,
+    third: f64,
+    /// Of each wire, so that a difference has what is set.
+    noise: f64,
+}
+
+impl<'a> Model<'a> {
+    fn of(settings: &'a Settings) -> Self {
+        Model {
+            settings,
+            periods: settings.periods as u64,
+            eccentricity: (settings.eccentricity_arcsec / 3_600.0).to_radians() * settings.periods,
+            phase_error: settings.phase_error_deg.to_radians(),
+            third: settings.third_harmonic_percent / 100.0,
+            noise: settings.noise_v * std::f64::consts::FRAC_1_SQRT_2,
+        }
+    }
+
+    /// Sine and cosine channel in volts, where nothing disturbs them.
+    fn channels(&self, shaft: Wheel) -> (f64, f64) {
+        let settings = self.settings;
+        let (once_sine, once_cosine) = shaft.angle().sin_cos();
+        // The periods are taken off while the angle is still whole parts: 65 536 turns fit into 64 bits.
+        let signal = Wheel { at: shaft.at * self.periods % TURN, ..shaft };
+        let angle = signal.angle() + self.eccentricity * once_sine;
+        let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
+        let cosine = angle.cos() - self.third * (3.0 * angle).cos();
+        let late = angle - self.phase_error;
+        let sine = late.sin() + self.third * (3.0 * late).sin();
+        (amplitude * sine / settings.gain_ratio + settings.offset_sine_v, amplitude * cosine + settings.offset_cosine_v)
+    }
+
+    /// SIN, REFSIN, COS, REFCOS at the receiver, of which the differences are given.
+    fn wires(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
+        let level = self.settings.level_v;
+        let pair = |difference: f64| match self.settings.references {
+            References::Level => (level + difference, level),
+            References::Complement => (level + difference / 2.0, level - difference / 2.0),
+        };
+        let ((mut sin, mut refsin), (mut cos, mut refcos)) = (pair(sine), pair(cosine));
+        let hanging = |partner: f64| if self.settings.terminated { partner } else { level };
+        match self.settings.open_wire {
+            None => {}
+            Some(Wire::Sin) => sin = hanging(refsin),
+            Some(Wire::Refsin) => refsin = hanging(sin),
+            Some(Wire::Cos) => cos = hanging(refcos),
+            Some(Wire::Refcos) => refcos = hanging(cos),
+        }
+        if self.noise > 0.0 {
+            let [a, b] = gaussian(self.settings.seed, 2 * index);
+            let [c, d] = gaussian(self.settings.seed, 2 * index + 1);
+            sin += self.noise * a;
+            refsin += self.noise * b;
+            cos += self.noise * c;
+            refcos += self.noise * d;
+        }
+        [sin, refsin, cos, refcos]
+    }
+}
+
+fn remainder(number: i128, whole: u64) -> u64 {
+    // What remains of a division by 64 bits fits into them.
+    u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
+}
+
+/// Two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
+fn gaussian(seed: u64, place: u64) -> [f64; 2] {
+    let first = scramble(seed ^ scramble(place));
+    let second = scramble(first ^ seed);
+    // 53 bits each, the first of them above 0.
+    let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
+    let length = (-2.0 * (1.0 - unit(first)).ln()).sqrt();
+    let (sine, cosine) = (TAU * unit(second)).sin_cos();
+    [length * sine, length * cosine]
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014): neighbouring numbers become unrelated ones.
+fn scramble(number: u64) -> u64 {
+    let mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    mixed ^ mixed >> 31
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,311 @@
+//! What can be set of the virtual sine/cosine source: plain data, and the ranges in which it makes sense.
+
+use crate::signal::wires::Wire;
+
+/// Everything that can be set. Voltages are peak unless they say rms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Signal periods in a revolution; a whole number.
+    pub periods: f64,
+    /// Speed in revolutions a minute, in steps of 0.001; negative: the angle falls.
+    pub speed_rpm: f64,
+    /// Samples a second. A sample takes whole nanoseconds: see [`Settings::period_ns`].
+    pub rate_hz: f64,
+    /// R: differential amplitude of the cosine channel in volts.
+    pub amplitude_v: f64,
+    /// q: offset of the sine channel in volts.
+    pub offset_sine_v: f64,
+    /// p: offset of the cosine channel in volts.
+    pub offset_cosine_v: f64,
+    /// r: amplitude of the cosine over that of the sine channel.
+    pub gain_ratio: f64,
+    /// α: how far the sine lags behind a quarter of a period after the cosine, in degrees.
+    pub phase_error_deg: f64,
+    /// Mean level of the references in volts.
+    pub level_v: f64,
+    /// Third harmonic in percent of the amplitude.
+    pub third_harmonic_percent: f64,
+    /// How far the amplitude rises and falls once a revolution, in percent.
+    pub modulation_percent: f64,
+    /// White noise of each differential channel in volts rms.
+    pub noise_v: f64,
+    /// Frequency of an interference in hertz, in steps of 0.001.
+    pub interference_hz: f64,
+    /// Its amplitude on the sine channel in volts; the cosine channel has half of it with the opposite sign.
+    pub interference_v: f64,
+    /// Frequency of the mains in hertz, in steps of 0.001.
+    pub hum_hz: f64,
+    /// Amplitude of its hum in volts, the same in both channels and in phase.
+    pub hum_v: f64,
+    /// Eccentricity of the scale: the angle runs ahead and behind once a revolution by so many mechanical seconds of arc.
+    pub eccentricity_arcsec: f64,
+    /// A broken wire.
+    pub open_wire: Option<Wire>,
+    /// The receiver has a resistor between the wires of a pair (120 Ω), as the manuals ask for.
+    pub terminated: bool,
+    /// What the references carry.
+    pub references: References,
+    /// Where the noise begins: the same seed gives the same noise.
+    pub seed: u64,
+}
+
+/// What REFSIN and REFCOS carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum References {
+    /// Their mean level, as HIPERFACE encoders do: the signal is on SIN and COS alone.
+    Level,
+    /// The signal upside down, as encoders with complementary outputs do: each wire has half of it.
+    Complement,
+}
+
+/// A setting that is a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// [`Settings::periods`].
+    Periods,
+    /// [`Settings::speed_rpm`].
+    Speed,
+    /// [`Settings::rate_hz`].
+    Rate,
+    /// [`Settings::amplitude_v`].
+    Amplitude,
+    /// [`Settings::offset_sine_v`].
+    OffsetSine,
+    /// [`Settings::offset_cosine_v`].
+    OffsetCosine,
+    /// [`Settings::gain_ratio`].
+    GainRatio,
+    /// [`Settings::phase_error_deg`].
+    PhaseError,
+    /// [`Settings::level_v`].
+    Level,
+    /// [`Settings::third_harmonic_percent`].
+    ThirdHarmonic,
+    /// [`Settings::modulation_percent`].
+    Modulation,
+    /// [`Settings::noise_v`].
+    Noise,
+    /// [`Settings::interference_hz`].
+    InterferenceFrequency,
+    /// [`Settings::interference_v`].
+    Interference,
+    /// [`Settings::hum_hz`].
+    HumFrequency,
+    /// [`Settings::hum_v`].
+    Hum,
+    /// [`Settings::eccentricity_arcsec`].
+    Eccentricity,
+}
+
+/// A setting outside of its range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{quantity:?} must be from {least} to {most}, not {value}")]
+pub struct SettingError {
+    /// Which.
+    pub quantity: Quantity,
+    /// What was set.
+    pub value: f64,
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub most: f64,
+}
+
+/// Settings all of which are in their ranges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked(Settings);
+
+impl Quantity {
+    /// Every quantity, in the order of the settings.
+    pub const ALL: [Quantity; 17] = [
+        Quantity::Periods,
+        Quantity::Speed,
+        Quantity::Rate,
+        Quantity::Amplitude,
+        Quantity::OffsetSine,
+        Quantity::OffsetCosine,
+        Quantity::GainRatio,
+        Quantity::PhaseError,
+        Quantity::Level,
+        Quantity::ThirdHarmonic,
+        Quantity::Modulation,
+        Quantity::Noise,
+        Quantity::InterferenceFrequency,
+        Quantity::Interference,
+        Quantity::HumFrequency,
+        Quantity::Hum,
+        Quantity::Eccentricity,
+    ];
+
+    /// The sign of its unit, the same in every language; empty for a number.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Quantity::Periods | Quantity::GainRatio => "",
+            Quantity::Speed => "1/min",
+            Quantity::Rate | Quantity::InterferenceFrequency | Quantity::HumFrequency => "Hz",
+            Quantity::Amplitude
+            | Quantity::OffsetSine
+            | Quantity::OffsetCosine
+            | Quantity::Level
+            | Quantity::Noise
+            | Quantity::Interference
+            | Quantity::Hum => "V",
+            Quantity::PhaseError => "°",
+            Quantity::ThirdHarmonic | Quantity::Modulation => "%",
+            Quantity::Eccentricity => "″",
+        }
+    }
+
+    /// Least and greatest value.
+    pub const fn range(self) -> (f64, f64) {
+        match self {
+            Quantity::Periods => (1.0, 65_536.0),
+            Quantity::Speed => (-60_000.0, 60_000.0),
+            Quantity::Rate => (10.0, 1_000_000.0),
+            Quantity::Amplitude => (0.0, 2.0),
+            Quantity::OffsetSine | Quantity::OffsetCosine => (-1.0, 1.0),
+            Quantity::GainRatio => (0.2, 5.0),
+            Quantity::PhaseError => (-45.0, 45.0),
+            Quantity::Level => (0.0, 5.0),
+            Quantity::ThirdHarmonic => (0.0, 30.0),
+            Quantity::Modulation => (0.0, 50.0),
+            Quantity::Noise | Quantity::Interference | Quantity::Hum => (0.0, 1.0),
+            Quantity::InterferenceFrequency => (0.0, 10_000_000.0),
+            Quantity::HumFrequency => (0.0, 1_000.0),
+            Quantity::Eccentricity => (0.0, 36_000.0),
+        }
+    }
+}
+
+impl Settings {
+    /// The value of a quantity.
+    pub fn get(&self, quantity: Quantity) -> f64 {
+        *self.clone().place(quantity)
+    }
+
+    /// The same settings with another value of a quantity.
+    #[must_use]
+    pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
+        *self.place(quantity) = value;
+        self
+    }
+
+    /// What a sample takes, in whole nanoseconds: 100 kHz are 10 000 ns, and 44.1 kHz become 22 676 ns.
+    pub fn period_ns(&self) -> i64 {
+        (1e9 / self.rate_hz).round() as i64
+    }
+
+    /// The settings, if all of them are in their ranges.
+    ///
+    /// # Errors
+    /// [`SettingError`] with the first that is not, and with its range. The number of periods is also refused where it is
+    /// not whole.
+    pub fn checked(self) -> Result<Checked, SettingError> {
+        for quantity in Quantity::ALL {
+            let (value, (least, most)) = (self.get(quantity), quantity.range());
+            let whole = quantity != Quantity::Periods || value.fract() == 0.0;
+            if !(least..=most).contains(&value) || !whole {
+                return Err(SettingError { quantity, value, least, most });
+            }
+        }
+        Ok(Checked(self))
+    }
+
+    fn place(&mut self, quantity: Quantity) -> &mut f64 {
+        match quantity {
+            Quantity::Periods => &mut self.periods,
+            Quantity::Speed => &mut self.speed_rpm,
+            Quantity::Rate => &mut self.rate_hz,
+            Quantity::Amplitude => &mut self.amplitude_v,
+            Quantity::OffsetSine => &mut self.offset_sine_v,
+            Quantity::OffsetCosine => &mut self.offset_cosine_v,
+            Quantity::GainRatio => &mut self.gain_ratio,
+            Quantity::PhaseError => &mut self.phase_error_deg,
+            Quantity::Level => &mut self.level_v,
+            Quantity::ThirdHarmonic => &mut self.third_harmonic_percent,
+            Quantity::Modulation => &mut self.modulation_percent,
+            Quantity::Noise => &mut self.noise_v,
+            Quantity::InterferenceFrequency => &mut self.interference_hz,
+            Quantity::Interference => &mut self.interference_v,
+            Quantity::HumFrequency => &mut self.hum_hz,
+            Quantity::Hum => &mut self.hum_v,
+            Quantity::Eccentricity => &mut self.eccentricity_arcsec,
+        }
+    }
+}
+
+impl Checked {
+    /// What was checked.
+    pub fn settings(&self) -> &Settings {
+        &self.0
+    }
+}
+
+impl Default for Settings {
+    /// A good HIPERFACE encoder of 1024 periods at 60 rev/min, sampled with 100 kHz: 0.5 V, 0.5 mV of noise. What can
+    /// interfere stands at the frequencies that are usual: a drive's 8 kHz, mains of 50 Hz.
+    fn default() -> Self {
+        Settings {
+            periods: 1024.0,
+            speed_rpm: 60.0,
+            rate_hz: 100_000.0,
+            amplitude_v: 0.5,
+            offset_sine_v: 0.0,
+            offset_cosine_v: 0.0,
+            gain_ratio: 1.0,
+            phase_error_deg: 0.0,
+            level_v: 2.5,
+            third_harmonic_percent: 0.0,
+            modulation_percent: 0.0,
+            noise_v: 0.0005,
+            interference_hz: 8_000.0,
+            interference_v: 0.0,
+            hum_hz: 50.0,
+            hum_v: 0.0,
+            eccentricity_arcsec: 0.0,
+            open_wire: None,
+            terminated: true,
+            references: References::Level,
+            seed: 1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_out_of_its_range_is_refused_with_the_range() {
+        for quantity in Quantity::ALL {
+            let (least, most) = quantity.range();
+            for value in [least, most] {
+                let settings = Settings::default().with(quantity, value);
+                assert_eq!(settings.get(quantity), value);
+                assert!(settings.checked().is_ok(), "{quantity:?} {value}");
+            }
+            for value in [least.next_down(), most.next_up(), f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let error = Settings::default().with(quantity, value).checked().unwrap_err();
+                assert_eq!((error.quantity, error.least, error.most), (quantity, least, most), "{value}");
+            }
+        }
+        let error = Settings::default().with(Quantity::Periods, 16.5).checked().unwrap_err();
+        assert_eq!(error.to_string(), "Periods must be from 1 to 65536, not 16.5");
+    }
+
+    #[test]
+    fn each_quantity_has_a_place_of_its_own() {
+        for quantity in Quantity::ALL {
+            let changed = Settings::default().with(quantity, 0.123);
+            let others = Quantity::ALL.into_iter().filter(|other| *other != quantity);
+            others.for_each(|other| assert_eq!(changed.get(other), Settings::default().get(other), "{quantity:?}"));
+        }
+    }
+
+    #[test]
+    fn a_sample_takes_whole_nanoseconds() {
+        for (rate, nanoseconds) in [(1e6, 1_000), (44_100.0, 22_676), (10.0, 100_000_000), (30_000.0, 33_333)] {
+            assert_eq!(Settings::default().with(Quantity::Rate, rate).period_ns(), nanoseconds);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Voltages against the reference's own tables and against arithmetic done in Python.
+
+use super::*;
+
+/// Without noise.
+fn quiet() -> Settings {
+    Settings { noise_v: 0.0, ..Settings::default() }
+}
+
+fn source(settings: Settings) -> Source {
+    Source::new(settings.checked().unwrap(), Time::ORIGIN)
+}
+
+#[track_caller]
+fn near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
+}
+
+/// Section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°. One period in 360 samples: 1 rev/min of one period is 6°/s.
+#[test]
+fn the_table_of_section_7() {
+    let source = source(Settings {
+        periods: 1.0,
+        speed_rpm: 10.0,
+        rate_hz: 60.0,
+        offset_sine_v: -0.03,
+        offset_cosine_v: 0.02,
+        gain_ratio: 1.05,
+        phase_error_deg: 3.0,
+        ..quiet()
+    });
+    let wires = source.samples(0, 361).unwrap();
+    let cases = [
+        (0, 0.520000, -0.054922),
+        (40, 0.4030222, 0.2565786),
+        (90, 0.020000, 0.445538),
+        (180, -0.480000, -0.005078),
+        (270, 0.020000, -0.505538),
+        (360, 0.520000, -0.054922),
+    ];
+    for (degree, cosine, sine) in cases {
+        // 16 666 667 ns a sample: 20 parts in 10⁹ more than a degree.
+        near(wires.cosine_v()[degree], cosine, 1e-6);
+        near(wires.sine_v()[degree], sine, 1e-6);
+        assert_eq!((wires.refsin_v[degree], wires.refcos_v[degree]), (2.5, 2.5));
+    }
+    near(wires.reference_deg[40], 40.0, 1e-6);
+}
+
+#[test]
+fn any_stretch_is_the_same_after_days() {
+    let settings = Settings { interference_v: 0.01, hum_v: 0.02, speed_rpm: 1234.567, ..Settings::default() };
+    let mut source = source(settings.clone());
+    let whole = source.samples(0, 3000).unwrap();
+    let part = source.samples(1234, 500).unwrap();
+    assert_eq!(part.sin_v, whole.sin_v[1234..1734]);
+    assert_eq!(part.refcos_v, whole.refcos_v[1234..1734]);
+    // Ten days at 100 kHz, by whole numbers from the start.
+    let days = 86_400_000_000;
+    assert_eq!(source.time(days).unwrap(), Time::from_nanoseconds(864_000_000_000_000));
+    let turn = 1_234_567_i128 * 10_000 * i128::from(days) % 60_000_000_000_000;
+    let late = source.samples(days, 1).unwrap();
+    near(late.reference_deg[0], 360.0 * turn as f64 / 6e13, 1e-9);
+    // Ten days are whole periods of 8 kHz and 50 Hz: what is added is zero, and noise is 0.5 mV.
+    let angle = TAU * (turn * 1024 % 60_000_000_000_000) as f64 / 6e13;
+    near(late.sine_v()[0], 0.5 * angle.sin(), 0.003);
+    source.change(days, settings.checked().unwrap());
+    assert_eq!(source.samples(days, 1).unwrap(), late, "a change to the same changes nothing");
+}
+
+#[test]
+fn speed_and_errors_change_at_a_sample_and_the_angle_goes_on() {
+    // 60 rev/min of 1000 samples a second: 0.36° a sample.
+    let slow = Settings { rate_hz: 1_000.0, ..quiet() };
+    let mut source = source(slow.clone());
+    let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
+    source.change(500, fast.clone().checked().unwrap());
+    assert_eq!(source.settings(), Some(&fast));
+    let wires = source.samples(499, 4).unwrap();
+    for (found, expected) in wires.reference_deg.iter().zip([179.64, 180.0, 179.64, 179.28]) {
+        near(*found, expected, 1e-9);
+    }
+    assert_eq!(source.time(500).unwrap(), Time::from_nanoseconds(500_000_000));
+    assert_eq!(source.time(501).unwrap(), Time::from_nanoseconds(500_100_000));
+    // The sample 500 is half a turn on: 512 whole periods, cosine 1.
+    near(wires.cosine_v()[1], 0.6, 1e-9);
+    assert_eq!(source.samples(0, 10_000).unwrap().len(), 10_000);
+    // Of two changes at one place the later counts, and one before the latest moves there.
+    source.change(500, Settings { speed_rpm: 0.0, ..fast.clone() }.checked().unwrap());
+    source.change(3, Settings { speed_rpm: 0.0, ..fast }.checked().unwrap());
+    near(source.samples(9_000, 1).unwrap().reference_deg[0], 180.0, 1e-9);
+}
+
+#[test]
+fn changes_long_ago_are_forgotten_and_not_made_up() {
+    let mut source = source(quiet());
+    for at in 1..=200 {
+        source.change(at * 10, quiet().checked().unwrap());
+    }
+    assert_eq!(source.samples(100, 10), None);
+    assert_eq!(source.time(0), None);
+    assert_eq!(source.samples(1_990, 100).unwrap().len(), 100);
+}
+
+#[test]
+fn noise_has_its_deviation_and_is_not_the_same_on_any_two_wires() {
+    let settings = Settings { amplitude_v: 0.0, noise_v: 0.01, ..Settings::default() };
+    let wires = source(settings.clone()).samples(0, 40_000).unwrap();
+    let columns = [&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v];
+    let product = |a: &[f64], b: &[f64]| {
+        a.iter().zip(b).map(|(a, b)| (a - 2.5) * (b - 2.5)).sum::<f64>() / 40_000.0 / (0.01 * 0.01 / 2.0)
+    };
+    for (at, column) in columns.iter().enumerate() {
+        // The variance of 40 000 numbers scatters by √(2/40 000) = 0.7 %, a correlation by 0.5 %; five of them.
+        near(product(column, column), 1.0, 0.035);
+        near(column.iter().sum::<f64>() / 40_000.0, 2.5, 5.0 * 0.01 / 40_000.0_f64.sqrt());
+        for other in columns.iter().skip(at + 1) {
+            near(product(column, other), 0.0, 0.025);
+        }
+        // And none with itself one sample later.
+        near(product(&column[1..], &column[..39_999]), 0.0, 0.025);
+    }
+    let other = source(Settings { seed: 2, ..settings }).samples(0, 40_000).unwrap();
+    near(product(&wires.sin_v, &other.sin_v), 0.0, 0.025);
+}
+
+#[test]
+fn an_open_wire_is_what_the_receiver_makes_of_it() {
+    // A quarter of a period on: sine 0.5 V, cosine 0.
+    let at = |open: Wire, terminated, references| {
+        let settings = Settings {
+            periods: 1.0,
+            speed_rpm: 15.0,
+            rate_hz: 10.0,
+            open_wire: Some(open),
+            terminated,
+            references,
+            ..quiet()
+        };
+        let wires = source(settings).samples(10, 1).unwrap();
+        (wires.sine_v()[0], wires.sin_v[0], wires.refsin_v[0])
+    };
+    use References::{Complement, Level};
+    let cases = [
+        (Wire::Sin, true, Level, (0.0, 2.5, 2.5)),
+        (Wire::Refsin, true, Level, (0.0, 3.0, 3.0)),
+        (Wire::Refsin, false, Level, (0.5, 3.0, 2.5)),
+        (Wire::Sin, false, Complement, (0.25, 2.5, 2.25)),
+        (Wire::Sin, true, Complement, (0.0, 2.25, 2.25)),
+        (Wire::Refcos, true, Complement, (0.5, 2.75, 2.25)),
+    ];
+    for (wire, terminated, references, expected) in cases {
+        let found = at(wire, terminated, references);
+        near(found.0, expected.0, 1e-9);
+        near(found.1, expected.1, 1e-9);
+        near(found.2, expected.2, 1e-9);
+    }
+}
+
+/// Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3)) and 0.3 turns, with the
+/// amplitude 1 + 0.1·cos(2π·0.3).
+#[test]
+fn harmonic_modulation_and_eccentricity() {
+    let settings = Settings {
+        periods: 16.0,
+        speed_rpm: 60.0,
+        rate_hz: 1_000.0,
+        third_harmonic_percent: 4.0,
+        modulation_percent: 10.0,
+        eccentricity_arcsec: 100.0,
+        ..quiet()
+    };
+    let wires = source(settings).samples(300, 1).unwrap();
+    near(wires.sine_v()[0], -0.448_673_821, 1e-9);
+    near(wires.cosine_v()[0], 0.169_058_171, 1e-9);
+}
+
+#[test]
+fn hum_is_in_phase_in_both_channels_and_interference_is_not() {
+    let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..quiet() };
+    // A quarter period of 50 Hz is 5 ms, of 8 kHz 31.25 µs: three samples of 10 µs are 0.24 of a period.
+    let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples(500, 1).unwrap();
+    near(hum.sine_v()[0], 0.1, 1e-12);
+    near(hum.cosine_v()[0], 0.1, 1e-12);
+    let drive = source(Settings { interference_v: 0.1, ..settings }).samples(3, 1).unwrap();
+    near(drive.sine_v()[0], 0.1 * (TAU * 0.24).sin(), 1e-12);
+    near(drive.cosine_v()[0], -0.05 * (TAU * 0.24).sin(), 1e-12);
+}
