@@ -14,6 +14,7 @@ mod open;
 mod outbox;
 mod ring;
 mod session;
+pub mod stream;
 mod thread;
 
 use std::fmt;

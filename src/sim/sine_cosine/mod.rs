@@ -84,7 +84,9 @@ impl Source {
     /// The samples from `first` on, `count` of them; `None` where the changes before them are forgotten, of which the
     /// latest 64 are known.
     pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
-        let mut wires = Wires::default();
+        let column = || Vec::with_capacity(count.min(1 << 20));
+        let mut wires =
+            Wires { sin_v: column(), refsin_v: column(), cos_v: column(), refcos_v: column(), reference_deg: column() };
         let end = first.saturating_add(count as u64);
         let mut next = first;
         while next < end {

@@ -1,0 +1,229 @@
+//! What streams without being asked: batches of samples from a thread of their own, through a bounded ring that drops the
+//! oldest and counts. The thread never waits for whoever reads, and wakes the window now and then, not for every batch.
+//!
+//! Nothing here knows where samples come from: a [`Producer`] does.
+
+mod analogue;
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+
+pub use analogue::Analogue;
+
+use super::has_ended;
+use super::thread::Never;
+use crate::link::Clock;
+use crate::signal::Time;
+use crate::signal::wires::Wires;
+
+/// How long a producer may wait at once: after so long at most a stop or a change is heard.
+const PATIENCE: Duration = Duration::from_millis(20);
+/// The window is woken so often at most.
+const WAKE: Duration = Duration::from_millis(50);
+
+/// A stretch of samples at equal distances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch<S> {
+    /// Number of its first sample, counted by the source from 0.
+    pub first: u64,
+    /// When that was taken.
+    pub time: Time,
+    /// Nanoseconds from one sample to the next.
+    pub period_ns: i64,
+    /// Samples between the batch before and this one that are lost, at the source or because nobody read: so many numbers
+    /// are missing.
+    pub lost: u64,
+    /// The samples.
+    pub samples: S,
+}
+
+/// Samples that can be counted.
+pub trait Counted: Send + 'static {
+    /// How many.
+    fn count(&self) -> usize;
+}
+
+/// Where samples come from: a virtual source, an adapter.
+pub trait Producer: Send + 'static {
+    /// What can be changed while it runs.
+    type Wish: Send + 'static;
+    /// What a batch holds.
+    type Samples: Counted;
+    /// Why it ends by itself.
+    type Error: Send + 'static;
+
+    /// Works by this wish from the next sample on.
+    fn change(&mut self, wish: Self::Wish);
+
+    /// Waits for samples, no longer than `patience`; `None` where none have come.
+    ///
+    /// # Errors
+    /// When there will be no more.
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
+}
+
+/// A producer on its thread. Dropping it ends the thread, and does not wait for it.
+pub struct Stream<P: Producer> {
+    shared: Arc<Shared<P>>,
+    ended: Receiver<Never>,
+}
+
+struct Shared<P: Producer> {
+    ring: Mutex<Ring<P::Samples>>,
+    /// The latest, until it is taken.
+    wish: Mutex<Option<P::Wish>>,
+    error: Mutex<Option<P::Error>>,
+    stop: AtomicBool,
+}
+
+/// Batches that wait to be read.
+struct Ring<S> {
+    batches: VecDeque<Batch<S>>,
+    /// Samples in them.
+    held: usize,
+    capacity: usize,
+    /// Samples lost since the beginning.
+    lost: u64,
+}
+
+impl<P: Producer> Stream<P> {
+    /// Starts a thread for a producer. At most `capacity` samples wait to be read, or one batch where that has more. `wake`
+    /// is called when there is something to read, at most 20 times a second, and at the end.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub fn spawn(
+        producer: P,
+        capacity: usize,
+        clock: Arc<dyn Clock>,
+        wake: Arc<dyn Fn() + Send + Sync>,
+    ) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            ring: Mutex::new(Ring { batches: VecDeque::new(), held: 0, capacity, lost: 0 }),
+            wish: Mutex::new(None),
+            error: Mutex::new(None),
+            stop: AtomicBool::new(false),
+        });
+        let (alive, ended) = bounded(0);
+        let (own, end) = (shared.clone(), End { alive: Some(alive), wake });
+        std::thread::Builder::new().name("stream".to_owned()).spawn(move || work(producer, &own, &*clock, &end))?;
+        Ok(Stream { shared, ended })
+    }
+
+    /// Changes what the producer does, from its next sample on. Of several changes the latest counts.
+    pub fn change(&self, wish: P::Wish) {
+        *lock(&self.shared.wish) = Some(wish);
+    }
+
+    /// Takes what has come since the last time, the oldest first.
+    pub fn take(&self) -> Vec<Batch<P::Samples>> {
+        let mut ring = lock(&self.shared.ring);
+        ring.held = 0;
+        let batches = std::mem::take(&mut ring.batches);
+        drop(ring);
+        batches.into()
+    }
+
+    /// Samples lost since the beginning, at the source or because nobody read them in time.
+    pub fn lost(&self) -> u64 {
+        lock(&self.shared.ring).lost
+    }
+
+    /// Why it ended by itself; told once.
+    pub fn take_error(&self) -> Option<P::Error> {
+        lock(&self.shared.error).take()
+    }
+
+    /// Ends the thread. What has come can still be taken.
+    pub fn stop(&self) {
+        self.shared.stop.store(true, Ordering::SeqCst);
+    }
+
+    /// The thread has ended and what it used is free.
+    pub fn is_ended(&self) -> bool {
+        has_ended(&self.ended)
+    }
+}
+
+impl<P: Producer> Drop for Stream<P> {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+impl<S: Counted> Ring<S> {
+    /// Adds a batch; what it pushes out is given back, to be taken apart by whoever holds no lock.
+    fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
+        self.lost += batch.lost;
+        self.held += batch.samples.count();
+        let mut dropped = Vec::new();
+        while self.held > self.capacity {
+            let Some(oldest) = self.batches.pop_front() else { break };
+            let count = oldest.samples.count();
+            self.held -= count;
+            self.lost += count as u64;
+            // Whatever is the oldest now has that before it.
+            self.batches.front_mut().unwrap_or(&mut batch).lost += oldest.lost + count as u64;
+            dropped.push(oldest);
+        }
+        self.batches.push_back(batch);
+        dropped
+    }
+}
+
+impl Counted for Wires {
+    fn count(&self) -> usize {
+        self.len()
+    }
+}
+
+/// The end of a thread, however it comes: told when it is over.
+struct End {
+    alive: Option<Sender<Never>>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl Drop for End {
+    fn drop(&mut self) {
+        self.alive = None;
+        (self.wake)();
+    }
+}
+
+fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &End) {
+    let (mut woken, mut unread) = (None, false);
+    while !shared.stop.load(Ordering::SeqCst) {
+        let wish = lock(&shared.wish).take();
+        if let Some(wish) = wish {
+            producer.change(wish);
+        }
+        match producer.next(clock, PATIENCE) {
+            Ok(Some(batch)) => {
+                let dropped = lock(&shared.ring).push(batch);
+                drop(dropped);
+                unread = true;
+            }
+            Ok(None) => {}
+            Err(error) => {
+                *lock(&shared.error) = Some(error);
+                break;
+            }
+        }
+        let now = clock.now();
+        if unread && woken.is_none_or(|woken| now.since(woken) >= WAKE) {
+            (end.wake)();
+            (woken, unread) = (Some(now), false);
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing that is done under these locks can panic half-way.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,65 @@
+//! The virtual sine/cosine source as a producer: paced by the clock, like a real one. What it did not come to while the
+//! machine was busy or asleep is made up for up to a quarter of a second; what is older is lost and counted.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use super::{Batch, Producer};
+use crate::link::Clock;
+use crate::signal::Time;
+use crate::signal::wires::Wires;
+use crate::sim::sine_cosine::{Checked, Source};
+use crate::units::Moment;
+
+/// What a batch lasts, where the machine keeps up.
+const BATCH_NS: i64 = 10_000_000;
+/// What is made up for.
+const LATE_NS: i64 = 250_000_000;
+
+/// The virtual source on a clock.
+#[derive(Debug)]
+pub struct Analogue {
+    source: Source,
+    next: u64,
+}
+
+impl Analogue {
+    /// A source that begins at `start` on the clock of its stream.
+    pub fn new(checked: Checked, start: Moment) -> Self {
+        Analogue { source: Source::new(checked, Time::from(start)), next: 0 }
+    }
+}
+
+impl Producer for Analogue {
+    type Wish = Checked;
+    type Samples = Wires;
+    type Error = Infallible;
+
+    fn change(&mut self, wish: Checked) {
+        self.source.change(self.next, wish);
+    }
+
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, Infallible> {
+        let (Some(settings), Some(time)) = (self.source.settings(), self.source.time(self.next)) else {
+            return Ok(None);
+        };
+        let period_ns = settings.period_ns();
+        let now = clock.now();
+        // The last sample of a batch: what is taken there is there.
+        let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
+        let full = Moment::after_start(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
+        clock.sleep_until(full.min(now + patience));
+        let late = Time::from(clock.now()).nanoseconds_since(time);
+        if late < 0 {
+            return Ok(None);
+        }
+        let due = (late / period_ns + 1).unsigned_abs();
+        let most = (LATE_NS / period_ns).max(1).unsigned_abs();
+        let (lost, count) = (due.saturating_sub(most), due.min(most));
+        let first = self.next + lost;
+        self.next = first + count;
+        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).unwrap_or_default();
+        let time = time.plus(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
+        Ok(Some(Batch { first, time, period_ns, lost, samples }))
+    }
+}

@@ -1,0 +1,229 @@
+//! Streams on their threads: nobody waits for anybody, and what is lost is known.
+
+use std::sync::atomic::AtomicUsize;
+use std::time::Instant;
+
+use super::*;
+use crate::link::{RealClock, VirtualClock};
+use crate::sim::sine_cosine::{Quantity, Settings};
+use crate::units::Moment;
+
+/// Longer than anything here takes.
+const HANGS: Duration = Duration::from_secs(20);
+
+impl Counted for Vec<u64> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+}
+
+/// Numbers as fast as it can, a millisecond a batch on its clock; then nothing, or an error.
+struct Numbers {
+    sizes: VecDeque<usize>,
+    next: u64,
+    fails: bool,
+    /// Wishes heard.
+    heard: Sender<u64>,
+    /// Goes with it.
+    _alive: Sender<Never>,
+}
+
+fn numbers(sizes: impl IntoIterator<Item = usize>, fails: bool) -> (Numbers, Receiver<u64>, Receiver<Never>) {
+    let ((heard, wishes), (alive, gone)) = (crossbeam_channel::unbounded(), bounded(0));
+    (Numbers { sizes: sizes.into_iter().collect(), next: 0, fails, heard, _alive: alive }, wishes, gone)
+}
+
+impl Producer for Numbers {
+    type Wish = u64;
+    type Samples = Vec<u64>;
+    type Error = &'static str;
+
+    fn change(&mut self, wish: u64) {
+        self.heard.send(wish).unwrap();
+    }
+
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Vec<u64>>>, &'static str> {
+        let Some(size) = self.sizes.pop_front() else {
+            std::thread::sleep(patience / 10);
+            return if self.fails { Err("unplugged") } else { Ok(None) };
+        };
+        clock.sleep_until(clock.now() + Duration::from_millis(1));
+        let (first, time) = (self.next, Time::from_nanoseconds(self.next as i64 * 1_000));
+        self.next += size as u64;
+        Ok(Some(Batch { first, time, period_ns: 1_000, lost: 0, samples: (first..self.next).collect() }))
+    }
+}
+
+fn wait_until(what: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !what() {
+        assert!(begun.elapsed() < HANGS);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Every number is either there or counted as lost, and the batches tell where.
+fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
+    batches.iter().fold(from, |next, batch| {
+        assert_eq!(batch.first, next + batch.lost, "{batch:?}");
+        assert_eq!(batch.samples.first(), Some(&batch.first));
+        batch.first + batch.samples.len() as u64
+    })
+}
+
+#[test]
+fn who_does_not_read_blocks_nobody_and_every_loss_is_counted() {
+    let sizes: Vec<usize> = (0..2_000).map(|at| 1 + at * 37 % 100).collect();
+    let total: usize = sizes.iter().sum();
+    let (producer, ..) = numbers(sizes, true);
+    let stream = Stream::spawn(producer, 1_000, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
+    wait_until(|| stream.is_ended());
+    let batches = stream.take();
+    let held: usize = batches.iter().map(|batch| batch.samples.len()).sum();
+    assert!(held <= 1_000 && held > 900, "{held}");
+    assert_eq!(check(&batches, 0), total as u64);
+    assert_eq!(stream.lost(), (total - held) as u64);
+    assert_eq!(batches[0].lost, stream.lost(), "all of it before what is left");
+    assert_eq!((stream.take_error(), stream.take_error()), (Some("unplugged"), None));
+    assert!(stream.take().is_empty());
+}
+
+#[test]
+fn who_reads_now_and_then_can_tell_where_something_is_missing() {
+    let (producer, ..) = numbers(std::iter::repeat_n(70, 3_000), true);
+    let stream = Stream::spawn(producer, 500, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
+    let (mut next, mut read, mut lost) = (0, 0, 0);
+    loop {
+        let over = stream.is_ended();
+        let batches = stream.take();
+        next = check(&batches, next);
+        read += batches.iter().map(|batch| batch.samples.len() as u64).sum::<u64>();
+        lost += batches.iter().map(|batch| batch.lost).sum::<u64>();
+        if over {
+            break;
+        }
+        std::thread::sleep(Duration::from_micros(300));
+    }
+    assert_eq!((next, read + lost, stream.lost()), (210_000, 210_000, lost));
+}
+
+#[test]
+fn a_batch_larger_than_the_ring_is_kept_alone() {
+    let batch = |first: u64, count: u64, lost| Batch {
+        first,
+        time: Time::ORIGIN,
+        period_ns: 1,
+        lost,
+        samples: (first..first + count).collect::<Vec<u64>>(),
+    };
+    let mut ring = Ring { batches: VecDeque::new(), held: 0, capacity: 10, lost: 0 };
+    assert!(ring.push(batch(3, 8, 3)).is_empty());
+    assert_eq!(ring.push(batch(12, 30, 1)).len(), 1);
+    assert_eq!((ring.batches.len(), ring.held, ring.lost), (1, 30, 12));
+    assert_eq!(ring.batches[0].lost, 12);
+    assert_eq!(ring.push(batch(42, 10, 0)).len(), 1);
+    assert_eq!((ring.held, ring.lost, ring.batches[0].lost), (10, 42, 42));
+}
+
+#[test]
+fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
+    // A second of a batch each millisecond.
+    let (producer, ..) = numbers(std::iter::repeat_n(1, 1_000), true);
+    let wakes = Arc::new(AtomicUsize::new(0));
+    let counter = wakes.clone();
+    let wake = Arc::new(move || {
+        counter.fetch_add(1, Ordering::SeqCst);
+    });
+    let stream = Stream::spawn(producer, 10, Arc::new(VirtualClock::default()), wake).unwrap();
+    wait_until(|| stream.is_ended());
+    wait_until(|| wakes.load(Ordering::SeqCst) >= 21);
+    // At 1, 51, … 951 ms, and at the end.
+    assert_eq!(wakes.load(Ordering::SeqCst), 21);
+}
+
+#[test]
+fn the_last_batch_before_a_silence_is_told_as_well() {
+    let (producer, ..) = numbers([1, 1], false);
+    let (told, wakes) = bounded(8);
+    let wake = Arc::new(move || {
+        let _ = told.try_send(());
+    });
+    let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), wake).unwrap();
+    wakes.recv_timeout(HANGS).unwrap();
+    wakes.recv_timeout(HANGS).unwrap();
+    assert_eq!(check(&stream.take(), 0), 2);
+    assert!(!stream.is_ended());
+    assert!(wakes.recv_timeout(Duration::from_millis(120)).is_err(), "silence wakes nobody");
+}
+
+#[test]
+fn the_latest_change_is_heard_and_a_stream_that_is_let_go_ends() {
+    let (producer, wishes, gone) = numbers([], false);
+    let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), Arc::new(|| ())).unwrap();
+    (0..1_000).for_each(|wish| stream.change(wish));
+    while wishes.recv_timeout(HANGS).unwrap() != 999 {}
+    assert!(wishes.is_empty());
+    drop(stream);
+    assert!(matches!(gone.recv_timeout(HANGS), Err(crossbeam_channel::RecvTimeoutError::Disconnected)));
+}
+
+fn settings(rate_hz: f64) -> crate::sim::sine_cosine::Checked {
+    Settings { rate_hz, ..Settings::default() }.checked().unwrap()
+}
+
+fn next(source: &mut Analogue, clock: &VirtualClock) -> Option<Batch<Wires>> {
+    source.next(clock, PATIENCE).unwrap()
+}
+
+#[test]
+fn the_virtual_source_keeps_to_the_clock() {
+    let clock = VirtualClock::default();
+    clock.sleep_until(Moment::after_start(Duration::from_secs(5)));
+    let mut source = Analogue::new(settings(100_000.0), clock.now());
+    let first = next(&mut source, &clock).unwrap();
+    assert_eq!((first.first, first.samples.count(), first.lost, first.period_ns), (0, 1_000, 0, 10_000));
+    assert_eq!(first.time, Time::from_nanoseconds(5_000_000_000));
+    assert_eq!(clock.now().since_start(), Duration::from_nanos(5_009_990_000));
+    let second = next(&mut source, &clock).unwrap();
+    assert_eq!((second.first, second.samples.count(), second.lost), (1_000, 1_000, 0));
+    assert_eq!(second.time, first.time.plus(10_000_000));
+    // The machine slept for a minute: a quarter of a second is made up for.
+    clock.sleep_until(Moment::after_start(Duration::from_secs(65)));
+    let late = next(&mut source, &clock).unwrap();
+    assert_eq!((late.first, late.samples.count(), late.lost), (5_975_001, 25_000, 5_973_001));
+    assert_eq!(late.time, first.time.plus(5_975_001 * 10_000));
+    // Another rate from the next sample on, 10 µs after the last.
+    source.change(settings(10.0));
+    let slow: Vec<_> = (0..12).map(|_| next(&mut source, &clock)).collect();
+    let slow: Vec<_> = slow.into_iter().flatten().collect();
+    assert_eq!((slow[0].first, slow[0].samples.count(), slow[0].lost), (6_000_001, 1, 0));
+    assert_eq!((slow[1].first, slow[1].period_ns), (6_000_002, 100_000_000));
+    assert_eq!(slow[1].time.nanoseconds_since(slow[0].time), 100_000_000);
+}
+
+#[test]
+fn what_the_virtual_source_gives_are_the_samples_of_their_numbers() {
+    let clock = VirtualClock::default();
+    let mut source = Analogue::new(settings(50_000.0), clock.now());
+    let whole = crate::sim::sine_cosine::Source::new(settings(50_000.0), Time::ORIGIN).samples(0, 5_000).unwrap();
+    let mut sines = Vec::new();
+    (0..10).filter_map(|_| next(&mut source, &clock)).for_each(|batch| sines.extend(batch.samples.sin_v));
+    assert_eq!(sines, whole.sin_v);
+}
+
+#[test]
+fn no_sample_is_missing_while_the_machine_keeps_up() {
+    // At 44.1 kHz a sample takes 22 676 ns.
+    let clock = VirtualClock::default();
+    let checked = Settings::default().with(Quantity::Rate, 44_100.0).with(Quantity::Noise, 0.0).checked().unwrap();
+    let mut source = Analogue::new(checked, clock.now());
+    let mut expected = 0;
+    while clock.now().since_start() < Duration::from_secs(4) {
+        let Some(batch) = next(&mut source, &clock) else { continue };
+        assert_eq!((batch.first, batch.lost), (expected, 0));
+        assert_eq!(batch.time.nanoseconds(), expected as i64 * 22_676);
+        expected += batch.samples.count() as u64;
+    }
+    // 4 s are 176 398 samples, and the last batch of 10 ms reaches beyond.
+    assert!((176_398..=176_840).contains(&expected), "{expected}");
+}
