@@ -71,6 +71,11 @@ impl<D: Device> Line<D> {
         self.worker.poll(interval);
     }
 
+    /// Watches these values from now on while samples are taken.
+    pub(super) fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
+        self.worker.watch(wished);
+    }
+
     /// Ends what runs, live samples included.
     pub(super) fn stop(&mut self) {
         self.worker.stop();

@@ -24,6 +24,8 @@ pub struct Views {
     pub(super) help: bool,
     /// The plot of the encoder that is shown.
     pub(super) plot: super::plot::View,
+    /// The analogue channel that is typed, to be watched.
+    pub(super) channel: String,
     /// How often the position is read, in milliseconds.
     pub(super) rate: u64,
 }

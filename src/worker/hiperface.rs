@@ -15,11 +15,11 @@ pub use job::{
 };
 pub use open::open;
 
-use super::{Desk, Device, Progress, Session, Tell};
+use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::hiperface::find::News;
 use crate::device::hiperface::{
-    self as device, Codes, Error, Master, Sample, Station, check, find, identify, read_analogue, read_counter,
-    read_field, read_field_status, read_position, read_range, read_sample, read_status,
+    self as device, Codes, Error, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
+    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::hiperface::{FieldRange, Item, PlanError};
@@ -79,6 +79,7 @@ impl Device for Hiperface {
     type Error = JobError;
     type Remark = Remark;
     type Sample = Sample;
+    type Watch = Watch;
     type Doing = Doing;
 
     fn run(
@@ -143,6 +144,16 @@ impl Device for Hiperface {
         // The codes met are in it.
         self.station.codes_met.truncate(met_before);
         Ok(sample)
+    }
+
+    fn watch(&mut self, desk: &mut Desk, what: &Watch) -> Result<Watched<Sample>, JobError> {
+        let met_before = self.station.codes_met.len();
+        let reading = read_watched(&mut self.master(desk), *what)?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        let refused = reading.is_refused();
+        let sample = Sample::Watched(reading);
+        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
     fn is_cancelled(error: &JobError) -> bool {

@@ -1,5 +1,5 @@
-//! What a worker is wished while its thread runs: an end, and how often to sample. The latest wish counts; none waits in a
-//! queue and none waits for the thread.
+//! What a worker is wished while its thread runs: an end, how often to sample, and what to watch beside it. The latest
+//! wish counts; none waits in a queue and none waits for the thread.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -104,6 +104,89 @@ impl Live {
     }
 }
 
+/// What is to be sampled between the samples, while it is polled. Clones share it.
+pub(super) struct Watches<W> {
+    list: Arc<Mutex<List<W>>>,
+    live: Live,
+}
+
+struct List<W> {
+    entries: Vec<Entry<W>>,
+    /// Counts the changes.
+    number: u64,
+}
+
+struct Entry<W> {
+    what: W,
+    interval: Duration,
+    /// The device does not have it: it is not asked for again while it stays in the list.
+    refused: bool,
+}
+
+impl<W: Clone + PartialEq> Watches<W> {
+    /// Nothing is watched; the thread hears of changes through `live`.
+    pub(super) fn new(live: Live) -> Self {
+        Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
+    }
+
+    /// Wishes these, each once: the first of several of the same thing counts.
+    pub(super) fn wish(&self, wished: Vec<(W, Duration)>) {
+        let mut list = self.lock();
+        let mut entries: Vec<Entry<W>> = Vec::with_capacity(wished.len());
+        for (what, interval) in wished {
+            if entries.iter().any(|entry| entry.what == what) {
+                continue;
+            }
+            let refused = list.entries.iter().any(|before| before.what == what && before.refused);
+            entries.push(Entry { what, interval: interval.min(LONGEST), refused });
+        }
+        list.entries = entries;
+        list.number += 1;
+        drop(list);
+        // What is asked for at the moment may be wished no longer.
+        self.live.interrupt_sample();
+        self.live.wake();
+    }
+
+    /// What is asked for, how often, when it has changed since `known`; which becomes the state of now.
+    pub(super) fn news(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
+        let list = self.lock();
+        let changed = std::mem::replace(known, list.number) != list.number;
+        changed.then(|| list.asked_for())
+    }
+
+    /// What is asked for, and how often: what the device refused is not among it.
+    pub(super) fn asked_for(&self) -> Vec<(W, Duration)> {
+        self.lock().asked_for()
+    }
+
+    /// The device does not have this.
+    pub(super) fn refuse(&self, what: &W) {
+        let mut list = self.lock();
+        list.number += 1;
+        if let Some(entry) = list.entries.iter_mut().find(|entry| entry.what == *what) {
+            entry.refused = true;
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, List<W>> {
+        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<W: Clone> List<W> {
+    fn asked_for(&self) -> Vec<(W, Duration)> {
+        let asked = self.entries.iter().filter(|entry| !entry.refused);
+        asked.map(|entry| (entry.what.clone(), entry.interval)).collect()
+    }
+}
+
+impl<W> Clone for Watches<W> {
+    fn clone(&self) -> Self {
+        Watches { list: self.list.clone(), live: self.live.clone() }
+    }
+}
+
 /// A worker's stop, for whoever does not hold the worker. Clones reach the same one.
 #[derive(Clone)]
 pub struct Stopper(Live);
@@ -129,5 +212,23 @@ mod tests {
         assert_eq!(live.polling(), Some(Duration::from_millis(200)));
         live.poll_failed(live.number());
         assert_eq!(live.polling(), None);
+    }
+
+    #[test]
+    fn what_was_refused_is_asked_for_again_once_it_left_the_list() {
+        let second = Duration::from_secs(1);
+        let watches = Watches::new(Live::new().0);
+        let mut known = 0;
+        assert_eq!(watches.news(&mut known), None);
+        watches.wish(vec![("a", second), ("b", second), ("a", second * 2)]);
+        assert_eq!(watches.news(&mut known), Some(vec![("a", second), ("b", second)]));
+        watches.refuse(&"a");
+        assert_eq!(watches.news(&mut known), Some(vec![("b", second)]));
+        assert_eq!(watches.news(&mut known), None, "known by now");
+        watches.wish(vec![("a", second), ("b", Duration::MAX)]);
+        assert_eq!(watches.asked_for(), [("b", LONGEST)]);
+        watches.wish(vec![]);
+        watches.wish(vec![("a", second)]);
+        assert_eq!(watches.asked_for(), [("a", second)]);
     }
 }

@@ -1,5 +1,5 @@
-//! The background I/O worker: one thread a session, one job at a time, a live wish to be sampled while there is none, and
-//! a stop that overtakes everything.
+//! The background I/O worker: one thread a session, one job at a time, live wishes to be sampled and
+//! watched while there is none, and a stop that overtakes everything.
 //!
 //! Nothing here knows a protocol: a [`Device`] brings its jobs, its results and its errors as types of its own, so that a
 //! session with one kind of device cannot be asked for another's.
@@ -7,6 +7,7 @@
 //! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
+mod agenda;
 mod commit;
 pub mod hiperface;
 mod live;
@@ -30,7 +31,7 @@ pub use ring::Ring;
 pub use session::{Desk, Session};
 
 use crate::link::{Cancel, LinkError};
-use live::Live;
+use live::{Live, Watches};
 use outbox::{CAPACITY, Outbox};
 use thread::{Bench, Never, Order};
 
@@ -44,8 +45,10 @@ pub trait Device: Send + 'static {
     type Error: Send + fmt::Debug;
     /// What the device says on the way, whatever it is asked.
     type Remark: Send + fmt::Debug;
-    /// What is taken again and again while it is polled.
+    /// What is taken again and again while it is polled; what belongs to a watched value says so.
     type Sample: Send + fmt::Debug + 'static;
+    /// A value that can be watched: asked for between two samples.
+    type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
     /// The steps that its jobs tell.
     type Doing: Clone + Send + fmt::Debug;
 
@@ -66,6 +69,12 @@ pub trait Device: Send + 'static {
     /// When there is none: polling ends.
     fn sample(&mut self, desk: &mut Desk) -> Result<Self::Sample, Self::Error>;
 
+    /// Asks for a value that is watched. What the device says on the way belongs to the sample.
+    ///
+    /// # Errors
+    /// When it does not answer: polling ends. A refusal is an answer.
+    fn watch(&mut self, desk: &mut Desk, what: &Self::Watch) -> Result<Watched<Self::Sample>, Self::Error>;
+
     /// The error is the user's wish.
     fn is_cancelled(error: &Self::Error) -> bool;
 
@@ -77,6 +86,15 @@ pub trait Device: Send + 'static {
     /// # Errors
     /// When it is not.
     fn check(&mut self) -> Result<(), LinkError>;
+}
+
+/// What a device says when it is asked for a watched value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Watched<S> {
+    /// The value, or why there is none at the moment.
+    Sample(S),
+    /// It does not have it, and is not asked again; with the sample that says so.
+    Refused(S),
 }
 
 /// The number of a job within its session.
@@ -144,6 +162,7 @@ pub struct Worker<D: Device> {
     events: Receiver<Event<D>>,
     samples: Ring<D::Sample>,
     live: Live,
+    watches: Watches<D::Watch>,
     busy: Arc<AtomicBool>,
     ended: Receiver<Never>,
     next: u64,
@@ -162,6 +181,7 @@ impl<D: Device> Worker<D> {
         let (outgoing, events) = bounded(CAPACITY);
         let (alive, ended) = bounded(0);
         let (live, changes) = Live::new();
+        let watches = Watches::new(live.clone());
         let samples = Ring::new(SAMPLES);
         let busy = Arc::new(AtomicBool::new(false));
         let bench = Bench {
@@ -169,12 +189,13 @@ impl<D: Device> Worker<D> {
             orders: incoming,
             changes,
             live: live.clone(),
+            watches: watches.clone(),
             samples: samples.clone(),
             outbox: Outbox::new(outgoing, wake),
             busy: busy.clone(),
         };
         thread::start(bench, alive)?;
-        Ok(Worker { orders, events, samples, live, busy, ended, next: 0 })
+        Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
     /// Gives the worker something to do. It goes before sampling, and waits for no more than the exchange that runs.
@@ -220,6 +241,19 @@ impl<D: Device> Worker<D> {
     /// The wish in force: `None` also after a sample failed or a stop.
     pub fn polling(&self) -> Option<Duration> {
         self.live.polling()
+    }
+
+    /// Wishes these values watched, each interval from start to start: while the device is polled, between two samples and
+    /// at most one of them there, so that none comes more often than samples do. Each has one pace: the first counts
+    /// where one stands twice. What the device does not have is asked for once, as long as it stays in the list. The
+    /// latest wish counts, from now on; it outlives polling, and watching goes on when that does.
+    pub fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
+        self.watches.wish(wished);
+    }
+
+    /// What is watched while the device is polled, in the order of the wish: all but what it has refused.
+    pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
+        self.watches.asked_for()
     }
 
     /// The samples taken, at most 4096 of them; nobody is woken for one.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Device, Event, JobId, Tell};
+use super::{Device, Event, JobId, Tell, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -87,6 +87,14 @@ impl<D: Device> Session<D> {
     /// When there is none.
     pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
         self.device.sample(&mut self.desk)
+    }
+
+    /// Asks for a watched value here and now.
+    ///
+    /// # Errors
+    /// When there is no answer.
+    pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
+        self.device.watch(&mut self.desk, what)
     }
 
     /// What the device said since the last time, where no event tells it.

@@ -1,4 +1,4 @@
-//! The thread of a session: jobs as they come, samples in between, and a look at the wire now and then.
+//! The thread of a session: jobs as they come, samples and what is watched in between, and a look at the wire now and then.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
-use super::live::Live;
+use super::agenda::{Agenda, Due};
+use super::live::{Live, Watches};
 use super::outbox::Outbox;
-use super::{Device, Event, JobId, Ring, Session};
+use super::{Device, Event, JobId, Ring, Session, Watched};
 use crate::link::Cancel;
 
 /// How often an idle worker looks whether its wire is still there.
@@ -34,6 +35,7 @@ pub(super) struct Bench<D: Device> {
     /// A live wish has changed.
     pub(super) changes: Receiver<()>,
     pub(super) live: Live,
+    pub(super) watches: Watches<D::Watch>,
     pub(super) samples: Ring<D::Sample>,
     pub(super) outbox: Outbox<D>,
     pub(super) busy: Arc<AtomicBool>,
@@ -62,7 +64,8 @@ impl Drop for Slot {
 }
 
 fn work<D: Device>(mut bench: Bench<D>) {
-    let mut pace = Pace::default();
+    let mut agenda = Agenda::default();
+    let mut known = 0;
     let mut lost = false;
     let mut next_check = Instant::now() + CHECK;
     loop {
@@ -79,11 +82,16 @@ fn work<D: Device>(mut bench: Bench<D>) {
             Err(TryRecvError::Empty) => {}
         }
         bench.outbox.flush_late();
-        let due = pace.due(bench.live.polling());
+        if let Some(watches) = bench.watches.news(&mut known) {
+            agenda.watch(watches);
+        }
         let now = Instant::now();
-        if due.is_some_and(|due| due <= now) {
-            if bench.take_sample() {
-                pace.taken(Instant::now());
+        let due = agenda.next(bench.live.polling(), now);
+        if let Some((at, due)) = &due
+            && *at <= now
+        {
+            if bench.take(due) {
+                agenda.taken(due, Instant::now());
             }
             lost = false;
             next_check = Instant::now() + CHECK;
@@ -97,7 +105,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             }
         }
         let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
-        let until = [due, retry].into_iter().flatten().fold(next_check, Instant::min);
+        let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);
         bench.wait(until.saturating_duration_since(Instant::now()));
     }
 }
@@ -112,11 +120,21 @@ impl<D: Device> Bench<D> {
         self.outbox.send(end);
     }
 
-    /// False when a job or another wish came in between: the sample is still due.
-    fn take_sample(&mut self) -> bool {
+    /// False when a job or another wish came in between: what is due is still due.
+    fn take(&mut self, due: &Due<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let wish = self.live.number();
-        match self.session.sample() {
+        let taken = match due {
+            Due::Sample => self.session.sample(),
+            Due::Watch(what) => self.session.watch_value(what).map(|watched| match watched {
+                Watched::Sample(sample) => sample,
+                Watched::Refused(sample) => {
+                    self.watches.refuse(what);
+                    sample
+                }
+            }),
+        };
+        match taken {
             Ok(sample) => self.samples.push(sample),
             Err(error) if D::is_cancelled(&error) => return false,
             Err(error) => {
@@ -138,52 +156,5 @@ impl<D: Device> Bench<D> {
         // The time is up: nothing is ready, and that is no error.
         let _ = ready.ready_timeout(patience);
         let _ = self.changes.try_recv();
-    }
-}
-
-/// When the next sample is due: at equal distances from start to start, and never several at once after a late one.
-#[derive(Default)]
-struct Pace {
-    interval: Option<Duration>,
-    next: Option<Instant>,
-}
-
-impl Pace {
-    /// The next sample, by the wish that is in force; a new wish begins now.
-    fn due(&mut self, wish: Option<Duration>) -> Option<Instant> {
-        if wish != self.interval {
-            self.interval = wish;
-            self.next = wish.map(|_| Instant::now());
-        }
-        self.next
-    }
-
-    fn taken(&mut self, now: Instant) {
-        self.next = match (self.next, self.interval) {
-            (Some(due), Some(interval)) => Some((due + interval).max(now)),
-            _ => None,
-        };
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_late_sample_is_followed_by_one_and_not_by_a_burst() {
-        let step = Duration::from_millis(100);
-        let mut pace = Pace::default();
-        assert_eq!(pace.due(None), None);
-        let start = pace.due(Some(step)).unwrap();
-        pace.taken(start + step / 4);
-        assert_eq!(pace.due(Some(step)), Some(start + step), "from start to start");
-        pace.taken(start + step * 5);
-        assert_eq!(pace.due(Some(step)), Some(start + step * 5), "at once, once");
-        pace.taken(start + step * 5 + step / 4);
-        assert_eq!(pace.due(Some(step)), Some(start + step * 6));
-        assert_eq!(pace.due(None), None);
-        pace.taken(start);
-        assert_eq!(pace.due(None), None);
     }
 }

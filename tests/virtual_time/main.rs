@@ -16,3 +16,4 @@ mod settings;
 mod support;
 mod survey;
 mod threads;
+mod watching;

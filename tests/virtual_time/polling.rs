@@ -12,12 +12,12 @@ use encoder_studio::worker::{Event, Worker};
 use crate::support::Desk;
 use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, until_end};
 
-const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
+pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
 /// No test waits for the second sample at this distance.
-const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
+pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
 
 /// At least so many samples, as they come.
-fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
+pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
     let started = Instant::now();
     let mut samples = Vec::new();
     while samples.len() < count {
@@ -29,7 +29,7 @@ fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
 }
 
 /// Nothing comes any more, once what is under way has come.
-fn nothing_comes(bench: &Bench) {
+pub(crate) fn nothing_comes(bench: &Bench) {
     let started = Instant::now();
     loop {
         std::thread::sleep(Duration::from_millis(50));
@@ -43,7 +43,7 @@ fn nothing_comes(bench: &Bench) {
 fn position(sample: &Sample) -> Option<Option<u64>> {
     match sample {
         Sample::Position(reading) => Some(reading.position.and_then(|position| position.turns())),
-        Sample::NoPosition { .. } => None,
+        Sample::NoPosition { .. } | Sample::Watched(_) => None,
     }
 }
 

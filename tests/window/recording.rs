@@ -10,6 +10,7 @@ use encoder_studio::signal::history::Flags;
 
 use crate::losing::lost;
 use crate::support::Desk;
+use encoder_studio::device::hiperface::Watch;
 
 const FAST: Hiperface = Hiperface::Poll(Some(Duration::from_millis(2)));
 
@@ -148,4 +149,26 @@ fn a_picture_is_saved() {
     desk.act(Action::Chosen(asked, path.clone()));
     desk.until("it is saved", |_| path.exists());
     assert_eq!(fs::read(&path).unwrap()[..4], [0x89, b'P', b'N', b'G']);
+}
+
+#[test]
+fn what_is_watched_is_recorded_beside_the_position() {
+    let mut desk = Desk::begun("rpm=60&temperature=37");
+    for what in [Watch::Analogue(0x48), Watch::Analogue(0x07), Watch::Counter] {
+        desk.ask(Hiperface::Watch(what, true));
+    }
+    desk.ask(FAST);
+    desk.until("the counter has come", |studio| {
+        let recorder = &studio.encoder().unwrap().record.recorder;
+        recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
+    });
+    let recording = recorder(&desk);
+    assert_eq!(extent(recording, "temperature"), (37.0, 37.0));
+    let absent = line(recording, "analogue 07h");
+    assert_eq!(absent.remark.as_ref().unwrap().id(), "recorder.absent", "said where it would stand");
+    assert!(line(recording, "temperature").remark.is_none());
+    desk.ask(Hiperface::Watch(Watch::Counter, false));
+    assert!(recorder(&desk).lines().iter().all(|line| line.heading != "counter"));
+    // What is watched outlives the cable.
+    assert_eq!(desk.encoder().record.watched(), [Watch::Analogue(0x48), Watch::Analogue(0x07)]);
 }

@@ -1,6 +1,7 @@
 //! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use jiff::Timestamp;
 
@@ -14,13 +15,16 @@ use crate::app::leaving::Leaver;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
-use crate::device::hiperface::SaveOptions;
+use crate::device::hiperface::{SaveOptions, Watch};
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
 use crate::profile::{Body, Consent, Document, PlanId};
 use crate::protocol::hiperface::LineSettings;
 use crate::store::write_atomically;
 use crate::worker::SubmitError;
 use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
+
+/// How often a watched value is read: what is watched changes slowly, and the position has to wait for it.
+const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
     /// Does what is asked.
@@ -39,6 +43,7 @@ impl Encoder {
                     line.poll(interval);
                 }
             }
+            Action::Watch(what, on) => self.watch(what, on),
             Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             Action::Check { restart } => {
@@ -79,6 +84,24 @@ impl Encoder {
             }
             Action::Save(path) => self.save(path, services),
             Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Watches a value beside the position, or no more.
+    fn watch(&mut self, what: Watch, on: bool) {
+        let mut watched = self.record.watched();
+        watched.retain(|own| *own != what);
+        if on {
+            watched.push(what);
+        }
+        self.record.watch(&watched);
+        self.wish_watched();
+    }
+
+    /// Tells the session what is watched.
+    pub(super) fn wish_watched(&mut self) {
+        if let Some(line) = &self.line {
+            line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }
     }
 

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::DraftKey;
 use crate::app::studio::SessionId;
+use crate::device::hiperface::Watch;
 use crate::profile::PlanId;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
@@ -23,6 +24,8 @@ pub enum Action {
     ReadPosition,
     /// Read the position all the time, or no more.
     Poll(Option<Duration>),
+    /// While the position is read all the time, read this too, or no more.
+    Watch(Watch, bool),
     /// Read an analogue channel.
     ReadAnalogue(u8),
     /// Read the counter.

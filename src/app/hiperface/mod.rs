@@ -18,6 +18,6 @@ pub(in crate::app) use drafts::file_key;
 pub use encoder::{Encoder, Phase, Source};
 pub(in crate::app) use encoder::{Opening, without_codes};
 pub(in crate::app) use news::{LastWords, last_words};
-pub use record::Record;
+pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use staged::{Staged, StagedError};

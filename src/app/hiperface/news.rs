@@ -25,6 +25,7 @@ impl Encoder {
         self.record.begin(&opened.began);
         self.line = Some(Line::new(opened));
         self.phase = Phase::Connected;
+        self.wish_watched();
         services.log.settle("session.not_connected", Some(&self.name()));
         self.just_connected = true;
         self.codes_due.clear();

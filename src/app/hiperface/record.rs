@@ -3,8 +3,8 @@
 use jiff::Zoned;
 
 use crate::app::Text;
-use crate::app::recorder::{GroupId, Line, Recorder, Scale};
-use crate::device::hiperface::{PositionReading, Sample};
+use crate::app::recorder::{GroupId, Line, LineId, Recorder, Scale};
+use crate::device::hiperface::{PositionReading, Sample, Watch, WatchedReading};
 use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
 use crate::signal::history::{Flags, Kind, Part};
 use crate::signal::{Motion, Rates, Time, Unwrap};
@@ -16,6 +16,8 @@ const CAPACITY: usize = 4_000_000;
 const APART: i64 = 2_500_000_000;
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
+/// Values of one watched thing that are kept.
+const WATCHED: usize = 500_000;
 /// Nanoseconds that are shown to begin with.
 const SPAN: i64 = 30_000_000_000;
 
@@ -25,6 +27,7 @@ pub struct Record {
     /// Position, speed and acceleration as lines.
     pub recorder: Recorder,
     positions: GroupId,
+    watched: Vec<Watched>,
     /// What the position words mean; `None` until the first position.
     follower: Option<Follower>,
     last: Option<PositionReading>,
@@ -34,6 +37,14 @@ pub struct Record {
     began: Option<Zoned>,
     shift: i64,
     newest: Option<Time>,
+}
+
+/// A watched value and where it is recorded.
+#[derive(Clone, Copy, Debug)]
+struct Watched {
+    what: Watch,
+    group: GroupId,
+    line: LineId,
 }
 
 /// Makes positions that go on from position words.
@@ -80,6 +91,7 @@ impl Record {
         Record {
             recorder,
             positions,
+            watched: Vec::new(),
             follower: None,
             last: None,
             no_position: None,
@@ -120,8 +132,49 @@ impl Record {
                     self.gap();
                     self.no_position = Some(Sample::NoPosition { at, codes });
                 }
+                Sample::Watched(reading) => self.take_watched(&reading),
             }
         }
+    }
+
+    /// Records these values too, and no others beside the position.
+    pub(super) fn watch(&mut self, wished: &[Watch]) {
+        for own in std::mem::take(&mut self.watched) {
+            if wished.contains(&own.what) {
+                self.watched.push(own);
+            } else {
+                self.recorder.remove_line(own.line);
+            }
+        }
+        for what in wished {
+            if self.watched.iter().all(|own| own.what != *what) {
+                let group = self.recorder.add_group(&[Kind::Whole], WATCHED, None);
+                let line = self.recorder.add_line(line_of(*what, group));
+                self.watched.push(Watched { what: *what, group, line });
+            }
+        }
+    }
+
+    /// What is recorded beside the position.
+    pub fn watched(&self) -> Vec<Watch> {
+        self.watched.iter().map(|own| own.what).collect()
+    }
+
+    fn take_watched(&mut self, reading: &WatchedReading) {
+        let Some(own) = self.watched.iter().find(|own| own.what == reading.what).copied() else { return };
+        let (value, mut flags) = match &reading.value {
+            Ok(value) => (*value, Flags::NONE),
+            Err(_) => (0, Flags::BAD),
+        };
+        if !reading.codes.is_empty() {
+            flags |= Flags::WARNING;
+        }
+        let absent = reading.is_refused().then(|| Text::new("recorder.absent"));
+        self.recorder.remark(own.line, absent);
+        let (value, flags) = ([value], [flags]);
+        let time = self.time(reading.at);
+        // A clock of the wall that was set back: what is earlier than the last one is left out.
+        let _ = self.recorder.append(own.group, &[time], &[Part::whole(&value).flagged(&flags)]);
     }
 
     /// The last position, as long as the encoder has one to give.
@@ -148,15 +201,18 @@ impl Record {
 
     /// Another encoder: nothing of what was recorded is about it.
     pub(super) fn forget(&mut self) {
-        let began = self.began.take();
+        let (began, watched) = (self.began.take(), self.watched());
         *self = Record { began, ..Record::default() };
+        self.watch(&watched);
     }
 
     fn follow(&mut self, reading: &PositionReading, geometry: Option<Geometry>) {
         if self.follower.as_ref().is_none_or(|follower| follower.geometry != geometry) {
             // Steps mean something else now: what was recorded cannot be seen in the same units.
             let (began, shift, newest, dropped) = (self.began.take(), self.shift, self.newest, self.dropped);
+            let watched = self.watched();
             *self = Record { began, shift, newest, dropped, ..Record::about(geometry) };
+            self.watch(&watched);
             self.follower = Some(Follower::new(geometry));
         }
         let time = self.time(reading.at);
@@ -210,6 +266,28 @@ impl Record {
     fn time(&self, at: Moment) -> Time {
         Time::from(at).plus(self.shift)
     }
+}
+
+/// The temperature in every encoder that has it, in °C (SICK 8010701, analogue values).
+const TEMPERATURE: u8 = 0x48;
+
+/// What a watched value is called.
+pub fn watch_name(what: Watch) -> Text {
+    match what {
+        Watch::Analogue(TEMPERATURE) => Text::new("recorder.temperature"),
+        Watch::Analogue(channel) => Text::new("recorder.channel").with("channel", format!("{channel:02X}h")),
+        Watch::Counter => Text::new("recorder.counter"),
+    }
+}
+
+/// A watched value as a line.
+fn line_of(what: Watch, group: GroupId) -> Line {
+    let (heading, unit) = match what {
+        Watch::Analogue(TEMPERATURE) => ("temperature".to_owned(), "unit.celsius"),
+        Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
+        Watch::Counter => ("counter".to_owned(), "unit.counts"),
+    };
+    Line::of(group, 0, watch_name(what), heading, vec![Scale::new(unit, 1.0, 0)])
 }
 
 /// The units of position, speed and acceleration, whose samples are in steps.

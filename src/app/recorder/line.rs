@@ -43,6 +43,8 @@ pub struct Line {
     pub range: Option<(f64, f64)>,
     /// Its values are calculated from another line: where there is none, that is no fault of the device.
     pub derived: bool,
+    /// What there is to know about it now: why it has no samples.
+    pub remark: Option<Text>,
     pub(super) group: GroupId,
     pub(super) column: usize,
     pub(super) scales: Vec<Scale>,
@@ -66,6 +68,7 @@ impl Line {
             shown: true,
             range: None,
             derived: false,
+            remark: None,
             group,
             column,
             scales,

@@ -18,6 +18,7 @@ pub use line::{Line, LineId, Scale};
 pub use trigger::{Trigger, TriggerState, When};
 pub use view::View;
 
+use crate::app::Text;
 use crate::signal::Time;
 use crate::signal::history::{History, Kind, Part, Refused, Sample};
 use trigger::Watch;
@@ -120,6 +121,23 @@ impl Recorder {
         let colour = (0..).find(taken).unwrap_or(0);
         self.lines.push(Line { id, colour, ..line });
         id
+    }
+
+    /// Takes a line away, with its samples when no other line shows some of the same group.
+    pub(in crate::app) fn remove_line(&mut self, id: LineId) {
+        let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
+        let group = self.lines.remove(at).group;
+        if self.lines.iter().all(|line| line.group != group) {
+            self.groups.remove(&group);
+        }
+        if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
+            self.watch = None;
+        }
+    }
+
+    /// Something there is to know about a line now, or nothing any more.
+    pub(in crate::app) fn remark(&mut self, id: LineId, remark: Option<Text>) {
+        self.with_line(id, |line| line.remark = remark);
     }
 
     /// Appends samples to a group.

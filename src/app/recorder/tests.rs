@@ -185,6 +185,18 @@ fn a_repeated_trigger_shows_whole_pictures() {
 }
 
 #[test]
+fn a_removed_line_takes_its_samples_along() {
+    let (mut recorder, group, [counts, volts]) = recorder(100 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 10);
+    arm(&mut recorder, counts, When::Rising, 0.0, false);
+    recorder.remove_line(counts);
+    assert!(recorder.trigger().is_none() && !recorder.is_empty());
+    recorder.remove_line(volts);
+    assert!(recorder.is_empty() && recorder.recorded().is_none());
+    assert_eq!(recorder.append(group, &[at(20)], &[]), Err(Refused::Shape));
+}
+
+#[test]
 fn clearing_forgets_samples_and_nothing_else() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);

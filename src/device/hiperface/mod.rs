@@ -21,8 +21,8 @@ pub use fields::{read_all_fields, read_field, read_field_status, read_range};
 pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;
 pub use position::{
-    PositionReading, Sample, ensure_standstill, read_analogue, read_analogue_limit, read_counter, read_position,
-    read_sample,
+    PositionReading, Sample, Watch, WatchedReading, ensure_standstill, read_analogue, read_analogue_limit,
+    read_counter, read_position, read_sample, read_watched,
 };
 pub use reset::{change_line_for_now, reset};
 pub use save::{SaveOptions, profile_of, save};

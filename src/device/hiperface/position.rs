@@ -1,4 +1,4 @@
-//! Position, analogue values and the counter; and whether the shaft stands still.
+//! Position, analogue values and the counter, also as what polling gives; and whether the shaft stands still.
 
 use std::time::Duration;
 
@@ -51,6 +51,64 @@ pub enum Sample {
         /// Why, and what else it reported.
         codes: Vec<StatusCode>,
     },
+    /// A value that is watched beside the position.
+    Watched(WatchedReading),
+}
+
+/// A value that can be watched while the position is polled. All else that can be read of an encoder changes only when it
+/// is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Watch {
+    /// An analogue channel (44h): 48h is the temperature in °C, others are as the data sheet says, most often 00h and 01h
+    /// the sine and cosine signals in counts of 10 bits for 5 V.
+    Analogue(u8),
+    /// The counter (46h), 0…FFFFFFh.
+    Counter,
+}
+
+/// A watched value as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedReading {
+    /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. Of a counter
+    /// and of a refusal, when it was understood.
+    pub at: Moment,
+    /// What it is of.
+    pub what: Watch,
+    /// The value, or the encoder's refusal.
+    pub value: Result<i64, Error>,
+    /// Codes that came with it.
+    pub codes: Vec<StatusCode>,
+}
+
+impl WatchedReading {
+    /// The encoder does not have this: it does not know the command or the channel. Another refusal is for the moment.
+    pub fn is_refused(&self) -> bool {
+        match &self.value {
+            Err(Error::Rejected { codes, .. }) => {
+                codes.iter().any(|code| matches!(*code, StatusCode::UNKNOWN_COMMAND | StatusCode::ARGUMENT))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Reads a watched value once; that the encoder refuses it is an answer too.
+///
+/// # Errors
+/// The line.
+pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
+    let met_before = master.station().codes_met.len();
+    let answer = match what {
+        Watch::Analogue(channel) => ask_analogue(master, channel).map(|(at, value)| (at, value.into())),
+        Watch::Counter => read_counter(master).map(|value| (master.now(), value.into())),
+    };
+    let (at, value) = match answer {
+        Ok((at, value)) => (at, Ok(value)),
+        Err(error @ Error::Rejected { .. }) => (master.now(), Err(error)),
+        Err(error) => return Err(error),
+    };
+    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    Ok(WatchedReading { at, what, value, codes })
 }
 
 /// Reads the position once, as [`read_position`]; that the encoder has none at the moment is an answer too.
@@ -81,8 +139,14 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
 /// # Errors
 /// The line, or a refusal: the encoder has no such channel.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
-    match master.ask(&Request::ReadAnalogue { channel })? {
-        Reply::Analogue(value) => Ok(value),
+    ask_analogue(master, channel).map(|(_, value)| value)
+}
+
+/// An analogue channel, and when the encoder sampled it.
+fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
+    let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
+    match timed.reply {
+        Reply::Analogue(value) => Ok((timed.at, value)),
         other => Err(Error::Unexpected(format!("analogue value: {other:?}"))),
     }
 }

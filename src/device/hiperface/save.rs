@@ -39,7 +39,7 @@ fn save_once(
     }
     let position = match position {
         Some(Sample::Position(reading)) => Some(reading.raw),
-        Some(Sample::NoPosition { .. }) | None => None,
+        Some(Sample::NoPosition { .. } | Sample::Watched(_)) | None => None,
     };
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }

@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
-use egui::{RichText, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{PopupCloseBehavior, RichText, Ui};
 
 use super::nothing;
-use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::app::hiperface::{self, Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Desk, Studio, Text};
-use crate::ui::controls::{choice, enabled_button, row};
+use crate::device::hiperface::Watch;
+use crate::ui::controls::{choice, enabled_button, name, paragraph, row, text_entry};
 use crate::ui::{Skin, Views, icons, plot};
 
 /// How often the position may be read; back to back first.
@@ -27,6 +29,38 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     if !views.plot.large {
         plot_ui(ui, skin, encoder, views, actions);
     }
+}
+
+/// What is read beside the position.
+fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, actions: &mut Vec<Action>) {
+    let word = skin.say("live.watch");
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let button = egui::Button::new(icons::EYE).min_size(egui::vec2(28.0, 28.0));
+    let watched = encoder.record.watched();
+    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+        ui.set_min_width(220.0);
+        ui.label(skin.heading(&word));
+        paragraph(ui, skin.caption(skin.say("live.watch_words")));
+        let usual = [Watch::Analogue(0x48), Watch::Counter];
+        let more = watched.iter().copied().filter(|own| !usual.contains(own));
+        for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
+            let mut on = watched.contains(&what);
+            if ui.checkbox(&mut on, skin.words(&hiperface::watch_name(what))).changed() {
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Watch(what, on)));
+            }
+        }
+        ui.horizontal(|ui| {
+            ui.label(skin.label(skin.say("analogue_card.channel")));
+            text_entry(ui, &mut views.channel, 48.0, &skin.say("analogue_card.channel"), "48");
+            let channel = hiperface::forms::channel(&views.channel);
+            if enabled_button(ui, channel.is_ok(), icons::PLUS, &skin.say("live.watch_add")).clicked()
+                && let Ok(channel) = channel
+            {
+                actions.push(Action::Hiperface(encoder.id, Hiperface::Watch(Watch::Analogue(channel), true)));
+            }
+        });
+    });
+    name(response, true, &word).on_hover_text(&word);
 }
 
 /// The plot of what was recorded of an encoder.
@@ -94,6 +128,7 @@ fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, acti
         if enabled_button(ui, ready, "", &skin.say("live.once")).clicked() {
             actions.push(Action::Hiperface(encoder.id, Hiperface::ReadPosition));
         }
+        watch_menu(ui, skin, encoder, views, actions);
         let rates = RATES.map(|(milliseconds, id)| (milliseconds, skin.say(id)));
         if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling.is_some() {
             actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));

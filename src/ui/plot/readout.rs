@@ -34,6 +34,9 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
             ui.label(small(skin, sample.map_or_else(|| "–".to_owned(), |sample| value(skin, line, &sample))));
             let unit = line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default();
             ui.label(skin.caption(unit));
+            if let Some(remark) = &line.remark {
+                ui.label(RichText::new(skin.words(remark)).size(skin.sizes.caption).color(skin.palette.warn));
+            }
             if let Some(measured) = recorder.measure(line) {
                 measured_ui(ui, skin, line, &measured);
             }

@@ -1,0 +1,183 @@
+//! What a polled device is asked next and when: its sample, and between two samples at most one value that is watched.
+//! It has no clock.
+
+use std::time::{Duration, Instant};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Due<W> {
+    /// The device's sample.
+    Sample,
+    /// A value that is watched.
+    Watch(W),
+}
+
+/// The paces of what is asked for.
+pub(super) struct Agenda<W> {
+    sample: Pace,
+    watches: Vec<Watch<W>>,
+    /// No value was watched since the last sample, so that one may be.
+    sample_was_last: bool,
+}
+
+struct Watch<W> {
+    what: W,
+    interval: Duration,
+    pace: Pace,
+}
+
+impl<W> Default for Agenda<W> {
+    fn default() -> Self {
+        Agenda { sample: Pace::default(), watches: Vec::new(), sample_was_last: false }
+    }
+}
+
+impl<W: Clone + PartialEq> Agenda<W> {
+    /// From now on these are watched; what was watched before goes on at its pace.
+    pub(super) fn watch(&mut self, wished: Vec<(W, Duration)>) {
+        let mut before = std::mem::take(&mut self.watches);
+        for (what, interval) in wished {
+            let pace = before.iter_mut().find(|watch| watch.what == what).map(|watch| std::mem::take(&mut watch.pace));
+            self.watches.push(Watch { what, interval, pace: pace.unwrap_or_default() });
+        }
+    }
+
+    /// What comes next and when: what is due first, the sample where several are. Watching rests while nothing is
+    /// sampled; a new wish begins now.
+    pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
+        let sample = self.sample.due(polling, now);
+        let mut next: Option<(Instant, Due<W>)> = None;
+        for Watch { what, interval, pace } in &mut self.watches {
+            let due = pace.due(polling.and(Some(*interval)), now);
+            if let Some(due) = due
+                && self.sample_was_last
+                && next.as_ref().is_none_or(|(earliest, _)| due < *earliest)
+            {
+                next = Some((due, Due::Watch(what.clone())));
+            }
+        }
+        let sample = sample?;
+        next.filter(|(due, _)| *due < sample).or(Some((sample, Due::Sample)))
+    }
+
+    /// It was asked for, and the reply came at `now`.
+    pub(super) fn taken(&mut self, due: &Due<W>, now: Instant) {
+        self.sample_was_last = *due == Due::Sample;
+        match due {
+            Due::Sample => self.sample.taken(now),
+            Due::Watch(what) => {
+                if let Some(watch) = self.watches.iter_mut().find(|watch| watch.what == *what) {
+                    watch.pace.taken(now);
+                }
+            }
+        }
+    }
+}
+
+/// When something is due: at equal distances from start to start, and never several at once after a late one.
+#[derive(Default)]
+struct Pace {
+    interval: Option<Duration>,
+    next: Option<Instant>,
+}
+
+impl Pace {
+    /// The next time, by the wish that is in force; a new wish begins now.
+    fn due(&mut self, wish: Option<Duration>, now: Instant) -> Option<Instant> {
+        if wish != self.interval {
+            self.interval = wish;
+            self.next = wish.map(|_| now);
+        }
+        self.next
+    }
+
+    fn taken(&mut self, now: Instant) {
+        self.next = match (self.next, self.interval) {
+            (Some(due), Some(interval)) => Some((due + interval).max(now)),
+            _ => None,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(count: u64) -> Duration {
+        Duration::from_millis(count)
+    }
+
+    #[test]
+    fn a_late_sample_is_followed_by_one_and_not_by_a_burst() {
+        let (step, start) = (ms(100), Instant::now());
+        let mut pace = Pace::default();
+        assert_eq!(pace.due(None, start), None);
+        assert_eq!(pace.due(Some(step), start), Some(start));
+        pace.taken(start + ms(25));
+        assert_eq!(pace.due(Some(step), start + ms(25)), Some(start + ms(100)), "from start to start");
+        pace.taken(start + ms(500));
+        assert_eq!(pace.due(Some(step), start + ms(500)), Some(start + ms(500)), "at once, once");
+        pace.taken(start + ms(525));
+        assert_eq!(pace.due(Some(step), start + ms(525)), Some(start + ms(600)));
+        assert_eq!(pace.due(None, start + ms(530)), None);
+        pace.taken(start + ms(530));
+        assert_eq!(pace.due(None, start + ms(530)), None);
+    }
+
+    /// Everything takes 25 ms: what is asked for, and the milliseconds at which it begins, up to `end`.
+    fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
+        let start = Instant::now();
+        let mut agenda = Agenda::default();
+        agenda.watch(watches.iter().map(|(what, interval)| (*what, ms(*interval))).collect());
+        let (mut now, mut said) = (0, Vec::new());
+        loop {
+            let (at, due) = agenda.next(Some(ms(polling)), start + ms(now)).unwrap();
+            now = now.max(u64::try_from((at - start).as_millis()).unwrap());
+            if now > end {
+                return said.join(" ");
+            }
+            let name = if let Due::Watch(what) = due { what } else { '.' };
+            said.push(format!("{name}{now}"));
+            now += 25;
+            agenda.taken(&due, start + ms(now));
+        }
+    }
+
+    #[test]
+    fn watched_values_come_between_samples_at_their_own_pace() {
+        for (polling, watches, end, expected) in [
+            (100, vec![], 250, ".0 .100 .200"),
+            (100, vec![('a', 200)], 450, ".0 a25 .100 .200 a225 .300 .400 a425"),
+            (100, vec![('a', 150)], 500, ".0 a25 .100 a150 .200 .300 a325 .400 a450 .500"),
+            // Back to back, and never two watched ones in a row.
+            (0, vec![('a', 0)], 125, ".0 a25 .50 a75 .100 a125"),
+            (0, vec![('a', 0), ('b', 0)], 175, ".0 a25 .50 b75 .100 a125 .150 b175"),
+            (0, vec![('a', 200)], 275, ".0 a25 .50 .75 .100 .125 .150 .175 .200 a225 .250 .275"),
+            // Seldom samples: no more watched values than those.
+            (1000, vec![('a', 10)], 2100, ".0 a25 .1000 a1025 .2000 a2025"),
+        ] {
+            assert_eq!(course(polling, &watches, end), expected, "{polling} {watches:?}");
+        }
+    }
+
+    #[test]
+    fn watching_rests_with_polling_and_goes_on_through_a_new_list() {
+        let start = Instant::now();
+        let mut agenda = Agenda::default();
+        agenda.watch(vec![('a', ms(200))]);
+        assert_eq!(agenda.next(None, start), None);
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), Due::Sample)));
+        agenda.taken(&Due::Sample, start + ms(20));
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(20)), Some((start + ms(10), Due::Watch('a'))));
+        agenda.taken(&Due::Watch('a'), start + ms(30));
+        agenda.taken(&Due::Sample, start + ms(120));
+        agenda.watch(vec![('b', ms(50)), ('a', ms(200))]);
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(120)), Some((start + ms(120), Due::Watch('b'))), "b begins");
+        agenda.taken(&Due::Watch('b'), start + ms(130));
+        agenda.watch(vec![('a', ms(200))]);
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(130)), Some((start + ms(210), Due::Sample)), "110 + 100");
+        agenda.taken(&Due::Sample, start + ms(220));
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(220)), Some((start + ms(210), Due::Watch('a'))), "10 + 200");
+        assert_eq!(agenda.next(None, start + ms(230)), None);
+    }
+}

@@ -1,0 +1,175 @@
+//! Watched values between the positions of a polled encoder: their order, what is refused, jobs and ends in between. At
+//! which times they come is tested with the agenda itself (`worker/agenda.rs`).
+
+use std::time::{Duration, Instant};
+
+use encoder_studio::device::hiperface::{Error, Sample, Watch, WatchedReading};
+use encoder_studio::protocol::hiperface::{Command, StatusCode};
+use encoder_studio::units::Moment;
+use encoder_studio::worker::hiperface::{Hiperface, JobError};
+use encoder_studio::worker::{Event, Watched, Worker};
+
+use crate::polling::{BACK_TO_BACK, SELDOM, nothing_comes, samples};
+use crate::support::Desk;
+use crate::threads::{LONG, identify, in_virtual_time, until_end};
+
+const TEMPERATURE: Watch = Watch::Analogue(0x48);
+const SINE: Watch = Watch::Analogue(0x00);
+/// No encoder of these tests has it.
+const MISSING: Watch = Watch::Analogue(0x33);
+const ALWAYS: Duration = Duration::ZERO;
+
+fn watched(sample: &Sample) -> Option<(Watch, Option<i64>)> {
+    match sample {
+        Sample::Watched(WatchedReading { what, value, .. }) => Some((*what, value.as_ref().ok().copied())),
+        _ => None,
+    }
+}
+
+fn at(sample: &Sample) -> Moment {
+    match sample {
+        Sample::Position(reading) => reading.at,
+        Sample::NoPosition { at, .. } => *at,
+        Sample::Watched(reading) => reading.at,
+    }
+}
+
+/// What a polled worker gives once a new list is in force: from a position on, so many.
+fn course(worker: &Worker<Hiperface>, wished: &[Watch], count: usize) -> Vec<Option<(Watch, Option<i64>)>> {
+    worker.poll(None);
+    worker.watch(wished.iter().map(|what| (*what, ALWAYS)).collect());
+    // What is under way has come.
+    std::thread::sleep(Duration::from_millis(100));
+    worker.samples().drain();
+    worker.poll(BACK_TO_BACK);
+    samples(worker, count).iter().take(count).map(watched).collect()
+}
+
+#[test]
+fn watched_values_stand_between_positions_each_in_its_turn() {
+    let bench = in_virtual_time("temperature=-10&position=0x18");
+    let temperature = Some((TEMPERATURE, Some(-10)));
+    assert_eq!(course(&bench.worker, &[], 4), [None; 4]);
+    assert_eq!(
+        course(&bench.worker, &[TEMPERATURE], 6),
+        [None, temperature, None, temperature, None, temperature],
+        "no two in a row, the position first"
+    );
+    // Three quarters of a period: 2.0 V are 409 counts (sincos.md: 10 bits for 5 V).
+    let (sine, counter) = (Some((SINE, Some(409))), Some((Watch::Counter, Some(0))));
+    assert_eq!(
+        course(&bench.worker, &[TEMPERATURE, SINE, Watch::Counter], 8),
+        [None, temperature, None, sine, None, counter, None, temperature]
+    );
+    // The reference's request for channel 48h.
+    assert!(bench.tap.lock().unwrap().sent.iter().any(|frame| frame == &[0x40, 0x44, 0x48, 0x4C]));
+    let times: Vec<Moment> = samples(&bench.worker, 50).iter().map(at).collect();
+    assert!(times.is_sorted(), "{times:?}");
+}
+
+#[test]
+fn nothing_is_watched_without_polling() {
+    let bench = in_virtual_time("");
+    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    nothing_comes(&bench);
+    assert_eq!(bench.tap.lock().unwrap().count(Command::ReadAnalogue), 0);
+    bench.worker.poll(BACK_TO_BACK);
+    samples(&bench.worker, 5);
+    bench.worker.stop();
+    nothing_comes(&bench);
+    assert_eq!(bench.worker.watching(), [(TEMPERATURE, ALWAYS)], "the wish outlives a stop");
+    bench.worker.poll(SELDOM);
+    let seen = samples(&bench.worker, 2);
+    assert_eq!(seen.iter().map(watched).collect::<Vec<_>>(), [None, Some((TEMPERATURE, Some(42)))]);
+    nothing_comes(&bench);
+}
+
+#[test]
+fn a_channel_that_is_missing_is_told_once_and_polling_goes_on() {
+    let bench = in_virtual_time("");
+    let temperature = Some((TEMPERATURE, Some(42)));
+    assert_eq!(
+        course(&bench.worker, &[MISSING, TEMPERATURE], 8),
+        [None, Some((MISSING, None)), None, temperature, None, temperature, None, temperature]
+    );
+    assert_eq!(bench.worker.watching(), [(TEMPERATURE, ALWAYS)]);
+    assert!(bench.worker.events().is_empty(), "it is told as a sample");
+    // Beside another value it is not asked for again; once it was given up and wished anew it is.
+    course(&bench.worker, &[SINE, MISSING], 1);
+    assert_eq!(bench.worker.watching(), [(SINE, ALWAYS)]);
+    course(&bench.worker, &[], 1);
+    assert_eq!(course(&bench.worker, &[MISSING], 4), [None, Some((MISSING, None)), None, None]);
+    assert_eq!(bench.worker.polling(), BACK_TO_BACK);
+}
+
+#[test]
+fn what_a_reading_says_is_told_with_it() {
+    let mut desk = Desk::new("");
+    let Watched::Refused(Sample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else { panic!() };
+    assert!(matches!(&refusal.value, Err(Error::Rejected { codes, .. }) if codes == &[StatusCode::ARGUMENT]));
+    desk.bus().encoder_mut(0).unwrap().set_temperature(130);
+    let Watched::Sample(Sample::Watched(hot)) = desk.session.watch_value(&TEMPERATURE).unwrap() else { panic!() };
+    assert_eq!((hot.value, hot.codes), (Ok(130), vec![StatusCode::TEMPERATURE]));
+    assert!(desk.session.station().codes_met.is_empty(), "they are told with the reading");
+    let now = |code| WatchedReading {
+        at: Moment::START,
+        what: SINE,
+        value: Err(Error::Rejected { command: Command::ReadAnalogue, codes: vec![StatusCode::new(code)] }),
+        codes: Vec::new(),
+    };
+    for (code, refused) in [(0x0B, true), (0x0D, true), (0x01, false), (0x1C, false), (0x00, false)] {
+        assert_eq!(now(code).is_refused(), refused, "{code:02X}h");
+    }
+}
+
+#[test]
+fn jobs_come_in_between_and_watching_goes_on() {
+    let mut bench = in_virtual_time("");
+    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.poll(BACK_TO_BACK);
+    for _ in 0..10 {
+        bench.worker.submit(identify()).unwrap();
+        let events = until_end(&bench.worker);
+        assert!(matches!(events.last(), Some(Event::Finished(..))), "{events:?}");
+        bench.worker.samples().drain();
+        let seen: Vec<_> = samples(&bench.worker, 6).iter().map(watched).collect();
+        let pairs = seen.windows(2).filter(|pair| pair[0].is_some() == pair[1].is_some()).count();
+        assert_eq!(pairs, 0, "they alternate: {seen:?}");
+    }
+}
+
+#[test]
+fn a_line_that_is_lost_ends_polling_and_is_told_once() {
+    // Five replies: the type label, position, temperature, position, temperature.
+    let bench = in_virtual_time("fault=silent-after:5");
+    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.poll(BACK_TO_BACK);
+    let told = bench.worker.events().recv_timeout(LONG).unwrap();
+    let Event::PollFailed(error) = &told else { panic!("{told:?}") };
+    assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
+    assert_eq!(bench.worker.polling(), None);
+    assert_eq!(bench.worker.samples().drain().0.len(), 4);
+    // While a watched value is asked for it is the same.
+    let bench = in_virtual_time("fault=silent-after:4");
+    bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
+    bench.worker.poll(BACK_TO_BACK);
+    let told = bench.worker.events().recv_timeout(LONG).unwrap();
+    let Event::PollFailed(error) = &told else { panic!("{told:?}") };
+    let JobError::Device(Error::NoReply { command, .. }) = **error else { panic!("{error:?}") };
+    assert_eq!(command, Command::ReadAnalogue);
+    assert_eq!(bench.worker.samples().drain().0.len(), 3);
+    assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "once");
+}
+
+#[test]
+fn a_wish_of_seldom_values_waits_for_nobody() {
+    let bench = in_virtual_time("");
+    bench.worker.poll(BACK_TO_BACK);
+    bench.worker.watch(vec![(TEMPERATURE, Duration::from_secs(3600))]);
+    let seen: Vec<_> = samples(&bench.worker, 200).iter().filter_map(watched).collect();
+    assert_eq!(seen, [(TEMPERATURE, Some(42))], "one at once, and no burst");
+    let started = Instant::now();
+    (0..1000).for_each(|_| bench.worker.watch(vec![(SINE, ALWAYS)]));
+    assert!(started.elapsed() < Duration::from_secs(1));
+    samples(&bench.worker, 10);
+}
