@@ -6,6 +6,7 @@ use super::connect;
 use super::hiperface;
 use super::keep::SettingsRead;
 use super::recorder::{self, Exported};
+use super::signals;
 use super::studio::{SessionId, Tab};
 use super::{Language, Picture, Text, Theme};
 use crate::link::LinkError;
@@ -43,9 +44,9 @@ pub enum Action {
     Dismiss,
     /// The connection dialog.
     Connect(connect::Action),
-    /// Ask for a profile to open.
+    /// Ask for a file to open: a capture in the Signals tab, else a profile.
     AskOpen,
-    /// Open a profile.
+    /// Open a capture (`.csv`), or else a profile.
     Open(PathBuf),
     /// No file was chosen.
     FileNotChosen,
@@ -69,6 +70,8 @@ pub enum Action {
     AskPicture(Picture),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
     Hiperface(SessionId, hiperface::Action),
+    /// Something in the Signals tab.
+    Signals(signals::Action),
     /// A task has come back.
     Done(Done),
     /// The system has no thread left for a task.
@@ -144,6 +147,8 @@ pub enum Done {
     SettingsKept(Result<(), FileError>),
     /// About one session in the HIPERFACE tab.
     Hiperface(SessionId, hiperface::Done),
+    /// In the Signals tab.
+    Signals(signals::Done),
 }
 
 /// A session on its thread, with the ring that its trace goes into.
@@ -205,6 +210,8 @@ pub enum Desk {
 pub enum FileQuestion {
     /// Which profile to open.
     Open,
+    /// Which capture to open.
+    OpenCapture,
     /// Where to save; with a name to begin with.
     Save {
         /// Whose profile it is.
@@ -232,18 +239,19 @@ pub enum FileQuestion {
 
 impl FileQuestion {
     /// How the names of such files end.
-    pub fn ending(&self) -> &'static str {
+    pub fn endings(&self) -> &'static [&'static str] {
         match self {
-            FileQuestion::Open | FileQuestion::Save { .. } => "ron",
-            FileQuestion::Table { .. } => "csv",
-            FileQuestion::Picture { .. } => "png",
+            FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
+            FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
+            FileQuestion::Table { .. } => &["csv"],
+            FileQuestion::Picture { .. } => &["png"],
         }
     }
 
     /// A name to begin with, where a file is to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
-            FileQuestion::Open => None,
+            FileQuestion::Open | FileQuestion::OpenCapture => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),

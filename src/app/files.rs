@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::action::{Action, Desk, Done, FileQuestion};
 use super::hiperface;
 use super::recorder::{self, Exported, Recorder};
+use super::signals;
 use super::studio::Studio;
 use super::{Picture, Severity, Text, explain};
 use crate::store::{FileError, write_atomically};
@@ -12,7 +13,7 @@ use crate::store::{FileError, write_atomically};
 impl Studio {
     /// A path was typed: what is there already is not replaced without a question.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
-        if question == FileQuestion::Open {
+        if question.suggested().is_none() {
             return self.chosen(question, path);
         }
         self.services.tasks.run("look", move || {
@@ -25,6 +26,7 @@ impl Studio {
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
+            FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
             FileQuestion::Save { session, .. } => self.act_hiperface(session, hiperface::Action::Save(path)),
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {

@@ -17,6 +17,7 @@ mod picture;
 pub mod recorder;
 mod services;
 mod settings;
+pub mod signals;
 mod studio;
 mod tasks;
 mod texts;

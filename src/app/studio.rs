@@ -7,6 +7,7 @@ use super::connect::{self, Connect};
 use super::hiperface::{self, Encoder, Phase, Source};
 use super::keep::Keeper;
 use super::services::{Services, World};
+use super::signals::{self, Signals};
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
@@ -24,6 +25,8 @@ pub enum Tab {
     /// HIPERFACE motor-feedback encoders.
     #[default]
     Hiperface,
+    /// Captures of sine and cosine, whatever encoder they are from.
+    Signals,
 }
 
 /// All state of the window.
@@ -36,6 +39,8 @@ pub struct Studio {
     pub question: Option<Question>,
     /// The log, the jobs.
     pub services: Services,
+    /// The Signals tab.
+    pub signals: Signals,
     pub(super) encoders: Vec<Encoder>,
     pub(super) shown: Option<SessionId>,
     next_id: u32,
@@ -55,6 +60,7 @@ impl Studio {
             connect: None,
             question: None,
             services,
+            signals: Signals::default(),
             encoders: Vec::new(),
             shown: None,
             next_id: 0,
@@ -94,7 +100,16 @@ impl Studio {
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.act_connect(action),
-            Action::AskOpen => self.services.file_question = Some(FileQuestion::Open),
+            Action::AskOpen => {
+                self.services.file_question = Some(match self.settings.tab {
+                    Tab::Hiperface => FileQuestion::Open,
+                    Tab::Signals => FileQuestion::OpenCapture,
+                });
+            }
+            Action::Open(path) if is_capture(&path) => {
+                self.settings.tab = Tab::Signals;
+                self.signals.act(signals::Action::Open(path), &mut self.services);
+            }
             Action::Open(path) => {
                 let store = self.services.world.store.clone();
                 self.services.opening_files.push(path.clone());
@@ -108,6 +123,7 @@ impl Studio {
             Action::AskTable { desk, visible } => self.ask_table(desk, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
+            Action::Signals(action) => self.signals.act(action, &mut self.services),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
                 let text = Text::new("session.no_thread").with("why", why);
@@ -178,7 +194,8 @@ impl Studio {
                 || encoder.is_busy()
                 || encoder.line().is_some_and(|line| line.polling().is_some())
         };
-        self.encoders.iter().any(active) || self.search().is_some_and(connect::Search::is_running)
+        let search = self.search().is_some_and(connect::Search::is_running);
+        self.encoders.iter().any(active) || search || self.signals.can_stop()
     }
 
     /// Live values come in: the picture has to be drawn again and again.
@@ -266,6 +283,7 @@ impl Studio {
                 }
             }
             Done::Hiperface(id, done) => self.done_for_encoder(id, done),
+            Done::Signals(done) => self.signals.done(done, &mut self.services),
         }
     }
 
@@ -318,6 +336,7 @@ impl Studio {
         for encoder in &mut self.encoders {
             encoder.stop(&mut self.services);
         }
+        self.signals.stop();
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.stop();
         }
@@ -343,6 +362,11 @@ impl Studio {
         }
         self.stop();
     }
+}
+
+/// A table, and no profile.
+fn is_capture(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
 }
 
 /// Reads a profile, as a task.

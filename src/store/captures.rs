@@ -72,6 +72,20 @@ pub fn read_capture(
     }
 }
 
+/// The first bytes of a file, [`HEAD`] of them or all there are. What is no file (a pipe) gives its bytes once: nothing
+/// is taken from it here.
+///
+/// # Errors
+/// [`FileError`] where it cannot be read.
+pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
+    let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Read, path);
+    let mut head = Vec::new();
+    if std::fs::metadata(path).map_err(failed)?.is_file() {
+        File::open(path).and_then(|file| file.take(HEAD as u64).read_to_end(&mut head)).map_err(failed)?;
+    }
+    Ok(head)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,6 +110,17 @@ mod tests {
         assert!(told.len() >= 3 && told.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{told:?}");
         assert_eq!(told.last(), Some(&(length, length)));
         assert_eq!(read(&path, true), (Err(ReadCaptureError::Cancelled), Vec::new()));
+    }
+
+    #[test]
+    fn the_head_is_the_beginning_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c.csv");
+        assert_eq!(capture_head(&path).unwrap_err().problem, FileProblem::NotFound);
+        assert_eq!(capture_head(folder.path()), Ok(Vec::new()), "a folder is told by who reads it");
+        fs::write(&path, "0,1,2\n".repeat(20_000)).unwrap();
+        let head = capture_head(&path).unwrap();
+        assert_eq!((head.len(), &head[..12]), (65_536, &b"0,1,2\n0,1,2\n"[..]));
     }
 
     #[test]

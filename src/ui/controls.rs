@@ -78,6 +78,13 @@ pub(super) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
+/// Why an entry cannot be used, below it.
+pub(super) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Text>) {
+    if let Some(problem) = problem {
+        paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
+    }
+}
+
 /// A dialog over the window: what lies below waits.
 pub(super) fn modal<R>(
     ctx: &egui::Context,
@@ -252,27 +259,64 @@ pub(super) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static
 pub(super) fn two_columns<C>(
     ui: &mut Ui,
     skin: &Skin,
+    context: C,
+    left: impl FnOnce(&mut Ui, &mut C),
+    right: impl FnOnce(&mut Ui, &mut C),
+) {
+    split(ui, skin, (0.5, 640.0), context, left, right);
+}
+
+/// Two columns of cards, the left one with this share of the width, where there is this much; else one below the other.
+pub(super) fn split<C>(
+    ui: &mut Ui,
+    skin: &Skin,
+    (share, least): (f32, f32),
     mut context: C,
     left: impl FnOnce(&mut Ui, &mut C),
     right: impl FnOnce(&mut Ui, &mut C),
 ) {
-    if ui.available_width() < 640.0 {
+    if ui.available_width() < least {
         left(ui, &mut context);
         ui.add_space(skin.space.groups);
         right(ui, &mut context);
         return;
     }
-    let width = ((ui.available_width() - skin.space.groups) / 2.0).floor().max(0.0);
+    let room = (ui.available_width() - skin.space.groups).max(0.0);
+    let width = (room * share).floor();
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = skin.space.between;
         ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
             left(ui, &mut context);
         });
         ui.add_space(skin.space.groups - skin.space.between);
-        ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+        ui.allocate_ui_with_layout(vec2((room - width).floor(), 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
             right(ui, &mut context);
         });
     });
+}
+
+/// A one-line entry that counts when it is left or Enter is pressed. `draft` holds what is typed until it counts, or until
+/// it can: what `take` refuses stays, with the reason below it.
+pub(super) fn settled_entry(
+    ui: &mut Ui,
+    draft: &mut Option<(String, Option<crate::app::Text>)>,
+    shown: &str,
+    width: f32,
+    label: &str,
+    take: impl FnOnce(&str) -> Result<(), crate::app::Text>,
+) -> Response {
+    let (mut text, problem) = draft.take().unwrap_or_else(|| (shown.to_owned(), None));
+    let response = text_entry(ui, &mut text, width, label, "");
+    if response.has_focus() {
+        *draft = Some((text, problem));
+    } else if response.lost_focus() && text != shown {
+        if let Err(why) = take(&text) {
+            *draft = Some((text, Some(why)));
+        }
+    } else if problem.is_some() {
+        *draft = Some((text, problem));
+    }
+    response
 }
 
 /// A dot: filled for a connection, hollow for none.

@@ -10,6 +10,7 @@ pub mod icons;
 mod panels;
 mod plot;
 mod run;
+mod signals;
 mod skin;
 pub mod widgets;
 mod window;

@@ -55,6 +55,12 @@ impl Skin {
         crate::app::decimal(value, decimals, self.language)
     }
 
+    /// A number with as many decimals as it has.
+    pub fn plain(&self, value: f64) -> String {
+        let decimals = value.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
+        self.number(value, decimals)
+    }
+
     /// A label: what a value beside it is.
     pub fn label(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).color(self.palette.muted)

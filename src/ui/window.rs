@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
-use super::{Skin, header, icons};
+use super::{Skin, header, icons, signals};
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Look, SessionId, Severity, Studio, Tab};
 
@@ -18,6 +18,7 @@ use crate::app::{Action, Look, SessionId, Severity, Studio, Tab};
 pub struct Views {
     /// The HIPERFACE tab, for each session.
     hiperface: BTreeMap<SessionId, hiperface::View>,
+    pub(super) signals: signals::View,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
@@ -137,7 +138,13 @@ impl Window {
         if self.views.about && dialogs::about_ui(ctx, skin) {
             self.views.about = false;
         }
-        let page = self.studio.encoder().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
+        let page = match self.studio.settings.tab {
+            Tab::Hiperface => {
+                let page = self.studio.encoder().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
+                (page.word(), page.help())
+            }
+            Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
+        };
         if self.views.help && dialogs::help_ui(ctx, skin, page) {
             self.views.help = false;
         }
@@ -186,8 +193,10 @@ impl Window {
         let mut keys = vec![
             (Modifiers::COMMAND, Key::O, Action::AskOpen),
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
+            (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
-        if let Some(id) = self.studio.encoder().map(|encoder| encoder.id) {
+        let shown = self.studio.encoder().filter(|_| self.studio.settings.tab == Tab::Hiperface);
+        if let Some(id) = shown.map(|encoder| encoder.id) {
             keys.push((Modifiers::NONE, Key::F5, Action::Hiperface(id, Hiperface::Read)));
             keys.push((Modifiers::COMMAND, Key::S, Action::Hiperface(id, Hiperface::AskSave)));
             keys.push((Modifiers::COMMAND, Key::Enter, Action::Hiperface(id, Hiperface::Review)));
@@ -263,9 +272,16 @@ fn navigation(
     actions: &mut Vec<Action>,
 ) {
     ui.spacing_mut().item_spacing.y = skin.space.inside;
-    let tab = egui::RichText::new("HIPERFACE").font(skin.strong(skin.sizes.body));
-    if entry(ui, false, tab, "HIPERFACE").clicked() {
-        actions.push(Action::ShowTab(Tab::Hiperface));
+    for (tab, word) in [(Tab::Hiperface, "HIPERFACE".to_owned()), (Tab::Signals, skin.say("tab.signals"))] {
+        let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
+        if entry(ui, false, text, &word).clicked() {
+            actions.push(Action::ShowTab(tab));
+        }
+        match tab {
+            _ if tab != studio.settings.tab => {}
+            Tab::Hiperface => hiperface_pages(ui, skin, studio, views),
+            Tab::Signals => signals_pages(ui, skin, views),
+        }
     }
     // At the foot, so that it is drawn wherever the rest ends.
     let foot = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
@@ -274,6 +290,9 @@ fn navigation(
     {
         docks.reset();
     }
+}
+
+fn hiperface_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
     let Some(encoder) = studio.encoder() else { return };
     let shown = views.hiperface(encoder).page;
     for page in Page::ALL {
@@ -285,6 +304,16 @@ fn navigation(
         }
         if entry(ui, shown == page, text, &word).clicked() {
             views.hiperface(encoder).page = page;
+        }
+    }
+}
+
+fn signals_pages(ui: &mut Ui, skin: &Skin, views: &mut Views) {
+    for page in signals::Page::ALL {
+        let word = skin.say(page.word());
+        let text = egui::RichText::new(format!("{}  {word}", page.icon()));
+        if entry(ui, views.signals.page == page, text, &word).clicked() {
+            views.signals.page = page;
         }
     }
 }

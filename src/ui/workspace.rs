@@ -4,13 +4,20 @@ use egui::{RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::panels::plot_ui;
-use super::{Skin, Views, hiperface, icons};
+use super::{Skin, Views, hiperface, icons, signals};
 use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Studio, Tab};
 use crate::app::{connect, explain};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    match studio.settings.tab {
+        Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
+        Tab::Signals => signals::page_ui(ui, skin, &studio.signals, &mut views.signals, actions),
+    }
+}
+
+fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let Some(encoder) = studio.encoder() else {
         if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
             actions.push(Action::Connect(connect::Action::Open));
@@ -22,17 +29,14 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         });
         return;
     };
-    match studio.settings.tab {
-        Tab::Hiperface if views.plot.large => {
-            let margin = egui::Margin::same(skin.space.groups as i8);
-            egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, encoder, views, actions));
-        }
-        Tab::Hiperface => {
-            running(ui, skin, encoder, actions);
-            lost(ui, skin, encoder, actions);
-            hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);
-        }
+    if views.plot.large {
+        let margin = egui::Margin::same(skin.space.groups as i8);
+        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, encoder, views, actions));
+        return;
     }
+    running(ui, skin, encoder, actions);
+    lost(ui, skin, encoder, actions);
+    hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);
 }
 
 /// What runs, how far it is, and a way to end it.

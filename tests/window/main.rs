@@ -13,6 +13,8 @@ mod profiles;
 mod recording;
 mod remembering;
 mod screen;
+mod signals;
+mod signals_widgets;
 mod state;
 mod support;
 mod texts;

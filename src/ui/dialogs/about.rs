@@ -3,7 +3,6 @@
 use egui::{ScrollArea, Ui};
 
 use crate::ui::controls::{button, modal, paragraph, row};
-use crate::ui::hiperface::Page;
 use crate::ui::{Skin, icons};
 
 /// Licences of what ships inside the program.
@@ -39,10 +38,10 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, skin: &Skin) -> bool {
     done
 }
 
-/// Draws what the open page is about. True: it is done with.
-pub(in crate::ui) fn help_ui(ctx: &egui::Context, skin: &Skin, page: Page) -> bool {
+/// Draws what the open page is about: its name and its help in the table of texts. True: it is done with.
+pub(in crate::ui) fn help_ui(ctx: &egui::Context, skin: &Skin, (page, help): (&'static str, &'static str)) -> bool {
     let mut open = true;
-    let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, skin.say(page.word()));
+    let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, skin.say(page));
     egui::Window::new(title)
         .id(egui::Id::unique("help"))
         .open(&mut open)
@@ -52,7 +51,7 @@ pub(in crate::ui) fn help_ui(ctx: &egui::Context, skin: &Skin, page: Page) -> bo
         .anchor(egui::Align2::RIGHT_TOP, [-16.0, 64.0])
         .show(ctx, |ui: &mut Ui| {
             ui.set_width(380.0);
-            paragraph(ui, skin.say(page.help()));
+            paragraph(ui, skin.say(help));
             ui.add_space(skin.space.between);
             ui.label(skin.heading(skin.say("help.keys")));
             for line in skin.say("help.keys_words").lines() {

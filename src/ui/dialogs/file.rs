@@ -28,7 +28,10 @@ pub(in crate::ui) fn ask(question: FileQuestion, skin: &Skin, mailbox: Mailbox) 
     let fallback = (question.clone(), mailbox.clone());
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
-        let dialog = rfd::FileDialog::new().add_filter(filter, &[question.ending()]);
+        let dialog = rfd::FileDialog::new().add_filter(filter, question.endings());
+        // Loggers end the names of their tables in many ways.
+        let any = question == FileQuestion::OpenCapture;
+        let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
         let chosen = match question.suggested() {
             None => dialog.pick_file(),
             Some(suggested) => {
@@ -64,6 +67,7 @@ fn has_dialogs() -> bool {
 fn kind(question: &FileQuestion) -> &'static str {
     match question {
         FileQuestion::Open | FileQuestion::Save { .. } => "file.profiles",
+        FileQuestion::OpenCapture => "file.captures",
         FileQuestion::Table { .. } => "file.tables",
         FileQuestion::Picture { .. } => "file.pictures",
     }
@@ -84,6 +88,7 @@ impl FileView {
 pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileView, actions: &mut Vec<Action>) -> bool {
     let (title, confirm, icon) = match view.question {
         FileQuestion::Open => ("file.open_title", "file.open", icons::FOLDER_OPEN),
+        FileQuestion::OpenCapture => ("file.capture_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),

@@ -1,14 +1,14 @@
 //! What is set up once: position, synchronisation, address, line settings, access codes, restart. Everything that is kept
 //! goes through the review.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 
 use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, forms};
 use crate::app::{Action, Text};
 use crate::protocol::hiperface::{BAUDS, CodeNumber, LineSettings};
 use crate::ui::controls::{
-    card, choice, enabled_button, entry, forget_secret, paragraph, row, secret_entry, text_entry, two_columns,
+    card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,
 };
 use crate::ui::{Skin, icons};
 use crate::units::{CharacterFormat, Parity};
@@ -60,12 +60,6 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
             restart(ui, skin, encoder, actions);
         },
     );
-}
-
-fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
-    if let Some(problem) = problem {
-        paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
-    }
 }
 
 /// Hands a change over, or keeps why it cannot be made.

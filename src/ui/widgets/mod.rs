@@ -3,6 +3,7 @@
 
 mod field_map;
 mod hex_editor;
+mod lissajous;
 mod typed_view;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
@@ -11,6 +12,7 @@ use super::Skin;
 
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
+pub use lissajous::{Figure, Lissajous, lissajous};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.

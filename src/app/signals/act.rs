@@ -1,0 +1,179 @@
+//! The state of the Signals tab, and what can be done with it.
+
+use std::sync::Arc;
+
+use super::reading::{self, Reading};
+use super::{Action, Done, Family, Measurement, Origin, Read, Table, forms};
+use crate::app::action::Done as StudioDone;
+use crate::app::services::Services;
+use crate::app::{Action as StudioAction, Severity, Text, explain};
+use crate::signal::capture::Wishes;
+use crate::signal::quality::Finding;
+use crate::store::ReadCaptureError;
+
+/// All that the Signals tab knows.
+pub struct Signals {
+    /// By whose limits is judged.
+    pub family: Family,
+    /// Signal periods in a revolution.
+    pub periods: u32,
+    measurement: Option<Arc<Measurement>>,
+    table: Option<Table>,
+    problem: Option<Text>,
+    reading: Option<Reading>,
+    attempts: u32,
+}
+
+impl Default for Signals {
+    fn default() -> Self {
+        Signals {
+            family: Family::default(),
+            periods: 1024,
+            measurement: None,
+            table: None,
+            problem: None,
+            reading: None,
+            attempts: 0,
+        }
+    }
+}
+
+impl Signals {
+    /// The capture that is shown.
+    pub fn measurement(&self) -> Option<&Arc<Measurement>> {
+        self.measurement.as_ref()
+    }
+
+    /// The table that was read last, whether it could be or not.
+    pub fn table(&self) -> Option<&Table> {
+        self.table.as_ref()
+    }
+
+    /// Why the last table could not be read; what was shown before is still shown.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+
+    /// What is being read.
+    pub fn reading(&self) -> Option<&Reading> {
+        self.reading.as_ref()
+    }
+
+    /// What is out of its limits.
+    pub fn findings(&self) -> Vec<Finding> {
+        let analysis = self.measurement.as_ref().and_then(|measurement| measurement.analysis.as_ref().ok());
+        analysis.map_or_else(Vec::new, |analysis| {
+            self.family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms)
+        })
+    }
+
+    /// There is something to stop.
+    pub(in crate::app) fn can_stop(&self) -> bool {
+        self.reading.is_some()
+    }
+
+    /// Stops all that runs.
+    pub(in crate::app) fn stop(&mut self) {
+        if let Some(reading) = &self.reading {
+            reading.cancel();
+        }
+    }
+
+    /// Does what is asked.
+    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            Action::Open(path) => self.open(Origin::File(path), services),
+            Action::Example(example) => self.open(Origin::Example(example), services),
+            Action::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
+            Action::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
+            Action::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
+            Action::SetVolts(volts) if volts.is_finite() && volts != 0.0 => {
+                self.wish(services, |wishes| wishes.volts_per_unit = Some(volts));
+            }
+            Action::SetVolts(_) => {}
+            Action::Detect => self.wish(services, |wishes| *wishes = Wishes::default()),
+            Action::SetColumn(column, number) => {
+                let settled = self.settled();
+                if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
+                    self.read_again(settled, services);
+                }
+            }
+            Action::Cancel => self.stop(),
+            Action::SetFamily(family) => self.family = family,
+            Action::SetPeriods(periods) => self.periods = periods.clamp(1, forms::MOST_PERIODS),
+        }
+    }
+
+    /// A task has come back.
+    pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
+        match done {
+            Done::Read { number, read } => {
+                if let Some(reading) = self.reading.take_if(|reading| reading.number == number) {
+                    self.take(*read, &reading, services);
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, read: Read, reading: &Reading, services: &mut Services) {
+        let Read { table, result } = read;
+        let path = match &table.origin {
+            Origin::File(path) => path.clone(),
+            origin @ Origin::Example(_) => origin.name().into(),
+        };
+        match result {
+            Ok(measurement) => {
+                self.measurement = Some(Arc::new(measurement));
+                self.problem = None;
+                self.table = Some(table);
+            }
+            Err(error @ ReadCaptureError::Cancelled) => {
+                self.table = reading.settled.clone();
+                services.note(Severity::Note, vec![explain::signal::read(&path, &error)], None);
+            }
+            Err(error) => {
+                let text = explain::signal::read(&path, &error);
+                services.note(Severity::Error, vec![text.clone()], None);
+                self.problem = Some(text);
+                self.table = Some(table);
+            }
+        }
+    }
+
+    /// The table as the capture that is shown was read, also while it is being read differently.
+    fn settled(&self) -> Option<Table> {
+        self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
+    }
+
+    /// Reads the table again with another wish.
+    fn wish(&mut self, services: &mut Services, change: impl FnOnce(&mut Wishes)) {
+        let settled = self.settled();
+        if let Some(table) = &mut self.table {
+            change(&mut table.wishes);
+            self.read_again(settled, services);
+        }
+    }
+
+    fn read_again(&mut self, settled: Option<Table>, services: &mut Services) {
+        if let Some(table) = &self.table {
+            self.read(table.origin.clone(), table.wishes.clone(), settled, services);
+        }
+    }
+
+    fn open(&mut self, origin: Origin, services: &mut Services) {
+        let settled = self.settled();
+        self.read(origin, Wishes::default(), settled, services);
+    }
+
+    /// Begins to read; what was being read is given up.
+    fn read(&mut self, origin: Origin, wishes: Wishes, settled: Option<Table>, services: &mut Services) {
+        self.attempts = self.attempts.wrapping_add(1);
+        let number = self.attempts;
+        let (reading, progress) = Reading::new(number, origin.clone(), settled);
+        self.reading = Some(reading);
+        services.tasks.run("capture", move || {
+            let read = Box::new(reading::read(origin, wishes, &progress));
+            StudioAction::Done(StudioDone::Signals(Done::Read { number, read }))
+        });
+    }
+}

@@ -1,0 +1,53 @@
+//! What a person asks of the Signals tab, and what its tasks come back with.
+
+use std::path::PathBuf;
+
+use super::{Column, Example, Family, Measurement, Table};
+use crate::signal::capture::{Delimiter, TimeUnit};
+use crate::store::ReadCaptureError;
+
+/// Something to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Read a capture from a file.
+    Open(PathBuf),
+    /// Read one of the captures that ship with the program.
+    Example(Example),
+    /// Another delimiter than the one found.
+    SetDelimiter(Delimiter),
+    /// Numbers have a decimal comma, or not.
+    SetDecimalComma(bool),
+    /// Another column, from 1; `None` is none.
+    SetColumn(Column, Option<usize>),
+    /// Another unit of the time.
+    SetTimeUnit(TimeUnit),
+    /// Volts in one unit of the table; finite, not zero.
+    SetVolts(f64),
+    /// Find all of that out again.
+    Detect,
+    /// Give up reading.
+    Cancel,
+    /// Judge by the limits of another family.
+    SetFamily(Family),
+    /// Signal periods in one revolution, at least 1.
+    SetPeriods(u32),
+}
+
+/// What tasks come back with.
+pub enum Done {
+    /// A capture was read, or not.
+    Read {
+        /// Which attempt: only the latest counts.
+        number: u32,
+        /// What came of it.
+        read: Box<Read>,
+    },
+}
+
+/// What came of reading a table.
+pub struct Read {
+    /// Its first lines, and how they are understood.
+    pub(super) table: Table,
+    /// The capture with all that is known about it.
+    pub(super) result: Result<Measurement, ReadCaptureError>,
+}

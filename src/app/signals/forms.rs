@@ -1,0 +1,70 @@
+//! What a person types in the Signals tab, read. An entry that cannot be used says what could be.
+
+use crate::app::Text;
+
+/// Most signal periods in a revolution that can be entered; encoders have up to 65 536.
+pub const MOST_PERIODS: u32 = 1_000_000;
+
+/// Signal periods in a revolution.
+///
+/// # Errors
+/// In words.
+pub fn periods(text: &str) -> Result<u32, Text> {
+    let digits = text.trim();
+    let number = digits.parse().ok().filter(|_| digits.bytes().all(|c| c.is_ascii_digit()));
+    number
+        .filter(|number| (1..=MOST_PERIODS).contains(number))
+        .ok_or_else(|| Text::new("signals.bad_periods").with("entry", text).with("most", MOST_PERIODS))
+}
+
+/// A number with a point or a comma; finite.
+///
+/// # Errors
+/// In words.
+pub fn number(text: &str) -> Result<f64, Text> {
+    let refused = || Text::new("signals.bad_number").with("entry", text);
+    let plain = text.trim().replace(',', ".");
+    // The parser would take words for infinity.
+    if !plain.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E')) {
+        return Err(refused());
+    }
+    plain.parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(refused)
+}
+
+/// Volts in one unit of a table.
+///
+/// # Errors
+/// In words.
+pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
+    let refused = || Text::new("signals.bad_volts").with("entry", text);
+    number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_numbers_as_people_write_them() {
+        for (text, value) in [("1", 1.0), (" 0,5 ", 0.5), ("-2.5", -2.5), ("1e-3", 0.001), ("+7", 7.0)] {
+            assert_eq!(number(text), Ok(value), "{text}");
+        }
+        for text in ["", " ", "NaN", "inf", "1e999", "1,2,3", "0x10", "five", "--1", "."] {
+            assert!(number(text).is_err(), "{text}");
+        }
+        assert_eq!(volts_per_unit("0,001"), Ok(0.001));
+        for text in ["0", "-0.0", "1e-999", "x"] {
+            assert!(volts_per_unit(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn periods_are_whole_and_in_range() {
+        for (text, value) in [("1", 1), (" 1024 ", 1024), ("1000000", 1_000_000)] {
+            assert_eq!(periods(text), Ok(value), "{text}");
+        }
+        for text in ["", "0", "-5", "+5", "1000001", "99999999999", "10.0", "1e3", "x"] {
+            assert!(periods(text).is_err(), "{text}");
+        }
+    }
+}

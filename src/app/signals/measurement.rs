@@ -1,0 +1,108 @@
+//! A capture with all that is computed from it once, on a task: the analysis and the points of its Lissajous figure.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::Example;
+use crate::app::{Text, explain};
+use crate::signal::analysis::{Analysis, AnalysisError};
+use crate::signal::capture::Capture;
+use crate::signal::position_error::Samples;
+
+/// Where a capture comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// A file.
+    File(PathBuf),
+    /// One that ships with the program.
+    Example(Example),
+}
+
+impl Origin {
+    /// Its name, short: without folders.
+    pub fn name(&self) -> String {
+        match self {
+            Origin::File(path) => {
+                path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+            }
+            Origin::Example(example) => example.file_name().to_owned(),
+        }
+    }
+}
+
+/// A capture and what is known about it.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// The samples.
+    pub capture: Arc<Capture>,
+    /// The analysis, or why there is none.
+    pub analysis: Result<Analysis, AnalysisError>,
+    /// Samples as (cosine, sine) in volts, of many as many as a picture can show.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Points of a Lissajous figure that tell more than fewer do.
+const POINTS: usize = 4_000;
+
+impl Measurement {
+    /// Measures a capture; takes about 50 ms for a million samples.
+    pub fn of(origin: Origin, capture: Arc<Capture>) -> Self {
+        let (sine_v, cosine_v) = (capture.sine_v.as_slice(), capture.cosine_v.as_slice());
+        let analysis = Analysis::of(Samples { time_s: &capture.time_s, sine_v, cosine_v });
+        Measurement { analysis, points: spread(cosine_v, sine_v), origin, capture }
+    }
+
+    /// Why there is no analysis, in words.
+    pub fn refusal(&self) -> Option<Text> {
+        let error = self.analysis.as_ref().err()?;
+        Some(explain::signal::analysis(Path::new(&self.origin.name()), error))
+    }
+
+    /// What they are after the correction of the ellipse; nothing without one.
+    pub fn corrected_points(&self) -> Vec<(f64, f64)> {
+        let Ok(analysis) = &self.analysis else { return Vec::new() };
+        let correction = analysis.ellipse.correction();
+        let corrected = |(cosine, sine): &(f64, f64)| {
+            let (sine, cosine) = correction.apply(*sine, *cosine);
+            (cosine, sine)
+        };
+        self.points.iter().map(corrected).collect()
+    }
+}
+
+/// Samples spread over all of them. Not every so many, which could always hit the same place of the period.
+fn spread(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
+    /// The golden section: its multiples fill the unit interval evenly.
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let count = x.len().min(y.len());
+    let pair = |at: usize| x.get(at).copied().zip(y.get(at).copied());
+    if count <= POINTS {
+        return (0..count).filter_map(pair).collect();
+    }
+    let place = |at: usize| ((at as f64 + (at as f64 * GOLDEN).fract()) * count as f64 / POINTS as f64) as usize;
+    (0..POINTS).filter_map(|at| pair(place(at))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_samples_are_spread_and_few_are_all_there() {
+        let few: Vec<f64> = (0..10).map(f64::from).collect();
+        assert_eq!(spread(&few, &few).len(), 10);
+        // A period of 250 samples, of which every 250th would be one point.
+        let angle = |at: i32| f64::from(at) / 250.0 * std::f64::consts::TAU;
+        let x: Vec<f64> = (0..1_000_000).map(|at| angle(at).cos()).collect();
+        let y: Vec<f64> = (0..1_000_000).map(|at| angle(at).sin()).collect();
+        let points = spread(&x, &y);
+        let mut sectors = [0; 16];
+        for (x, y) in &points {
+            sectors[((y.atan2(*x) / std::f64::consts::TAU).rem_euclid(1.0) * 16.0) as usize % 16] += 1;
+        }
+        assert_eq!(points.len(), 4000);
+        assert!(sectors.iter().all(|count| (150..=350).contains(count)), "{sectors:?}");
+    }
+}

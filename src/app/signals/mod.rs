@@ -1,0 +1,19 @@
+//! The Signals tab: a capture of sine and cosine on the desk, from a file, and what is to be known about it. Complete
+//! without a window and without an encoder; what takes long runs as a task, and what comes late is dropped.
+
+mod act;
+mod action;
+mod family;
+pub mod forms;
+mod measurement;
+mod quantities;
+mod reading;
+mod table;
+
+pub use act::Signals;
+pub use action::{Action, Done, Read};
+pub use family::Family;
+pub use measurement::{Measurement, Origin};
+pub use quantities::{Bound, Quantity, Unit, quantities};
+pub use reading::{Example, Reading};
+pub use table::{Column, Table};

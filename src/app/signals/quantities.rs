@@ -1,0 +1,231 @@
+//! What is measured of a signal, as a list: each number with its unit, its limit and whether it is inside. Limits as
+//! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
+
+use super::Family;
+use crate::signal::analysis::{Analysis, LEAST_OCTANTS};
+use crate::signal::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
+use crate::signal::quality::Verdict;
+
+/// A number that was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// What it is, in the table of texts.
+    pub word: &'static str,
+    /// The number, in its unit.
+    pub value: f64,
+    /// Decimals that mean something.
+    pub decimals: usize,
+    /// Its unit.
+    pub unit: Unit,
+    /// The same in another unit, to be read beside it.
+    pub also: Option<(f64, usize, Unit)>,
+    /// Where it should be.
+    pub bound: Option<Bound>,
+    /// Whether it is there; `None` without a limit.
+    pub verdict: Option<Verdict>,
+}
+
+/// Units of quantities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// None.
+    One,
+    /// Volts.
+    Volts,
+    /// Millivolts.
+    Millivolts,
+    /// Percent.
+    Percent,
+    /// Electrical degrees.
+    Degrees,
+    /// Mechanical seconds of arc.
+    ArcSeconds,
+    /// Kilohertz.
+    Kilohertz,
+    /// Revolutions a minute.
+    Rpm,
+    /// Milliseconds.
+    Milliseconds,
+}
+
+/// Where a number should be, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// From the first to the second.
+    Between(f64, f64),
+    /// No further from zero than this.
+    Within(f64),
+    /// No more than this.
+    AtMost(f64),
+    /// No less than this.
+    AtLeast(f64),
+}
+
+impl Unit {
+    /// Its sign; nothing where there is none.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Unit::One => "",
+            Unit::Volts => "V",
+            Unit::Millivolts => "mV",
+            Unit::Percent => "%",
+            Unit::Degrees => "°",
+            Unit::ArcSeconds => "″",
+            Unit::Kilohertz => "kHz",
+            Unit::Rpm => "rpm",
+            Unit::Milliseconds => "ms",
+        }
+    }
+}
+
+impl Bound {
+    /// Whether a number is there; one on the limit is.
+    pub fn holds(self, value: f64) -> bool {
+        /// Rounding must not turn a value on the limit into one beyond it.
+        const SLACK: f64 = 1e-9;
+        match self {
+            Bound::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
+            Bound::Within(most) => value.abs() <= most + SLACK,
+            Bound::AtMost(most) => value <= most + SLACK,
+            Bound::AtLeast(least) => value >= least - SLACK,
+        }
+    }
+}
+
+impl Quantity {
+    fn new(word: &'static str, value: f64, decimals: usize, unit: Unit) -> Self {
+        Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }
+    }
+
+    fn also(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
+        self.also = Some((value, decimals, unit));
+        self
+    }
+
+    /// Judged by a limit beyond which the position is still right.
+    fn bounded(mut self, bound: Bound) -> Self {
+        self.bound = Some(bound);
+        self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
+        self
+    }
+
+    fn judged(mut self, verdict: Verdict) -> Self {
+        self.verdict = Some(verdict);
+        self
+    }
+}
+
+/// What an analysis measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed.
+pub fn quantities(analysis: &Analysis, family: Family, periods: u32) -> Vec<Quantity> {
+    let limits = family.limits();
+    let Analysis { ellipse, coverage, .. } = analysis;
+    let volts = |word, peak: f64, factor: f64| {
+        let (least, most) = limits.ok_v;
+        let quantity = Quantity::new(word, factor * peak, 4, Unit::Volts);
+        quantity.bounded(Bound::Between(factor * least, factor * most)).judged(limits.amplitude(peak))
+    };
+    let percent = |word, share: f64, decimals| Quantity::new(word, 100.0 * share, decimals, Unit::Percent);
+    let offset = |word, offset_v: f64| {
+        percent(word, offset_v / ellipse.amplitude_v, 2)
+            .also(1000.0 * offset_v, 1, Unit::Millivolts)
+            .bounded(Bound::Within(100.0 * limits.offset))
+    };
+    let (least, most) = coverage.vector_v;
+    let mut list = vec![
+        volts("quality.amplitude_sine", ellipse.amplitude_sine_v(), 2.0),
+        volts("quality.amplitude_cosine", ellipse.amplitude_v, 2.0),
+        volts("quality.vector_least", least, 1.0),
+        volts("quality.vector_most", most, 1.0),
+        offset("quality.offset_sine", ellipse.offset_sine_v),
+        offset("quality.offset_cosine", ellipse.offset_cosine_v),
+        Quantity::new("quality.gain", ellipse.gain_ratio, 4, Unit::One)
+            .bounded(Bound::Between(limits.gain_ratio.0, limits.gain_ratio.1)),
+        Quantity::new("quality.phase", ellipse.phase_error_deg(), 2, Unit::Degrees)
+            .bounded(Bound::Within(limits.phase_deg)),
+        percent("quality.residual", coverage.residual_rms, 2).bounded(Bound::AtMost(100.0 * limits.residual)),
+        Quantity::new("quality.octants", f64::from(coverage.octants), 0, Unit::One)
+            .bounded(Bound::AtLeast(f64::from(LEAST_OCTANTS))),
+        Quantity::new("quality.periods", coverage.periods, 2, Unit::One),
+    ];
+    if let Some(frequency_hz) = analysis.frequency_hz() {
+        list.push(
+            Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
+                .bounded(Bound::Within(BANDWIDTH_HZ / 1e3)),
+        );
+        list.extend(speed_rpm_at(periods, frequency_hz).map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
+    }
+    list.push(Quantity::new("quality.samples", analysis.samples as f64, 0, Unit::One));
+    list.extend(analysis.duration_s.map(|s| Quantity::new("quality.duration", 1e3 * s, 3, Unit::Milliseconds)));
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::signals::{Example, Measurement, Origin};
+    use crate::signal::capture::Capture;
+    use std::sync::Arc;
+
+    /// Section 7 of the reference: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°; here 1000 samples over two periods in
+    /// 20 ms.
+    fn section_7() -> Analysis {
+        let (alpha, turns) = (3.0_f64.to_radians(), 2.0 * std::f64::consts::TAU);
+        let angle = |at: i32| f64::from(at) / 999.0 * turns;
+        let capture = Capture {
+            time_s: (0..1000).map(|at| f64::from(at) / 999.0 * 0.02).collect(),
+            sine_v: (0..1000).map(|at| 0.5 * (angle(at) - alpha).sin() / 1.05 - 0.03).collect(),
+            cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos() + 0.02).collect(),
+            ..Capture::default()
+        };
+        Measurement::of(Origin::Example(Example::Healthy), Arc::new(capture)).analysis.unwrap()
+    }
+
+    #[test]
+    fn numbers_of_section_7_with_their_limits() {
+        let list = quantities(&section_7(), Family::Hiperface, 50);
+        let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
+        // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 a
+        // revolution 2 revolutions a second.
+        for (word, value, verdict) in [
+            ("quality.amplitude_cosine", 1.0, Some(Verdict::Ok)),
+            ("quality.amplitude_sine", 0.952_381, Some(Verdict::Ok)),
+            ("quality.offset_sine", -6.0, Some(Verdict::Warn)),
+            ("quality.offset_cosine", 4.0, Some(Verdict::Ok)),
+            ("quality.gain", 1.05, Some(Verdict::Ok)),
+            ("quality.phase", 3.0, Some(Verdict::Ok)),
+            ("quality.residual", 0.0, Some(Verdict::Ok)),
+            ("quality.octants", 8.0, Some(Verdict::Ok)),
+            ("quality.periods", 2.0, None),
+            ("quality.frequency", 0.1, Some(Verdict::Ok)),
+            ("quality.speed", 120.0, None),
+            ("quality.samples", 1000.0, None),
+            ("quality.duration", 20.0, None),
+        ] {
+            let own = find(word);
+            assert!((own.value - value).abs() < 2e-6, "{word}: {}", own.value);
+            assert_eq!(own.verdict, verdict, "{word}");
+        }
+        let (millivolts, _, unit) = find("quality.offset_sine").also.unwrap();
+        assert!((millivolts - -30.0).abs() < 1e-6 && unit == Unit::Millivolts);
+        // Raw vectors of section 7: 0.44595 … 0.53764 V, of which the shorter one is below 0.45 V.
+        let least = find("quality.vector_least");
+        assert!((least.value - 0.445_95).abs() < 2e-5 && least.verdict == Some(Verdict::Warn), "{least:?}");
+        assert!((find("quality.vector_most").value - 0.537_64).abs() < 2e-5);
+        let wide = quantities(&section_7(), Family::AfsAfm60, 50);
+        let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
+        assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(Bound::Between(0.4, 0.6))));
+    }
+
+    #[test]
+    fn limits_hold_up_to_their_ends() {
+        for (bound, inside, outside) in [
+            (Bound::Between(0.9, 1.1), [0.9, 1.1], [0.89, 1.11]),
+            (Bound::Within(5.0), [-5.0, 5.0], [-5.1, f64::NAN]),
+            (Bound::AtMost(2.0), [2.0, -9.0], [2.1, f64::INFINITY]),
+            (Bound::AtLeast(6.0), [6.0, 8.0], [5.0, f64::NAN]),
+        ] {
+            assert_eq!(inside.map(|value| bound.holds(value)), [true, true], "{bound:?}");
+            assert_eq!(outside.map(|value| bound.holds(value)), [false, false], "{bound:?}");
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Reading a capture, as a task: how far it is, the wish to give up, and the captures that ship with the program.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use super::{Measurement, Origin, Read, Table};
+use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Wishes};
+use crate::store::{ReadCaptureError, capture_head, read_capture};
+
+/// A capture that ships with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Example {
+    /// A signal within all limits.
+    Healthy,
+    /// One with offsets, unequal amplitudes and a phase error.
+    WithErrors,
+}
+
+impl Example {
+    /// All of them.
+    pub const ALL: [Example; 2] = [Example::Healthy, Example::WithErrors];
+
+    /// Its text in the table of texts.
+    pub fn word(self) -> &'static str {
+        match self {
+            Example::Healthy => "signals.example_healthy",
+            Example::WithErrors => "signals.example_errors",
+        }
+    }
+
+    pub(super) fn file_name(self) -> &'static str {
+        match self {
+            Example::Healthy => "healthy.csv",
+            Example::WithErrors => "offset-gain-phase.csv",
+        }
+    }
+
+    fn bytes(self) -> &'static [u8] {
+        match self {
+            Example::Healthy => include_bytes!("../../../profiles/signals/healthy.csv"),
+            Example::WithErrors => include_bytes!("../../../profiles/signals/offset-gain-phase.csv"),
+        }
+    }
+}
+
+/// A capture that is being read.
+#[derive(Debug)]
+pub struct Reading {
+    /// Which attempt.
+    pub(super) number: u32,
+    /// What is read.
+    pub origin: Origin,
+    /// The table before, for when this one is given up.
+    pub(super) settled: Option<Table>,
+    progress: Arc<Progress>,
+}
+
+/// What the task and the window both see.
+#[derive(Debug, Default)]
+pub(super) struct Progress {
+    done: AtomicU64,
+    total: AtomicU64,
+    cancel: AtomicBool,
+}
+
+impl Reading {
+    pub(super) fn new(number: u32, origin: Origin, settled: Option<Table>) -> (Self, Arc<Progress>) {
+        let progress = Arc::<Progress>::default();
+        (Reading { number, origin, settled, progress: progress.clone() }, progress)
+    }
+
+    /// How much is read, from 0 to 1; `None` where nobody knows how much there is.
+    pub fn share(&self) -> Option<f64> {
+        let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
+        (total > 0).then(|| (done as f64 / total as f64).min(1.0))
+    }
+
+    /// The wish to give up was heard.
+    pub fn is_cancelled(&self) -> bool {
+        self.progress.cancel.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn cancel(&self) {
+        self.progress.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Nobody waits for a reading that was dropped.
+impl Drop for Reading {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// Reads and measures; takes as long as the file is large.
+pub(super) fn read(origin: Origin, wishes: Wishes, progress: &Progress) -> Read {
+    let (head, result) = match &origin {
+        Origin::Example(example) => {
+            let bytes = example.bytes();
+            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &wishes))
+        }
+        Origin::File(path) => match capture_head(path) {
+            Ok(head) => (head, read_file(path, &wishes, progress)),
+            Err(error) => (Vec::new(), Err(error.into())),
+        },
+    };
+    let table = Table::of(origin, &head, wishes);
+    let result = result.map(|capture| Measurement::of(table.origin.clone(), Arc::new(capture)));
+    Read { table, result }
+}
+
+fn read_file(path: &Path, wishes: &Wishes, progress: &Progress) -> Result<Capture, ReadCaptureError> {
+    let mut tell = |done, total| {
+        progress.done.store(done, Ordering::Relaxed);
+        progress.total.store(total, Ordering::Relaxed);
+    };
+    read_capture(path, wishes, &progress.cancel, &mut tell).map(|(_, capture)| capture)
+}
+
+fn import(bytes: &[u8], wishes: &Wishes) -> Result<Capture, ReadCaptureError> {
+    let read = || -> Result<Capture, CaptureError> {
+        let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), wishes)?;
+        import.feed(bytes)?;
+        Ok(import.finish()?.1)
+    };
+    Ok(read()?)
+}

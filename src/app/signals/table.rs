@@ -1,0 +1,166 @@
+//! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
+
+use super::Origin;
+use crate::signal::capture::{Columns, Delimiter, Layout, Wishes};
+
+/// The beginning of a table, and how it is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Where it comes from.
+    pub origin: Origin,
+    /// Its first lines as text; long ones are cut.
+    pub head: Vec<String>,
+    /// What was said about it.
+    pub wishes: Wishes,
+    /// How it is read; `None` where that cannot be found out.
+    pub layout: Option<Layout>,
+    /// REFSIN and REFCOS while only one of them is chosen.
+    pub half_chosen: (Option<usize>, Option<usize>),
+}
+
+/// A column that is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Time.
+    Time,
+    /// Sine, or SIN against ground.
+    Sine,
+    /// Cosine, or COS against ground.
+    Cosine,
+    /// REFSIN against ground.
+    RefSine,
+    /// REFCOS against ground.
+    RefCosine,
+}
+
+/// Lines that are shown.
+const LINES: usize = 6;
+/// Characters of a line that are shown.
+const WIDTH: usize = 160;
+/// Most columns that are offered.
+const MOST_COLUMNS: usize = 64;
+
+impl Table {
+    /// The beginning of a table, from its first bytes.
+    pub(super) fn of(origin: Origin, head: &[u8], wishes: Wishes) -> Self {
+        let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+        let shown = |line: &[u8]| {
+            let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
+            let short: String = text.chars().take(WIDTH).collect();
+            if short.len() < text.len() { short + "…" } else { short }
+        };
+        let lines = head.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
+        let layout = Layout::detect(head, &wishes).ok();
+        Table { origin, head: lines, wishes, layout, half_chosen: (None, None) }
+    }
+
+    /// What stands between two columns.
+    pub fn delimiter(&self) -> Option<Delimiter> {
+        self.wishes.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
+    }
+
+    /// Columns that are taken.
+    pub fn columns(&self) -> Option<Columns> {
+        self.wishes.columns.or(self.layout.as_ref().map(|layout| layout.columns))
+    }
+
+    /// The column that is taken for something, from 1.
+    pub fn column(&self, column: Column) -> Option<usize> {
+        let columns = self.columns()?;
+        match column {
+            Column::Time => columns.time,
+            Column::Sine => Some(columns.sine),
+            Column::Cosine => Some(columns.cosine),
+            Column::RefSine => columns.references.map(|(sine, _)| sine).or(self.half_chosen.0),
+            Column::RefCosine => columns.references.map(|(_, cosine)| cosine).or(self.half_chosen.1),
+        }
+    }
+
+    /// How many columns can be chosen from.
+    pub fn width(&self) -> usize {
+        let delimiter = self.delimiter().map_or(',', |delimiter| char::from(delimiter.byte()));
+        let fields = |line: &String| match delimiter {
+            '\t' => line.matches('→').count() + 1,
+            delimiter => line.matches(delimiter).count() + 1,
+        };
+        let named = self.layout.as_ref().map_or(0, |layout| layout.names.len());
+        self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MOST_COLUMNS)
+    }
+
+    /// The name of a column in the table's header.
+    pub fn name(&self, column: usize) -> Option<&str> {
+        let name = self.layout.as_ref()?.names.get(column.checked_sub(1)?)?;
+        Some(name.as_str()).filter(|name| !name.is_empty())
+    }
+
+    /// Takes another column for something. False: nothing can be read differently yet, because the other reference is
+    /// missing.
+    pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
+        let mut columns = self.columns().unwrap_or(Columns::PLAIN);
+        match (column, number) {
+            (Column::Time, number) => columns.time = number,
+            (Column::Sine, Some(number)) => columns.sine = number,
+            (Column::Cosine, Some(number)) => columns.cosine = number,
+            (Column::Sine | Column::Cosine, None) => return false,
+            (Column::RefSine | Column::RefCosine, number) => {
+                let (mut sine, mut cosine) = (self.column(Column::RefSine), self.column(Column::RefCosine));
+                *(if column == Column::RefSine { &mut sine } else { &mut cosine }) = number;
+                let before = columns.references;
+                columns.references = sine.zip(cosine);
+                self.half_chosen = if columns.references.is_some() { (None, None) } else { (sine, cosine) };
+                if columns.references == before {
+                    return false;
+                }
+            }
+        }
+        self.wishes.columns = Some(columns);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::signals::Example;
+
+    fn table(text: &str) -> Table {
+        Table::of(Origin::Example(Example::Healthy), text.as_bytes(), Wishes::default())
+    }
+
+    #[test]
+    fn the_first_lines_are_shown_and_understood() {
+        let long = "x".repeat(500);
+        let table =
+            table(&format!("t (ms);SIN;COS\r\n0;0,1;0,5\r\n1;0,2;0,4\r\n{long}\r\n2;3;4\r\n3;4;5\r\n4;5;6\r\n"));
+        assert_eq!(table.head.len(), 6);
+        assert_eq!(table.head[..2], ["t (ms);SIN;COS", "0;0,1;0,5"]);
+        assert_eq!(table.head[3].chars().count(), 161);
+        assert_eq!((table.delimiter(), table.width()), (Some(Delimiter::Semicolon), 3));
+        assert_eq!(table.column(Column::Sine), Some(2));
+        assert_eq!((table.name(1), table.name(4), table.name(0)), (Some("t (ms)"), None, None));
+    }
+
+    #[test]
+    fn references_count_when_both_are_chosen() {
+        let mut table = table("a,b,c,d,e\n0,1,2,3,4\n");
+        assert!(!table.choose(Column::RefSine, Some(3)), "the other one is missing");
+        assert_eq!((table.column(Column::RefSine), table.wishes.columns), (Some(3), None));
+        assert!(table.choose(Column::RefCosine, Some(5)));
+        assert_eq!(table.columns().unwrap().references, Some((3, 5)));
+        assert!(table.choose(Column::RefSine, None), "without one of them both are not taken off");
+        assert_eq!(table.columns().unwrap().references, None);
+        assert_eq!(table.column(Column::RefCosine), Some(5));
+        assert!(table.choose(Column::Cosine, Some(4)) && table.choose(Column::Time, None));
+        let columns = table.wishes.columns.unwrap();
+        assert_eq!((columns.time, columns.sine, columns.cosine), (None, 2, 4));
+        assert!(!table.choose(Column::Sine, None));
+    }
+
+    #[test]
+    fn what_is_no_table_has_lines_and_no_layout() {
+        let table = table("no table at all");
+        assert_eq!((table.layout, table.head), (None, vec!["no table at all".to_owned()]));
+        assert_eq!(self::table("").width(), 1);
+        assert_eq!(self::table("t\tsin\tcos\n0\t1\t2\n").width(), 3);
+    }
+}

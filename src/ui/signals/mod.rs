@@ -1,0 +1,72 @@
+//! The Signals tab: its pages, each about one thing that a person wants to know of a sine and a cosine. It needs no
+//! encoder and no session.
+
+mod numbers;
+mod quality;
+mod source;
+mod table;
+
+use egui::{ScrollArea, Ui};
+
+use super::{Skin, icons};
+use crate::app::signals::Signals;
+use crate::app::{Action, Text};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::ui) enum Page {
+    /// The Lissajous figure and the numbers with their limits.
+    #[default]
+    Quality,
+}
+
+impl Page {
+    pub(super) const ALL: [Page; 1] = [Page::Quality];
+
+    pub(super) fn icon(self) -> &'static str {
+        match self {
+            Page::Quality => icons::TARGET,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Page::Quality => "page.quality",
+        }
+    }
+
+    pub(super) fn help(self) -> &'static str {
+        match self {
+            Page::Quality => "help.quality",
+        }
+    }
+}
+
+/// What is typed and does not count yet, with the reason where it cannot.
+type Draft = Option<(String, Option<Text>)>;
+
+/// What the tab remembers while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(in crate::ui) struct View {
+    /// The open page.
+    pub page: Page,
+    table: table::View,
+    periods: Draft,
+    corrected: bool,
+}
+
+/// Draws the open page.
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
+    ScrollArea::vertical().id_salt(view.page.word()).auto_shrink(false).show(ui, |ui| {
+        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
+            Page::Quality => {
+                if source::source_ui(ui, skin, signals, &mut view.table, actions) {
+                    quality::page_ui(ui, skin, signals, view, actions);
+                }
+            }
+        });
+    });
+}

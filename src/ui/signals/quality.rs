@@ -1,0 +1,169 @@
+//! Is the signal good: the Lissajous figure, what is wrong in words, and every number beside its limit.
+
+use egui::{RichText, Ui};
+
+use super::{View, numbers};
+use crate::app::signals::{Action as Signals_, Family, Measurement, Signals, forms, quantities};
+use crate::app::{Action, Text, explain};
+use crate::signal::analysis::Analysis;
+use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
+use crate::ui::widgets::{Figure, Lissajous, lissajous};
+use crate::ui::{Skin, icons};
+
+/// Periods that encoders have.
+const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
+/// Points of a fitted ellipse.
+const CURVE: usize = 180;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+    let Some(measurement) = signals.measurement() else { return };
+    split(
+        ui,
+        skin,
+        (0.44, 520.0),
+        (view, actions),
+        |ui, (view, _)| {
+            figure(ui, skin, signals, measurement, view);
+            ui.add_space(skin.space.groups);
+            verdict(ui, skin, signals, measurement);
+        },
+        |ui, (view, actions)| {
+            values(ui, skin, signals, measurement, view, actions);
+        },
+    );
+}
+
+fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement, view: &mut View) {
+    let analysed = measurement.analysis.as_ref().ok();
+    let corrected = view.corrected && analysed.is_some();
+    let aside = |ui: &mut Ui| {
+        // From right to left.
+        for (own, id) in [(true, "quality.corrected"), (false, "quality.raw")] {
+            let word = skin.say(id);
+            let button = egui::Button::selectable(corrected == own, word.as_str()).frame_when_inactive(true);
+            if name(ui.add_enabled(analysed.is_some(), button), analysed.is_some(), &word).clicked() {
+                view.corrected = own;
+            }
+        }
+    };
+    card_with(ui, skin, "quality.lissajous", aside, |ui| {
+        let limits = signals.family.limits();
+        let (least, most) = limits.ok_v;
+        let value = match analysed {
+            Some(analysis) => Text::new("quality.lissajous_value")
+                .with_number("shortest", analysis.coverage.vector_v.0, 3)
+                .with_number("longest", analysis.coverage.vector_v.1, 3)
+                .with_number("least", least, 2)
+                .with_number("most", most, 2),
+            None => Text::new("quality.lissajous_bare").with("samples", measurement.points.len()),
+        };
+        let curve = |analysis: &Analysis| {
+            let angle = |at: usize| at as f64 / CURVE as f64 * std::f64::consts::TAU;
+            let point = |at: usize| match corrected {
+                true => {
+                    (analysis.ellipse.amplitude_v * angle(at).cos(), analysis.ellipse.amplitude_v * angle(at).sin())
+                }
+                false => {
+                    let (sine, cosine) = analysis.ellipse.at(angle(at));
+                    (cosine, sine)
+                }
+            };
+            (0..=CURVE).map(point).collect()
+        };
+        let figure = Figure {
+            points: if corrected { measurement.corrected_points() } else { measurement.points.clone() },
+            curve: analysed.map(curve).unwrap_or_default(),
+            ..Figure::default()
+        };
+        let side = ui.available_width().min(440.0);
+        let lissajous_ = Lissajous {
+            figures: &[figure],
+            ok_v: limits.ok_v,
+            fault_v: limits.fault_v,
+            label: &skin.say("quality.lissajous"),
+            value: &skin.words(&value),
+        };
+        lissajous(ui, skin, &lissajous_, side);
+        paragraph(ui, skin.caption(skin.say("quality.rings")));
+    });
+}
+
+/// What is wrong, in words.
+fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement) {
+    let palette = skin.palette;
+    let line = |ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String| {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icon).color(colour));
+            paragraph(ui, words);
+        });
+    };
+    card(ui, skin, "quality.findings", |ui| {
+        if let Some(why) = measurement.refusal() {
+            line(ui, icons::X_CIRCLE, palette.bad, skin.words(&why));
+            return;
+        }
+        let findings = signals.findings();
+        if findings.is_empty() {
+            line(ui, icons::CHECK_CIRCLE, palette.good, skin.say("quality.good"));
+        }
+        for finding in &findings {
+            line(ui, icons::WARNING, palette.warn, skin.words(&explain::signal::finding(finding)));
+        }
+    });
+}
+
+fn values(
+    ui: &mut Ui,
+    skin: &Skin,
+    signals: &Signals,
+    measurement: &Measurement,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, skin, "quality.numbers", |ui| {
+        let word = skin.say("quality.family");
+        let mut family = signals.family;
+        entry(ui, skin, &word, |ui| {
+            let families = Family::ALL.map(|own| (own, skin.words(&own.words())));
+            if choice(ui, &word, &mut family, families) {
+                actions.push(Action::Signals(Signals_::SetFamily(family)));
+            }
+        });
+        periods_ui(ui, skin, signals, &mut view.periods, actions);
+        ui.add_space(skin.space.inside);
+        if let Ok(analysis) = &measurement.analysis {
+            numbers::rows_ui(ui, skin, "quality.numbers", &quantities(analysis, signals.family, signals.periods));
+        }
+    });
+}
+
+/// Signal periods in a revolution, typed or chosen.
+pub(super) fn periods_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    signals: &Signals,
+    draft: &mut super::Draft,
+    actions: &mut Vec<Action>,
+) {
+    let word = skin.say("quality.periods_per_turn");
+    entry(ui, skin, &word, |ui| {
+        settled_entry(ui, draft, &signals.periods.to_string(), 72.0, &word, |text| {
+            actions.push(Action::Signals(Signals_::SetPeriods(forms::periods(text)?)));
+            Ok(())
+        });
+        let usual = skin.say("quality.periods_usual");
+        let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
+            for periods in USUAL_PERIODS {
+                if ui.selectable_label(signals.periods == periods, periods.to_string()).clicked() {
+                    *draft = None;
+                    actions.push(Action::Signals(Signals_::SetPeriods(periods)));
+                    ui.close();
+                }
+            }
+        });
+        name(menu.response, true, &usual).on_hover_text(usual);
+    });
+    if let Some((_, Some(why))) = draft {
+        problem(ui, skin, Some(why));
+    }
+}

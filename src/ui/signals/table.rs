@@ -1,0 +1,153 @@
+//! What was found out about the table that a capture comes from, beside its first lines; each can be corrected.
+
+use egui::{ScrollArea, Ui};
+
+use super::Draft;
+use crate::app::Action;
+use crate::app::signals::{Action as Signals, Column, Table, forms};
+use crate::signal::capture::{Delimiter, TimeUnit};
+use crate::ui::controls::{button, card_with, choice, paragraph, problem, settled_entry};
+use crate::ui::{Skin, icons};
+
+/// What is remembered of the card.
+#[derive(Default)]
+pub(super) struct View {
+    /// It is shown.
+    pub(super) is_open: bool,
+    volts: Draft,
+}
+
+const COLUMNS: [(Column, &str); 5] = [
+    (Column::Time, "table.time"),
+    (Column::Sine, "table.sine"),
+    (Column::Cosine, "table.cosine"),
+    (Column::RefSine, "table.refsin"),
+    (Column::RefCosine, "table.refcos"),
+];
+const DELIMITERS: [(Delimiter, &str); 3] =
+    [(Delimiter::Comma, "table.comma"), (Delimiter::Semicolon, "table.semicolon"), (Delimiter::Tab, "table.tab")];
+const TIME_UNITS: [(TimeUnit, &str); 4] = [
+    (TimeUnit::Seconds, "s"),
+    (TimeUnit::Milliseconds, "ms"),
+    (TimeUnit::Microseconds, "µs"),
+    (TimeUnit::Nanoseconds, "ns"),
+];
+
+/// Draws the card.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, actions: &mut Vec<Action>) {
+    let mut wish = |action: Signals| actions.push(Action::Signals(action));
+    let mut again = false;
+    let aside = |ui: &mut Ui| {
+        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("table.detect")).clicked();
+    };
+    card_with(ui, skin, "table.title", aside, |ui| {
+        lines(ui, skin, table);
+        ui.add_space(skin.space.between);
+        ui.horizontal_wrapped(|ui| {
+            form(ui, skin, table, &mut wish);
+            columns(ui, skin, table, &mut wish);
+            volts(ui, skin, table, view, &mut wish);
+        });
+        if let Some((_, Some(why))) = &view.volts {
+            problem(ui, skin, Some(why));
+        }
+        if table.half_chosen != (None, None) {
+            paragraph(ui, skin.caption(skin.say("table.half_chosen")));
+        }
+    });
+    if again {
+        view.volts = None;
+        wish(Signals::Detect);
+    }
+}
+
+/// The first lines as they stand in the file.
+fn lines(ui: &mut Ui, skin: &Skin, table: &Table) {
+    let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
+    skin.sunken().show(ui, |ui| {
+        ui.set_min_width(ui.available_width().max(0.0));
+        ScrollArea::horizontal().id_salt("lines").auto_shrink([false, true]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for (number, line) in (1_u64..).zip(&table.head) {
+                let colour = if number >= first { skin.palette.text } else { skin.palette.muted };
+                let text = skin.mono(format!("{number:>2}  {line}")).size(skin.sizes.caption).color(colour);
+                ui.label(text);
+            }
+        });
+    });
+}
+
+/// A word, and something to choose beside it; they wrap together.
+fn pair<R>(ui: &mut Ui, skin: &Skin, word: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.scope(|ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = skin.space.inside;
+            ui.label(skin.label(word));
+            let own = content(ui);
+            ui.add_space(skin.space.between);
+            own
+        })
+        .inner
+    })
+    .inner
+}
+
+fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
+    let word = skin.say("table.delimiter");
+    let mut delimiter = table.delimiter();
+    pair(ui, skin, &word, |ui| {
+        let options = DELIMITERS.map(|(own, id)| (Some(own), skin.say(id)));
+        if choice(ui, &word, &mut delimiter, options) {
+            delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
+        }
+    });
+    let word = skin.say("table.decimal");
+    let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
+    pair(ui, skin, &word, |ui| {
+        let options = [(Some(false), skin.say("table.point")), (Some(true), skin.say("table.comma"))];
+        if choice(ui, &word, &mut comma, options) {
+            comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
+        }
+    });
+}
+
+fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
+    for (column, id) in COLUMNS {
+        let word = skin.say(id);
+        let mut number = table.column(column);
+        let needed = matches!(column, Column::Sine | Column::Cosine);
+        pair(ui, skin, &word, |ui| {
+            let none = (!needed).then(|| (None, skin.say("table.none")));
+            let width = table.width().max(number.unwrap_or(0));
+            let numbers = (1..=width).map(|own| match table.name(own) {
+                Some(name) => (Some(own), format!("{own}: {name}")),
+                None => (Some(own), own.to_string()),
+            });
+            if choice(ui, &word, &mut number, none.into_iter().chain(numbers)) {
+                wish(Signals::SetColumn(column, number));
+            }
+        });
+        if column == Column::Time && number.is_some() {
+            let word = skin.say("table.time_unit");
+            let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
+            pair(ui, skin, &word, |ui| {
+                let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
+                if choice(ui, &word, &mut unit, options) {
+                    unit.into_iter().for_each(|own| wish(Signals::SetTimeUnit(own)));
+                }
+            });
+        }
+    }
+}
+
+fn volts(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, wish: &mut impl FnMut(Signals)) {
+    let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
+    let shown = volts.map(|volts| skin.plain(volts)).unwrap_or_default();
+    let word = skin.say("table.volts");
+    pair(ui, skin, &word, |ui| {
+        settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
+            wish(Signals::SetVolts(forms::volts_per_unit(text)?));
+            Ok(())
+        });
+    });
+}

@@ -1,0 +1,199 @@
+//! Sine over cosine: the figure that the samples draw, with the ring in which the amplitude vector should stay.
+//!
+//! * **Size**: a square, as wide as is given.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: the place under it is told in volts, as length and as angle.
+//! * **Accessible**: an image with the label and the value given.
+//! * **Painting**: samples as dots, the fitted ellipse as a line, the good ring as a band between two lines, the limits of
+//!   a fault dashed; zero in the middle, the same scale for both axes.
+
+use egui::accesskit::Role;
+use egui::epaint::{Mesh, PathStroke};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+
+use crate::app::Text;
+use crate::ui::Skin;
+use crate::ui::widgets::series;
+
+/// What is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Lissajous<'a> {
+    /// One signal, or two to be compared.
+    pub figures: &'a [Figure],
+    /// Least and largest good length of the amplitude vector, in volts.
+    pub ok_v: (f64, f64),
+    /// Lengths outside these are a fault, in volts.
+    pub fault_v: (f64, f64),
+    /// Accessible name.
+    pub label: &'a str,
+    /// Accessible value.
+    pub value: &'a str,
+}
+
+/// One signal.
+#[derive(Clone, Debug, Default)]
+pub struct Figure {
+    /// Samples as (cosine, sine) in volts.
+    pub points: Vec<(f64, f64)>,
+    /// The fitted curve, closed, likewise.
+    pub curve: Vec<(f64, f64)>,
+    /// Which of the series' colours.
+    pub colour: usize,
+    /// Its curve is dashed.
+    pub dashed: bool,
+}
+
+/// Points of a circle.
+const CIRCLE: usize = 120;
+/// Steps of an axis that may be labelled, in volts; the finest of which there are few enough.
+const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
+
+/// The square on the screen, and volts to its edge.
+#[derive(Clone, Copy)]
+struct Place {
+    rect: Rect,
+    range_v: f64,
+}
+
+impl Place {
+    fn at(&self, (x, y): (f64, f64)) -> Pos2 {
+        let scale = |volts: f64| (volts / self.range_v).clamp(-4.0, 4.0) as f32 * self.rect.width() / 2.0;
+        self.rect.center() + Vec2::new(scale(x), -scale(y))
+    }
+
+    fn volts(&self, pos: Pos2) -> (f64, f64) {
+        let off = (pos - self.rect.center()) / (self.rect.width() / 2.0).max(1.0);
+        (f64::from(off.x) * self.range_v, f64::from(-off.y) * self.range_v)
+    }
+
+    fn circle(&self, radius_v: f64) -> Vec<Pos2> {
+        let angle = |at: usize| at as f64 / CIRCLE as f64 * std::f64::consts::TAU;
+        (0..=CIRCLE).map(|at| self.at((radius_v * angle(at).cos(), radius_v * angle(at).sin()))).collect()
+    }
+}
+
+/// Draws it.
+pub fn lissajous(ui: &mut Ui, skin: &Skin, figure: &Lissajous<'_>, side: f32) {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side.max(40.0)), Sense::hover());
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, figure.label);
+        info.current_text_value = Some(figure.value.to_owned());
+        info
+    });
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    painter.rect_filled(rect, skin.radius, skin.palette.sunken);
+    let place = Place { rect, range_v: range(figure) };
+    grid(&painter, skin, &place);
+    rings(&painter, skin, &place, figure);
+    for own in figure.figures {
+        dots(&painter, &place, own, series(skin, own.colour));
+    }
+    for own in figure.figures {
+        curve(&painter, &place, own, series(skin, own.colour));
+    }
+    if let Some(pos) = response.hover_pos() {
+        told(&painter, skin, &place, pos);
+    }
+}
+
+/// Volts from the middle to the edge: all points, and the good ring in any case.
+fn range(figure: &Lissajous<'_>) -> f64 {
+    let all = figure.figures.iter().flat_map(|own| own.points.iter().chain(&own.curve));
+    let most = all.map(|(x, y)| x.abs().max(y.abs())).filter(|volts| volts.is_finite()).fold(figure.ok_v.1, f64::max);
+    // In steps, so that a live picture does not breathe.
+    (most * 1.12 * 20.0).ceil() / 20.0
+}
+
+fn grid(painter: &Painter, skin: &Skin, place: &Place) {
+    let line = Stroke::new(1.0, skin.palette.line);
+    let step = STEPS.into_iter().find(|step| place.range_v / step < 3.0).unwrap_or(place.range_v / 2.0);
+    let font = FontId::proportional(skin.sizes.caption);
+    let muted = Color32::from(skin.palette.muted);
+    let (rect, inside) = (place.rect, skin.space.inside);
+    let count = (place.range_v / step).floor().min(4.0) as i32;
+    for number in -count..=count {
+        let volts = f64::from(number) * step;
+        let (x, y) = (place.at((volts, 0.0)).x, place.at((0.0, volts)).y);
+        painter.vline(x, rect.y_range(), line);
+        painter.hline(rect.x_range(), y, line);
+        if number != 0 {
+            let words =
+                skin.number(volts, if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) });
+            painter.text(Pos2::new(x + 2.0, rect.bottom() - inside), Align2::LEFT_BOTTOM, &words, font.clone(), muted);
+            painter.text(Pos2::new(rect.left() + inside, y - 2.0), Align2::LEFT_BOTTOM, words, font.clone(), muted);
+        }
+    }
+    let sine = format!("{} / V", skin.say("signals.sine"));
+    let cosine = format!("{} / V", skin.say("signals.cosine"));
+    // Each at the end of its own axis.
+    let (top, right) = (Pos2::new(rect.center().x + inside, rect.top() + inside), rect.right_center());
+    painter.text(top, Align2::LEFT_TOP, sine, font.clone(), muted);
+    painter.text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine, font, muted);
+}
+
+fn rings(painter: &Painter, skin: &Skin, place: &Place, figure: &Lissajous<'_>) {
+    let good = Color32::from(skin.palette.good);
+    let (inner, outer) = (place.circle(figure.ok_v.0), place.circle(figure.ok_v.1));
+    let mut band = Mesh::default();
+    for (at, (inner, outer)) in (0_u32..).zip(inner.iter().zip(&outer)) {
+        band.colored_vertex(*inner, good.gamma_multiply(0.10));
+        band.colored_vertex(*outer, good.gamma_multiply(0.10));
+        if at > 0 {
+            band.add_triangle(2 * at - 2, 2 * at - 1, 2 * at);
+            band.add_triangle(2 * at - 1, 2 * at, 2 * at + 1);
+        }
+    }
+    painter.add(Shape::mesh(band));
+    for ring in [inner, outer] {
+        painter.add(Shape::line(ring, PathStroke::new(1.0, good.gamma_multiply(0.7))));
+    }
+    let bad = Stroke::new(1.0, Color32::from(skin.palette.bad).gamma_multiply(0.8));
+    for radius in [figure.fault_v.0, figure.fault_v.1] {
+        painter.extend(Shape::dashed_line(&place.circle(radius), bad, 4.0, 4.0));
+    }
+}
+
+fn dots(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {
+    // Few points have to be seen one by one, many together.
+    let (half, strength) = match figure.points.len() {
+        0..=1000 => (1.25, 0.85),
+        1001..=4000 => (1.0, 0.6),
+        _ => (0.75, 0.45),
+    };
+    let colour = colour.gamma_multiply(strength);
+    let mut mesh = Mesh::default();
+    for point in &figure.points {
+        mesh.add_colored_rect(Rect::from_center_size(place.at(*point), Vec2::splat(2.0 * half)), colour);
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+fn curve(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {
+    let points: Vec<Pos2> = figure.curve.iter().map(|point| place.at(*point)).collect();
+    if figure.dashed {
+        painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, colour), 7.0, 4.0));
+    } else {
+        painter.add(Shape::line(points, PathStroke::new(1.5, colour)));
+    }
+}
+
+/// Where the pointer is: both voltages, length and angle.
+fn told(painter: &Painter, skin: &Skin, place: &Place, pos: Pos2) {
+    let (x, y) = place.volts(pos);
+    let muted = Stroke::new(1.0, Color32::from(skin.palette.muted).gamma_multiply(0.6));
+    painter.line_segment([place.rect.center(), pos], muted);
+    let text = Text::new("signals.lissajous_place")
+        .with_number("sine", y, 3)
+        .with_number("cosine", x, 3)
+        .with_number("length", x.hypot(y), 3)
+        .with_number("angle", y.atan2(x).to_degrees().rem_euclid(360.0), 1);
+    let font = FontId::monospace(skin.sizes.caption);
+    let words = painter.layout_no_wrap(skin.words(&text), font, skin.palette.text.into());
+    let inside = skin.space.inside;
+    let at = Pos2::new(place.rect.right() - words.size().x - inside, place.rect.top() + inside);
+    painter.rect_filled(Rect::from_min_size(at, words.size()).expand(2.0), 2.0, skin.palette.raised);
+    painter.galley(at, words, skin.palette.text.into());
+}

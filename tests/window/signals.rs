@@ -1,0 +1,233 @@
+//! The Signals tab without drawing: captures are read, corrected, refused and given up, and what is shown stays.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use encoder_studio::app::signals::{Action as Signals, Column, Example, Family, Origin};
+use encoder_studio::app::{Action, FileQuestion, Severity, Studio, Tab};
+use encoder_studio::signal::capture::{Delimiter, TimeUnit};
+use encoder_studio::signal::quality::Finding;
+
+use crate::support::{Desk, Outside};
+
+impl Desk {
+    pub(crate) fn signals(&mut self, action: Signals) {
+        self.act(Action::Signals(action));
+    }
+
+    /// Polls until nothing is read any more.
+    #[track_caller]
+    pub(crate) fn until_measured(&mut self) {
+        self.until("the capture is read", |studio| studio.signals.reading().is_none());
+    }
+
+    fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.outside.path(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    /// Opens it as the window would, and waits.
+    #[track_caller]
+    fn open_capture(&mut self, path: &std::path::Path) {
+        self.act(Action::Open(path.to_owned()));
+        self.until_measured();
+    }
+
+    #[track_caller]
+    fn problem(&self) -> &'static str {
+        self.studio.signals.problem().expect("there is a problem").id()
+    }
+}
+
+/// A circle of half a volt: a hundred samples a period, `periods` of them, 10 µs apart.
+pub(crate) fn circle(periods: usize) -> String {
+    let mut text = "time [ms];SIN;COS\n".to_owned();
+    for at in 0..=100 * periods {
+        let angle = at as f64 / 100.0 * std::f64::consts::TAU;
+        writeln!(text, "{};{};{}", 0.01 * at as f64, 0.5 * angle.sin(), 0.5 * angle.cos()).unwrap();
+    }
+    text
+}
+
+fn shown(studio: &Studio) -> Option<&Origin> {
+    studio.signals.measurement().map(|own| &own.origin)
+}
+
+#[test]
+fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
+    let mut desk = Desk::fresh("");
+    assert!(desk.studio.encoder().is_none());
+    let path = desk.file("circle.CSV", &circle(4));
+    desk.open_capture(&path);
+    assert_eq!((desk.studio.settings.tab, shown(&desk.studio)), (Tab::Signals, Some(&Origin::File(path.clone()))));
+    let measurement = desk.studio.signals.measurement().unwrap().clone();
+    let analysis = measurement.analysis.as_ref().unwrap();
+    assert!((analysis.ellipse.amplitude_v - 0.5).abs() < 1e-9);
+    // 100 steps of 10 µs are a period.
+    assert!((analysis.frequency_hz().unwrap() - 1000.0).abs() < 1e-6);
+    assert_eq!(desk.studio.signals.findings(), []);
+    desk.act(Action::AskOpen);
+    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::OpenCapture));
+    let other = desk.file("table.txt", &circle(2));
+    desk.act(Action::Typed(FileQuestion::OpenCapture, other.clone()));
+    desk.until_measured();
+    assert_eq!(shown(&desk.studio), Some(&Origin::File(other)));
+    desk.act(Action::ShowTab(Tab::Hiperface));
+    desk.act(Action::AskOpen);
+    assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
+}
+
+#[test]
+fn the_examples_are_as_good_as_their_names() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until_measured();
+    assert_eq!(desk.studio.signals.findings(), []);
+    desk.signals(Signals::Example(Example::WithErrors));
+    desk.until_measured();
+    let found = desk.studio.signals.findings();
+    for (label, wanted) in [
+        ("offset", (|own: &Finding| matches!(own, Finding::OffsetCosine(_))) as fn(&Finding) -> bool),
+        ("gain", |own| matches!(own, Finding::GainRatio(_))),
+        ("phase", |own| matches!(own, Finding::PhaseError(_))),
+        ("amplitude", |own| matches!(own, Finding::Amplitude { .. })),
+    ] {
+        assert!(found.iter().any(wanted), "{label}: {found:?}");
+    }
+    // 0.8928 V is within 0.8 … 1.2 V.
+    desk.signals(Signals::SetFamily(Family::AfsAfm60));
+    let found = desk.studio.signals.findings();
+    assert!(!found.iter().any(|own| matches!(own, Finding::Amplitude { .. })), "{found:?}");
+}
+
+#[test]
+fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until_measured();
+    let broken = circle(2).replacen("0.05;", "0.05;x", 1);
+    for (name, text, told) in [
+        ("empty.csv", "", "signal.empty"),
+        ("words.csv", "no table at all", "signal.no_numbers"),
+        ("one.csv", "1\n2\n3\n", "signal.one_column"),
+        ("broken.csv", broken.as_str(), "signal.not_a_number"),
+        ("nan.csv", "0,1,2\n1,NaN,3\n", "signal.not_finite"),
+        ("short.csv", "0,1,2\n1,2\n", "signal.short_row"),
+    ] {
+        let path = desk.file(name, text);
+        desk.open_capture(&path);
+        assert_eq!(desk.problem(), told, "{name}");
+        assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::Healthy)), "{name}");
+        let lines = text.lines().next().map(str::to_owned).into_iter().collect::<Vec<_>>();
+        assert_eq!(desk.studio.signals.table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
+    }
+    let problem = {
+        let path = desk.outside.path("broken.csv");
+        desk.open_capture(&path);
+        desk.studio.signals.problem().unwrap().terminal()
+    };
+    // The header is row 1, and 0.05 ms is the sixth sample.
+    assert!(problem.contains("row 7, column 2"), "{problem}");
+    desk.open_capture(&PathBuf::from("/nowhere/at.all.csv"));
+    assert_eq!(desk.problem(), "file.not_found");
+    assert!(desk.told(Severity::Error).contains(&"signal.empty"), "the log keeps it");
+    assert!(desk.studio.services.log.standing().is_none(), "it stands beside its cause");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until_measured();
+    assert!(desk.studio.signals.problem().is_none());
+}
+
+#[test]
+fn what_was_found_out_is_corrected_and_found_out_again() {
+    let mut desk = Desk::fresh("");
+    let path = desk.file("columns.csv", "a;b;c;d;e\n0;1;2,5;3;2,5\n1;2;2,5;4;2,5\n2;1;2,5;5;2,5\n");
+    desk.open_capture(&path);
+    let capture = |desk: &Desk| desk.studio.signals.measurement().unwrap().capture.clone();
+    assert_eq!(capture(&desk).cosine_v, [2.5, 2.5, 2.5]);
+    let table = desk.studio.signals.table().unwrap();
+    assert_eq!((table.delimiter(), table.width()), (Some(Delimiter::Semicolon), 5));
+    for (action, cosine) in [
+        (Signals::SetColumn(Column::Cosine, Some(4)), [3.0, 4.0, 5.0]),
+        (Signals::SetVolts(0.1), [0.3, 0.4, 0.5]),
+        (Signals::SetColumn(Column::RefSine, Some(3)), [0.3, 0.4, 0.5]),
+        (Signals::SetColumn(Column::RefCosine, Some(5)), [0.05, 0.15, 0.25]),
+        (Signals::SetVolts(f64::NAN), [0.05, 0.15, 0.25]),
+        (Signals::SetVolts(0.0), [0.05, 0.15, 0.25]),
+        (Signals::Detect, [2.5, 2.5, 2.5]),
+    ] {
+        desk.signals(action.clone());
+        desk.until_measured();
+        let found = capture(&desk).cosine_v.clone();
+        let near = found.iter().zip(cosine).all(|(found, wanted)| (found - wanted).abs() < 1e-12);
+        assert!(near && found.len() == 3, "{action:?}: {found:?}");
+    }
+    desk.signals(Signals::SetTimeUnit(TimeUnit::Microseconds));
+    desk.until_measured();
+    assert!((capture(&desk).time_s[2] - 2e-6).abs() < 1e-18);
+    desk.signals(Signals::SetDecimalComma(false));
+    desk.until_measured();
+    assert_eq!(desk.problem(), "signal.not_a_number");
+    desk.signals(Signals::SetDelimiter(Delimiter::Tab));
+    desk.until_measured();
+    assert_eq!(shown(&desk.studio), Some(&Origin::File(path)), "what was read last is still shown");
+    desk.signals(Signals::Detect);
+    desk.until_measured();
+    assert!(desk.studio.signals.problem().is_none());
+}
+
+#[test]
+fn data_without_an_ellipse_are_shown_and_refused_with_the_reason() {
+    let mut desk = Desk::fresh("");
+    let quarter: String = circle(1).lines().take(20).fold(String::new(), |text, line| text + line + "\n");
+    for (name, text, told) in [
+        ("constant.csv", "0,1,2\n1,1,2\n2,1,2\n3,1,2\n4,1,2\n5,1,2\n6,1,2\n".to_owned(), "signal.constant"),
+        ("few.csv", "0,1,2\n1,2,1\n".to_owned(), "signal.few_points"),
+        ("line.csv", (0..50).map(|at| format!("{at},{at},{at}\n")).collect(), "signal.line"),
+        ("quarter.csv", quarter, "signal.coverage"),
+        ("huge.csv", (0..50).map(|at| format!("{at},{}e300,{}e300\n", at % 7, at % 5)).collect(), "signal.no_signal"),
+    ] {
+        let path = desk.file(name, &text);
+        desk.open_capture(&path);
+        let measurement = desk.studio.signals.measurement().unwrap();
+        assert!(!measurement.points.is_empty() && measurement.corrected_points().is_empty(), "{name}");
+        assert_eq!(measurement.refusal().map(|why| why.id()), Some(told), "{name}");
+        assert_eq!(desk.studio.signals.findings(), [], "{name}");
+    }
+}
+
+#[test]
+fn reading_is_given_up_and_a_stale_capture_is_dropped() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until_measured();
+    let large = desk.file("large.csv", &circle(20_000));
+    desk.act(Action::Open(large.clone()));
+    assert!(desk.studio.can_stop());
+    desk.act(Action::Escape);
+    assert!(desk.studio.signals.reading().is_some_and(encoder_studio::app::signals::Reading::is_cancelled));
+    desk.until_measured();
+    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::Healthy)));
+    assert_eq!(desk.studio.signals.table().unwrap().origin, Origin::Example(Example::Healthy));
+    assert_eq!(desk.told(Severity::Note), ["signal.cancelled"]);
+    assert!(!desk.studio.can_stop());
+    // The later one counts, whichever is read sooner.
+    desk.act(Action::Open(large));
+    desk.signals(Signals::Example(Example::WithErrors));
+    desk.until_measured();
+    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+    for _ in 0..50 {
+        desk.studio.poll();
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+}
+
+#[test]
+fn periods_stay_within_what_can_be() {
+    let mut desk = Desk { studio: Outside::new("").studio(), outside: Outside::new("") };
+    for (wanted, taken) in [(0, 1), (512, 512), (u32::MAX, 1_000_000)] {
+        desk.signals(Signals::SetPeriods(wanted));
+        assert_eq!(desk.studio.signals.periods, taken);
+    }
+}

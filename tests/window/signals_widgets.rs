@@ -1,0 +1,129 @@
+//! The Signals tab's real widgets, by their accessible labels.
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::signals::{Action as Signals, Example};
+use encoder_studio::app::{Action, Language, Tab, Theme};
+
+use crate::screen::Screen;
+use crate::support::{HANGING, Outside};
+
+pub(crate) const PAGES: [&str; 1] = ["page.quality"];
+const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
+
+impl Screen {
+    fn signals(&mut self, action: Signals) {
+        self.act(Action::Signals(action));
+        self.until("it is read", |studio| studio.signals.reading().is_none());
+    }
+
+    #[track_caller]
+    fn look_at_signals(&mut self) {
+        for language in [Language::English, Language::German] {
+            for theme in [Theme::Dark, Theme::Light] {
+                self.act(Action::SetLanguage(language));
+                self.act(Action::SetTheme(theme));
+                for page in PAGES {
+                    self.click(page);
+                    self.check_language();
+                }
+            }
+        }
+        self.act(Action::SetLanguage(Language::English));
+    }
+}
+
+#[test]
+fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
+    for size in SIZES {
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        screen.act(Action::ShowTab(Tab::Signals));
+        screen.look_at_signals();
+        assert!(screen.shows(&screen.say("signals.nothing")));
+        assert!(!screen.shows(&screen.say("shell.empty")), "it needs no session");
+        for example in Example::ALL {
+            screen.signals(Signals::Example(example));
+            screen.click("signals.table");
+            screen.look_at_signals();
+            screen.click("signals.table");
+        }
+        let path = screen.outside.path("straight-line.csv");
+        std::fs::write(&path, "0,1,1\n1,2,2\n2,3,3\n3,4,4\n4,5,5\n5,6,6\n6,7,7\n").unwrap();
+        screen.signals(Signals::Open(path.clone()));
+        screen.look_at_signals();
+        std::fs::write(&path, "0,1,1\n1,2,?\n").unwrap();
+        screen.signals(Signals::Open(path));
+        screen.look_at_signals();
+        assert!(screen.shows("row 2, column 3"));
+    }
+}
+
+#[test]
+fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
+    let mut screen = Screen::begun(SIZES[0]);
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num6);
+    screen.steps();
+    assert_eq!(screen.studio().settings.tab, Tab::Signals);
+    assert!(!screen.has_button("page.memory") && screen.has_button("page.quality"));
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
+    screen.steps();
+    assert!(screen.has_button("page.memory") && !screen.has_button("page.quality"));
+    screen.click("tab.signals");
+    screen.click("signals.example_errors");
+    screen.until("it is read", |studio| studio.signals.measurement().is_some());
+    assert!(screen.shows("outside 0.9 … 1.1 V"));
+    // 2 · 0.5 / 1.12 V and 40 mV of 0.5 V, as the example was made.
+    assert!(screen.shows("0.8928 V") && screen.shows("8.00 %"));
+    assert!(screen.harness.query_all_by_label(&screen.say("quality.outside")).count() >= 6);
+    screen.key(Key::F1);
+    assert!(screen.shows(&screen.say("help.quality")));
+}
+
+#[test]
+fn the_figure_tells_its_value_and_is_shown_corrected() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    screen.act(Action::ShowTab(Tab::Signals));
+    screen.signals(Signals::Example(Example::WithErrors));
+    let value = |screen: &Screen| {
+        let label = screen.say("quality.lissajous");
+        let image = screen
+            .harness
+            .query_all_by_role_and_label(egui::Role::Image, &label)
+            .find_map(|node| node.accesskit_node().value())
+            .unwrap_or_default();
+        image.to_owned()
+    };
+    assert_eq!(value(&screen), "Amplitude vector 0.415 … 0.558 V, good from 0.45 to 0.55 V");
+    screen.click("quality.corrected");
+    screen.act(Action::SetLanguage(Language::German));
+    assert!(value(&screen).contains("0,415 … 0,558 V"), "{}", value(&screen));
+}
+
+#[test]
+fn periods_are_typed_and_refused_in_words() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    screen.act(Action::ShowTab(Tab::Signals));
+    screen.signals(Signals::Example(Example::Healthy));
+    let label = screen.say("quality.periods_per_turn");
+    let type_in = |screen: &mut Screen, text: &str| {
+        let entry = |screen: &Screen| {
+            let entries = screen.harness.query_all_by_role_and_label(egui::Role::TextInput, &label);
+            entries.last().unwrap().focus();
+        };
+        entry(screen);
+        screen.steps();
+        screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        screen.steps();
+        screen.harness.event(egui::Event::Text(text.to_owned()));
+        screen.steps();
+        screen.key(Key::Enter);
+    };
+    type_in(&mut screen, "512");
+    assert_eq!(screen.studio().signals.periods, 512);
+    type_in(&mut screen, "0");
+    assert_eq!(screen.studio().signals.periods, 512);
+    assert!(screen.shows("Periods: 0 is not possible."));
+    type_in(&mut screen, "64");
+    assert_eq!(screen.studio().signals.periods, 64);
+    assert!(!screen.shows("is not possible"));
+}
