@@ -231,3 +231,20 @@ fn periods_stay_within_what_can_be() {
         assert_eq!(desk.studio.signals.periods, taken);
     }
 }
+
+#[test]
+fn a_capture_is_put_aside_and_stays_while_others_come() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Keep);
+    assert!(desk.studio.signals.comparison().is_none(), "there is nothing to keep");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until_measured();
+    desk.signals(Signals::Keep);
+    desk.signals(Signals::Example(Example::WithErrors));
+    desk.until_measured();
+    let kept = |studio: &Studio| studio.signals.comparison().map(|own| own.origin.clone());
+    assert_eq!(kept(&desk.studio), Some(Origin::Example(Example::Healthy)));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+    desk.signals(Signals::DropComparison);
+    assert_eq!(kept(&desk.studio), None);
+}

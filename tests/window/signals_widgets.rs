@@ -8,7 +8,7 @@ use encoder_studio::app::{Action, Language, Tab, Theme};
 use crate::screen::Screen;
 use crate::support::{HANGING, Outside};
 
-pub(crate) const PAGES: [&str; 1] = ["page.quality"];
+pub(crate) const PAGES: [&str; 2] = ["page.quality", "page.error"];
 const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
 
 impl Screen {
@@ -126,4 +126,34 @@ fn periods_are_typed_and_refused_in_words() {
     type_in(&mut screen, "64");
     assert_eq!(screen.studio().signals.periods, 64);
     assert!(!screen.shows("is not possible"));
+}
+
+#[test]
+fn a_capture_is_kept_and_compared_in_two_columns() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    screen.act(Action::ShowTab(Tab::Signals));
+    screen.signals(Signals::Example(Example::WithErrors));
+    screen.click("compare.keep");
+    assert!(!screen.is_enabled("compare.keep"), "it would be compared with itself");
+    screen.signals(Signals::Example(Example::Healthy));
+    screen.look_at_signals();
+    screen.click("page.quality");
+    assert!(screen.shows("Compared with offset-gain-phase.csv"));
+    // 1.0020 V − 0.8928 V, and 0.40 % − 8.00 %.
+    assert!(screen.shows("+0.1092") && screen.shows("-7.60"));
+    screen.click("page.error");
+    assert!(screen.shows(&screen.say("error.kept_raw")));
+    screen.click("compare.drop");
+    assert!(screen.studio().signals.comparison().is_none());
+    assert!(!screen.shows(&screen.say("error.kept_raw")));
+}
+
+#[test]
+fn a_pair_of_voltages_is_looked_up_both_ways() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    screen.act(Action::ShowTab(Tab::Signals));
+    screen.signals(Signals::Example(Example::Healthy));
+    screen.click("page.error");
+    // Section 3: 7.93e-5 rad with 32 intervals, 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
+    assert!(screen.shows("0.00454°") && screen.shows("16.27") && screen.shows("30.00073°"));
 }

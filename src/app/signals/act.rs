@@ -18,6 +18,7 @@ pub struct Signals {
     /// Signal periods in a revolution.
     pub periods: u32,
     measurement: Option<Arc<Measurement>>,
+    comparison: Option<Arc<Measurement>>,
     table: Option<Table>,
     problem: Option<Text>,
     reading: Option<Reading>,
@@ -30,6 +31,7 @@ impl Default for Signals {
             family: Family::default(),
             periods: 1024,
             measurement: None,
+            comparison: None,
             table: None,
             problem: None,
             reading: None,
@@ -42,6 +44,11 @@ impl Signals {
     /// The capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
+    }
+
+    /// The capture that it is compared with.
+    pub fn comparison(&self) -> Option<&Arc<Measurement>> {
+        self.comparison.as_ref()
     }
 
     /// The table that was read last, whether it could be or not.
@@ -100,6 +107,8 @@ impl Signals {
             }
             Action::Cancel => self.stop(),
             Action::SetFamily(family) => self.family = family,
+            Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
+            Action::DropComparison => self.comparison = None,
             Action::SetPeriods(periods) => self.periods = periods.clamp(1, forms::MOST_PERIODS),
         }
     }

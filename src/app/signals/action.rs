@@ -31,6 +31,10 @@ pub enum Action {
     SetFamily(Family),
     /// Signal periods in one revolution, at least 1.
     SetPeriods(u32),
+    /// Put the capture that is shown aside, to be compared with those that come.
+    Keep,
+    /// Compare no longer.
+    DropComparison,
 }
 
 /// What tasks come back with.

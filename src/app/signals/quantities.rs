@@ -159,6 +159,22 @@ pub fn quantities(analysis: &Analysis, family: Family, periods: u32) -> Vec<Quan
     list
 }
 
+/// The position error inside a period, before and after the correction; `periods` a revolution turn electrical degrees
+/// into mechanical seconds of arc.
+pub fn error_quantities(analysis: &Analysis, periods: u32) -> Vec<Quantity> {
+    /// Seconds of arc in an electrical degree of one period a revolution.
+    const ARC_SECONDS: f64 = 3600.0;
+    let periods = f64::from(periods.max(1));
+    let peak_to_peak = |word, degrees: f64| {
+        Quantity::new(word, degrees, 3, Unit::Degrees).also(degrees * ARC_SECONDS / periods, 2, Unit::ArcSeconds)
+    };
+    vec![
+        peak_to_peak("error.raw_pp", analysis.error.raw_pp_deg()),
+        peak_to_peak("error.corrected_pp", analysis.error.corrected_pp_deg),
+        Quantity::new("error.period", ARC_SECONDS * 360.0 / periods, 2, Unit::ArcSeconds),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -214,6 +230,24 @@ mod tests {
         let wide = quantities(&section_7(), Family::AfsAfm60, 50);
         let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(Bound::Between(0.4, 0.6))));
+    }
+
+    /// Section 6: a sine offset of 1 % is ±0.5730°, 1.1459° peak to peak, 4.029″ at 1024 periods.
+    #[test]
+    fn the_error_of_section_6_in_seconds_of_arc() {
+        let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
+        let capture = Capture {
+            sine_v: (0..1000).map(|at| 0.5 * angle(at).sin() + 0.005).collect(),
+            cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
+            ..Capture::default()
+        };
+        let analysis = Measurement::of(Origin::Example(Example::Healthy), Arc::new(capture)).analysis.unwrap();
+        let list = error_quantities(&analysis, 1024);
+        assert!((list[0].value - 1.1459).abs() < 1e-3 && list[0].unit == Unit::Degrees, "{:?}", list[0]);
+        let (arc_seconds, _, unit) = list[0].also.unwrap();
+        assert!((arc_seconds - 4.029).abs() < 4e-3 && unit == Unit::ArcSeconds, "{:?}", list[0]);
+        assert!(list[1].value < 1e-3, "{:?}", list[1]);
+        assert_eq!((list[2].value, list[2].unit), (1265.625, Unit::ArcSeconds));
     }
 
     #[test]

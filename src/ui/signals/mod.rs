@@ -1,7 +1,9 @@
 //! The Signals tab: its pages, each about one thing that a person wants to know of a sine and a cosine. It needs no
 //! encoder and no session.
 
+mod error;
 mod numbers;
+mod octant;
 mod quality;
 mod source;
 mod table;
@@ -18,26 +20,31 @@ pub(in crate::ui) enum Page {
     /// The Lissajous figure and the numbers with their limits.
     #[default]
     Quality,
+    /// The position error inside a period.
+    Error,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 1] = [Page::Quality];
+    pub(super) const ALL: [Page; 2] = [Page::Quality, Page::Error];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
             Page::Quality => icons::TARGET,
+            Page::Error => icons::CHART_LINE,
         }
     }
 
     pub(super) fn word(self) -> &'static str {
         match self {
             Page::Quality => "page.quality",
+            Page::Error => "page.error",
         }
     }
 
     pub(super) fn help(self) -> &'static str {
         match self {
             Page::Quality => "help.quality",
+            Page::Error => "help.error",
         }
     }
 }
@@ -53,6 +60,7 @@ pub(in crate::ui) struct View {
     table: table::View,
     periods: Draft,
     corrected: bool,
+    octant: octant::View,
 }
 
 /// Draws the open page.
@@ -65,6 +73,11 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
             Page::Quality => {
                 if source::source_ui(ui, skin, signals, &mut view.table, actions) {
                     quality::page_ui(ui, skin, signals, view, actions);
+                }
+            }
+            Page::Error => {
+                if source::source_ui(ui, skin, signals, &mut view.table, actions) {
+                    error::page_ui(ui, skin, signals, view, actions);
                 }
             }
         });

@@ -1,4 +1,5 @@
-//! Numbers in rows: what each is, its value, its limit, and a mark whether it is inside.
+//! Numbers in rows: what each is, its value, that of the capture it is compared with, its limit, and a mark whether it is
+//! inside.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,24 +9,50 @@ use crate::ui::{Skin, icons};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.
 const WIDE: f32 = 390.0;
+/// What the column of limits takes of it.
+const LIMITS: f32 = 110.0;
 
-/// Draws the rows.
-pub(super) fn rows_ui(ui: &mut Ui, skin: &Skin, name: &str, quantities: &[Quantity]) {
-    let wide = ui.available_width() >= WIDE;
+/// Draws the rows; with a second list also its values, and how far the first is from them.
+pub(super) fn rows_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    name: &'static str,
+    quantities: &[Quantity],
+    compared: Option<&[Quantity]>,
+) {
+    let bounded = quantities.iter().any(|quantity| quantity.bound.is_some());
+    let wide = ui.available_width() >= if bounded { WIDE } else { WIDE - LIMITS } && compared.is_none();
     let between = if wide { skin.space.groups } else { skin.space.between };
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
-        egui::Grid::new(name).num_columns(4).spacing([between, skin.space.inside]).show(ui, |ui| {
+        egui::Grid::new(name).spacing([between, skin.space.inside]).show(ui, |ui| {
+            if compared.is_some() {
+                for id in ["", "compare.now", "compare.kept", "compare.difference"] {
+                    ui.label(if id.is_empty() { RichText::new("") } else { skin.caption(skin.say(id)) });
+                }
+                ui.end_row();
+            }
             for quantity in quantities {
-                row(ui, skin, quantity, wide);
+                ui.label(skin.label(skin.say(quantity.word)));
+                value(ui, skin, quantity, wide);
+                if let Some(compared) = compared {
+                    let other = compared.iter().find(|other| other.word == quantity.word);
+                    comparison(ui, skin, quantity, other);
+                } else {
+                    let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit));
+                    ui.label(skin.caption(words.unwrap_or_default()));
+                }
+                if let Some(verdict) = quantity.verdict {
+                    let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit));
+                    mark(ui, skin, verdict, &words.unwrap_or_default());
+                }
                 ui.end_row();
             }
         });
     });
 }
 
-fn row(ui: &mut Ui, skin: &Skin, quantity: &Quantity, wide: bool) {
-    ui.label(skin.label(skin.say(quantity.word)));
+fn value(ui: &mut Ui, skin: &Skin, quantity: &Quantity, wide: bool) {
     ui.horizontal(|ui| {
         let value = with_unit(skin, quantity.value, quantity.decimals, quantity.unit);
         let response = ui.add(egui::Label::new(skin.mono(value)).selectable(true));
@@ -38,23 +65,26 @@ fn row(ui: &mut Ui, skin: &Skin, quantity: &Quantity, wide: bool) {
             None => {}
         }
     });
-    match quantity.bound {
-        Some(bound) => ui.label(skin.caption(bound_words(skin, bound, quantity.unit))),
-        None => ui.label(""),
+}
+
+fn comparison(ui: &mut Ui, skin: &Skin, quantity: &Quantity, other: Option<&Quantity>) {
+    let Some(other) = other else {
+        ui.label("–");
+        ui.label("");
+        return;
     };
-    if let Some(verdict) = quantity.verdict {
-        mark(ui, skin, verdict);
-    }
+    let number = |value: f64| skin.mono(skin.number(value, quantity.decimals));
+    ui.label(number(other.value).color(skin.palette.muted));
+    // What is shown as zero has no sign.
+    let scale = 10_f64.powi(quantity.decimals as i32);
+    let difference = ((quantity.value - other.value) * scale).round() / scale + 0.0;
+    let sign = if difference > 0.0 { "+" } else { "" };
+    ui.label(skin.mono(format!("{sign}{}", skin.number(difference, quantity.decimals))));
 }
 
 /// A number with its unit.
 pub(super) fn with_unit(skin: &Skin, value: f64, decimals: usize, unit: Unit) -> String {
-    let number = skin.number(value, decimals);
-    match unit.sign() {
-        "" => number,
-        sign @ ("°" | "″") => format!("{number}{sign}"),
-        sign => format!("{number} {sign}"),
-    }
+    unit_behind(skin.number(value, decimals), unit)
 }
 
 /// Where a number should be.
@@ -66,6 +96,10 @@ fn bound_words(skin: &Skin, bound: Bound, unit: Unit) -> String {
         Bound::AtMost(most) => format!("≤ {}", plain(most)),
         Bound::AtLeast(least) => format!("≥ {}", plain(least)),
     };
+    unit_behind(words, unit)
+}
+
+fn unit_behind(words: String, unit: Unit) -> String {
     match unit.sign() {
         "" => words,
         sign @ ("°" | "″") => format!("{words}{sign}"),
@@ -73,8 +107,8 @@ fn bound_words(skin: &Skin, bound: Bound, unit: Unit) -> String {
     }
 }
 
-/// An icon in its colour, which says its word to a screen reader and under the pointer.
-pub(super) fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict) {
+/// An icon in its colour, which says its word to a screen reader, and with the limit under the pointer.
+fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict, limit: &str) {
     let palette = skin.palette;
     let (icon, colour, id) = match verdict {
         Verdict::Ok => (icons::CHECK_CIRCLE, palette.good, "quality.inside"),
@@ -84,5 +118,5 @@ pub(super) fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict) {
     let word = skin.say(id);
     let response = ui.label(RichText::new(icon).color(colour));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &word));
-    response.on_hover_text(word);
+    response.on_hover_text(format!("{word}: {limit}"));
 }

@@ -57,27 +57,12 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement
                 .with_number("most", most, 2),
             None => Text::new("quality.lissajous_bare").with("samples", measurement.points.len()),
         };
-        let curve = |analysis: &Analysis| {
-            let angle = |at: usize| at as f64 / CURVE as f64 * std::f64::consts::TAU;
-            let point = |at: usize| match corrected {
-                true => {
-                    (analysis.ellipse.amplitude_v * angle(at).cos(), analysis.ellipse.amplitude_v * angle(at).sin())
-                }
-                false => {
-                    let (sine, cosine) = analysis.ellipse.at(angle(at));
-                    (cosine, sine)
-                }
-            };
-            (0..=CURVE).map(point).collect()
-        };
-        let figure = Figure {
-            points: if corrected { measurement.corrected_points() } else { measurement.points.clone() },
-            curve: analysed.map(curve).unwrap_or_default(),
-            ..Figure::default()
-        };
+        let compared = signals.comparison().map(|own| figure_of(own, corrected, (1, true)));
+        let figures: Vec<Figure> =
+            compared.into_iter().chain([figure_of(measurement, corrected, (0, false))]).collect();
         let side = ui.available_width().min(440.0);
         let lissajous_ = Lissajous {
-            figures: &[figure],
+            figures: &figures,
             ok_v: limits.ok_v,
             fault_v: limits.fault_v,
             label: &skin.say("quality.lissajous"),
@@ -88,26 +73,55 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement
     });
 }
 
+fn figure_of(measurement: &Measurement, corrected: bool, (colour, dashed): (usize, bool)) -> Figure {
+    let curve = |analysis: &Analysis| {
+        let angle = |at: usize| at as f64 / CURVE as f64 * std::f64::consts::TAU;
+        let point = |at: usize| match corrected {
+            true => (analysis.ellipse.amplitude_v * angle(at).cos(), analysis.ellipse.amplitude_v * angle(at).sin()),
+            false => {
+                let (sine, cosine) = analysis.ellipse.at(angle(at));
+                (cosine, sine)
+            }
+        };
+        (0..=CURVE).map(point).collect()
+    };
+    Figure {
+        points: if corrected { measurement.corrected_points() } else { measurement.points.clone() },
+        curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(),
+        colour,
+        dashed,
+    }
+}
+
+/// Why there is nothing to be said about a capture.
+pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Measurement) {
+    let Some(why) = measurement.refusal() else { return };
+    card(ui, skin, "quality.findings", |ui| {
+        finding(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
+    });
+}
+
+fn finding(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, words);
+    });
+}
+
 /// What is wrong, in words.
 fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement) {
+    if measurement.analysis.is_err() {
+        refused_ui(ui, skin, measurement);
+        return;
+    }
     let palette = skin.palette;
-    let line = |ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String| {
-        ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, words);
-        });
-    };
     card(ui, skin, "quality.findings", |ui| {
-        if let Some(why) = measurement.refusal() {
-            line(ui, icons::X_CIRCLE, palette.bad, skin.words(&why));
-            return;
-        }
         let findings = signals.findings();
         if findings.is_empty() {
-            line(ui, icons::CHECK_CIRCLE, palette.good, skin.say("quality.good"));
+            finding(ui, icons::CHECK_CIRCLE, palette.good, skin.say("quality.good"));
         }
-        for finding in &findings {
-            line(ui, icons::WARNING, palette.warn, skin.words(&explain::signal::finding(finding)));
+        for own in &findings {
+            finding(ui, icons::WARNING, palette.warn, skin.words(&explain::signal::finding(own)));
         }
     });
 }
@@ -132,7 +146,9 @@ fn values(
         periods_ui(ui, skin, signals, &mut view.periods, actions);
         ui.add_space(skin.space.inside);
         if let Ok(analysis) = &measurement.analysis {
-            numbers::rows_ui(ui, skin, "quality.numbers", &quantities(analysis, signals.family, signals.periods));
+            let of = |own: &Analysis| quantities(own, signals.family, signals.periods);
+            let others = signals.comparison().and_then(|own| own.analysis.as_ref().ok()).map(of);
+            numbers::rows_ui(ui, skin, "quality.numbers", &of(analysis), others.as_deref());
         }
     });
 }

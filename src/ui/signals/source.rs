@@ -5,7 +5,8 @@ use egui::{RichText, Ui};
 use super::table;
 use crate::app::signals::{Action as Signals_, Example, Origin, Signals};
 use crate::app::{Action, Text};
-use crate::ui::controls::{badge, button, enabled_button, fill, name, paragraph, spinner};
+use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
+use crate::ui::widgets::series;
 use crate::ui::{Skin, icons};
 
 /// Draws it. True: there is a capture to be shown below.
@@ -90,12 +91,39 @@ fn present(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut table::View, 
                 actions.push(Action::AskOpen);
             }
             examples_menu(ui, skin, actions);
+            keep_ui(ui, skin, signals, actions);
             let word = skin.say("signals.table");
             let toggle = egui::Button::selectable(view.is_open, format!("{}  {word}", icons::TABLE));
             if name(ui.add(toggle.frame_when_inactive(true)), true, &word).clicked() {
                 view.is_open = !view.is_open;
             }
         });
+        compared(ui, skin, signals, actions);
+    });
+}
+
+/// Putting the capture aside, and what is put aside.
+fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
+    let word = skin.say("compare.keep");
+    let same = signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b));
+    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(skin.say("compare.keep_hint")).clicked() {
+        actions.push(Action::Signals(Signals_::Keep));
+    }
+}
+
+/// What the capture is compared with.
+fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
+    let Some(kept) = signals.comparison() else { return };
+    ui.horizontal(|ui| {
+        let text = Text::new("compare.with").with("name", kept.origin.name());
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());
+        let ends = [rect.left_center(), rect.right_center()];
+        let stroke = egui::Stroke::new(2.0, series(skin, 1));
+        ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
+        ui.add(egui::Label::new(skin.label(skin.words(&text))).truncate());
+        if icon_button(ui, true, icons::X, &skin.say("compare.drop")).clicked() {
+            actions.push(Action::Signals(Signals_::DropComparison));
+        }
     });
 }
 

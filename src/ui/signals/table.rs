@@ -6,7 +6,7 @@ use super::Draft;
 use crate::app::Action;
 use crate::app::signals::{Action as Signals, Column, Table, forms};
 use crate::signal::capture::{Delimiter, TimeUnit};
-use crate::ui::controls::{button, card_with, choice, paragraph, problem, settled_entry};
+use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Skin, icons};
 
 /// What is remembered of the card.
@@ -43,11 +43,16 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
     card_with(ui, skin, "table.title", aside, |ui| {
         lines(ui, skin, table);
         ui.add_space(skin.space.between);
-        ui.horizontal_wrapped(|ui| {
-            form(ui, skin, table, &mut wish);
-            columns(ui, skin, table, &mut wish);
-            volts(ui, skin, table, view, &mut wish);
-        });
+        two_columns(
+            ui,
+            skin,
+            (&mut *view, &mut wish),
+            |ui, (_, wish)| columns(ui, skin, table, *wish),
+            |ui, (view, wish)| {
+                form(ui, skin, table, *wish);
+                volts(ui, skin, table, view, *wish);
+            },
+        );
         if let Some((_, Some(why))) = &view.volts {
             problem(ui, skin, Some(why));
         }
@@ -77,25 +82,10 @@ fn lines(ui: &mut Ui, skin: &Skin, table: &Table) {
     });
 }
 
-/// A word, and something to choose beside it; they wrap together.
-fn pair<R>(ui: &mut Ui, skin: &Skin, word: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.scope(|ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = skin.space.inside;
-            ui.label(skin.label(word));
-            let own = content(ui);
-            ui.add_space(skin.space.between);
-            own
-        })
-        .inner
-    })
-    .inner
-}
-
 fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
     let word = skin.say("table.delimiter");
     let mut delimiter = table.delimiter();
-    pair(ui, skin, &word, |ui| {
+    entry(ui, skin, &word, |ui| {
         let options = DELIMITERS.map(|(own, id)| (Some(own), skin.say(id)));
         if choice(ui, &word, &mut delimiter, options) {
             delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
@@ -103,7 +93,7 @@ fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals))
     });
     let word = skin.say("table.decimal");
     let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
-    pair(ui, skin, &word, |ui| {
+    entry(ui, skin, &word, |ui| {
         let options = [(Some(false), skin.say("table.point")), (Some(true), skin.say("table.comma"))];
         if choice(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
@@ -116,7 +106,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
         let word = skin.say(id);
         let mut number = table.column(column);
         let needed = matches!(column, Column::Sine | Column::Cosine);
-        pair(ui, skin, &word, |ui| {
+        entry(ui, skin, &word, |ui| {
             let none = (!needed).then(|| (None, skin.say("table.none")));
             let width = table.width().max(number.unwrap_or(0));
             let numbers = (1..=width).map(|own| match table.name(own) {
@@ -130,7 +120,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
         if column == Column::Time && number.is_some() {
             let word = skin.say("table.time_unit");
             let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
-            pair(ui, skin, &word, |ui| {
+            entry(ui, skin, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
                 if choice(ui, &word, &mut unit, options) {
                     unit.into_iter().for_each(|own| wish(Signals::SetTimeUnit(own)));
@@ -144,7 +134,7 @@ fn volts(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, wish: &mut im
     let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
     let shown = volts.map(|volts| skin.plain(volts)).unwrap_or_default();
     let word = skin.say("table.volts");
-    pair(ui, skin, &word, |ui| {
+    entry(ui, skin, &word, |ui| {
         settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             wish(Signals::SetVolts(forms::volts_per_unit(text)?));
             Ok(())

@@ -191,7 +191,7 @@ fn told(painter: &Painter, skin: &Skin, place: &Place, pos: Pos2) {
         .with_number("length", x.hypot(y), 3)
         .with_number("angle", y.atan2(x).to_degrees().rem_euclid(360.0), 1);
     let font = FontId::monospace(skin.sizes.caption);
-    let words = painter.layout_no_wrap(skin.words(&text), font, skin.palette.text.into());
+    let words = painter.layout(skin.words(&text), font, skin.palette.text.into(), f32::INFINITY);
     let inside = skin.space.inside;
     let at = Pos2::new(place.rect.right() - words.size().x - inside, place.rect.top() + inside);
     painter.rect_filled(Rect::from_min_size(at, words.size()).expand(2.0), 2.0, skin.palette.raised);

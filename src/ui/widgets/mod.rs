@@ -1,6 +1,7 @@
 //! Widgets that egui does not have. Each draws what it is given, keeps nothing but its own selection, and says what the
 //! user wants; none knows a device. They share how the keyboard's place and a series' colour look.
 
+mod chart;
 mod field_map;
 mod hex_editor;
 mod lissajous;
@@ -10,6 +11,7 @@ use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
 
 use super::Skin;
 
+pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use lissajous::{Figure, Lissajous, lissajous};
@@ -22,7 +24,7 @@ fn focus_ring(painter: &Painter, skin: &Skin, rect: Rect, corners: impl Into<Cor
 }
 
 /// The colour of a series; they begin again after the eighth.
-fn series(skin: &Skin, number: usize) -> Color32 {
+pub(super) fn series(skin: &Skin, number: usize) -> Color32 {
     let colours = &skin.palette.series;
     colours.iter().cycle().nth(number % colours.len()).copied().map_or(skin.palette.muted.into(), Color32::from)
 }

@@ -1,0 +1,105 @@
+//! The angle inside a period by the octant table of a drive and exactly, and how far they are apart. SICK 8010701,
+//! interpolation; section 3 of the project's sine/cosine reference.
+
+use std::sync::LazyLock;
+
+use super::forms;
+use crate::app::Text;
+use crate::signal::arctan::{self, DEGREES, OctantTable, Phase};
+
+/// Sizes of tables that are told about.
+pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
+
+/// How good a table is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableError {
+    /// Its intervals in one octant.
+    pub intervals: usize,
+    /// Largest error in electrical degrees.
+    pub largest_deg: f64,
+    /// The error is at most one part of so many of a period.
+    pub parts: f64,
+    /// As bits of a period.
+    pub bits: f64,
+}
+
+/// One pair of voltages, both ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interpolated {
+    /// By the arctangent.
+    pub exact: Phase,
+    /// By the table.
+    pub table: Phase,
+    /// Table minus exact, in electrical degrees, within ±180.
+    pub difference_deg: f64,
+}
+
+/// How good the usual tables are.
+pub fn table_errors() -> &'static [TableError] {
+    static ERRORS: LazyLock<Vec<TableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
+    &ERRORS
+}
+
+/// Looks between all nodes of a table, at places of which one is as good as where the error is largest.
+fn table_error(intervals: usize) -> TableError {
+    const PLACES: usize = 64;
+    let table = OctantTable::new(intervals);
+    let error = |place: usize| {
+        let t = place as f64 / (intervals * PLACES) as f64;
+        let both = table.phase(t, 1.0).zip(arctan::exact(t, 1.0));
+        both.map_or(0.0, |(table, exact)| (table.degrees() - exact.degrees()).abs())
+    };
+    let largest_deg = (0..=intervals * PLACES).map(error).fold(0.0, f64::max);
+    let parts = DEGREES / largest_deg;
+    TableError { intervals, largest_deg, parts, bits: parts.log2() }
+}
+
+/// A pair of voltages as typed, free of offset, by a table of so many intervals.
+///
+/// # Errors
+/// In words: an entry is no number, or both are zero.
+pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
+    let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
+    let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
+    let (exact, table) = both.ok_or_else(|| Text::new("octant.no_signal"))?;
+    let apart = table.degrees() - exact.degrees();
+    let difference_deg = apart - DEGREES * (apart / DEGREES).round();
+    Ok(Interpolated { exact, table, difference_deg })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tables of section 3: intervals, largest error in radians, parts of a period.
+    #[test]
+    fn tables_of_section_3() {
+        let expected =
+            [(16, 3.17e-4, 19_830.0), (32, 7.93e-5, 79_255.0), (64, 1.98e-5, 317_064.0), (128, 4.96e-6, 1_268_002.0)];
+        for (found, (intervals, radians, parts)) in table_errors().iter().zip(expected) {
+            assert_eq!(found.intervals, intervals);
+            assert!((found.largest_deg.to_radians() / radians - 1.0).abs() < 3e-3, "{found:?}");
+            assert!((found.parts / parts - 1.0).abs() < 1e-3, "{found:?}");
+        }
+        assert!((table_errors()[1].bits - 16.27).abs() < 0.01);
+    }
+
+    #[test]
+    fn pairs_of_section_3() {
+        for (sine, cosine, exact, table) in [
+            ("0", "0.5", 0.0, 0.0),
+            ("0,25", "0,433012702", 30.0, 29.995_47),
+            ("0.433012702", "-0.25", 120.0, 119.995_47),
+            ("0.1", "0.48989795", 11.536_96, 11.534_35),
+            ("-0.2", "0.45825757", 336.421_82, 336.422_38),
+        ] {
+            let found = interpolate(sine, cosine, 32).unwrap();
+            assert!((found.exact.degrees() - exact).abs() < 2e-5, "{sine} {cosine}: {found:?}");
+            assert!((found.table.degrees() - table).abs() < 2e-5, "{sine} {cosine}: {found:?}");
+            assert!((found.difference_deg - (table - exact)).abs() < 2e-5, "{sine} {cosine}: {found:?}");
+        }
+        for (sine, cosine) in [("0", "0"), ("", "1"), ("1", "x"), ("NaN", "1"), ("1e999", "1")] {
+            assert!(interpolate(sine, cosine, 32).is_err(), "{sine} {cosine}");
+        }
+    }
+}

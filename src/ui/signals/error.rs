@@ -1,0 +1,128 @@
+//! The position error inside one period, raw and corrected, and its harmonics.
+
+use egui::Ui;
+
+use super::{View, numbers, octant, quality};
+use crate::app::signals::{Measurement, Signals, error_quantities};
+use crate::app::{Action, Text};
+use crate::signal::position_error::{Basis, PositionError, harmonics};
+use crate::ui::Skin;
+use crate::ui::controls::{card, paragraph, split};
+use crate::ui::widgets::{Chart, Trace, chart};
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+    let Some(measurement) = signals.measurement() else { return };
+    let Ok(analysis) = &measurement.analysis else {
+        quality::refused_ui(ui, skin, measurement);
+        ui.add_space(skin.space.groups);
+        octant::card_ui(ui, skin, &mut view.octant);
+        return;
+    };
+    let compared = signals.comparison();
+    curves(ui, skin, &analysis.error, compared.map(AsRef::as_ref));
+    ui.add_space(skin.space.groups);
+    split(
+        ui,
+        skin,
+        (0.5, 560.0),
+        (&mut view.periods, actions),
+        |ui, (periods, actions)| {
+            card(ui, skin, "error.numbers", |ui| {
+                quality::periods_ui(ui, skin, signals, periods, actions);
+                ui.add_space(skin.space.inside);
+                let of =
+                    |own: &Measurement| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods));
+                let others = compared.and_then(|own| of(own));
+                let own = error_quantities(analysis, signals.periods);
+                numbers::rows_ui(ui, skin, "error.numbers", &own, others.as_deref());
+                ui.add_space(skin.space.inside);
+                paragraph(ui, skin.caption(skin.words(&basis(analysis.error.basis))));
+            });
+        },
+        |ui, _| bars(ui, skin, &analysis.error, compared.map(AsRef::as_ref)),
+    );
+    ui.add_space(skin.space.groups);
+    octant::card_ui(ui, skin, &mut view.octant);
+}
+
+/// What the corrected error was measured against.
+fn basis(basis: Basis) -> Text {
+    match basis {
+        Basis::Motion { noise_deg } => Text::new("error.basis_motion").with_number("noise", noise_deg, 3),
+        Basis::Ellipse => Text::new("error.basis_ellipse"),
+    }
+}
+
+/// The error of the capture that is compared, where it has one.
+fn other(compared: Option<&Measurement>) -> Option<&PositionError> {
+    compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
+}
+
+fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Measurement>) {
+    let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
+        let step = 360.0 / curve.len().max(1) as f64;
+        let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
+        Trace { name: skin.say(id), points, colour, dashed }
+    };
+    let traces = series(error, other(compared), trace);
+    card(ui, skin, "error.curve", |ui| {
+        let value = Text::new("error.curve_value").with_number("raw", error.raw_pp_deg(), 3).with_number(
+            "corrected",
+            error.corrected_pp_deg,
+            3,
+        );
+        let own = Chart {
+            traces: &traces,
+            label: &skin.say("error.curve"),
+            value: &skin.words(&value),
+            height: 180.0,
+            x_unit: "°",
+            y_unit: "°",
+            x_range: Some((0.0, 360.0)),
+            x_step: Some(45.0),
+            ..Chart::default()
+        };
+        chart(ui, skin, &own);
+        paragraph(ui, skin.caption(skin.say("error.axes")));
+    });
+}
+
+fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Measurement>) {
+    let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
+        let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
+        Trace { name: skin.say(id), points, colour, dashed }
+    };
+    let traces = series(error, other(compared), trace);
+    card(ui, skin, "error.harmonics", |ui| {
+        let peaks: Vec<String> = harmonics(&error.raw_deg).iter().map(|peak| skin.number(*peak, 3)).collect();
+        let own = Chart {
+            traces: &traces,
+            label: &skin.say("error.harmonics"),
+            value: &peaks.join("; "),
+            height: 150.0,
+            y_unit: "°",
+            x_step: Some(1.0),
+            y_floor: Some(0.0),
+            bars: true,
+            ..Chart::default()
+        };
+        chart(ui, skin, &own);
+        paragraph(ui, skin.caption(skin.say("error.harmonics_axes")));
+    });
+}
+
+/// Raw and corrected, of one capture or of both.
+fn series(
+    error: &PositionError,
+    compared: Option<&PositionError>,
+    trace: impl Fn(&'static str, &[f64], usize, bool) -> Trace,
+) -> Vec<Trace> {
+    let mut traces = Vec::new();
+    if let Some(other) = compared {
+        traces.push(trace("error.kept_raw", &other.raw_deg, 1, true));
+        traces.push(trace("error.kept_corrected", &other.corrected_deg, 6, true));
+    }
+    traces.push(trace("quality.raw", &error.raw_deg, 0, false));
+    traces.push(trace("quality.corrected", &error.corrected_deg, 2, false));
+    traces
+}

@@ -1,0 +1,184 @@
+//! Small curves and bars that stand still: the position error over a period, its harmonics, a spectrum. Drawn by
+//! egui_plot, in the window's look.
+//!
+//! * **Size**: as wide as there is room, as high as is given.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: the value under it.
+//! * **Accessible**: an image with the label and the value given.
+//! * **Painting**: a line or a group of bars a series, in the series' colour; one may be dashed, or its bars hollow.
+
+use egui::accesskit::Role;
+use egui::{Align2, Color32, Sense, Stroke, Ui, Vec2, WidgetInfo};
+use egui_plot::{Bar, BarChart, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints};
+
+use crate::ui::Skin;
+use crate::ui::widgets::series;
+
+/// What is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Chart<'a> {
+    /// Series, the first of them the main one.
+    pub traces: &'a [Trace],
+    /// Accessible name.
+    pub label: &'a str,
+    /// Accessible value.
+    pub value: &'a str,
+    /// Height in points.
+    pub height: f32,
+    /// Unit of the horizontal axis.
+    pub x_unit: &'a str,
+    /// Unit of the vertical axis.
+    pub y_unit: &'a str,
+    /// Ends of the horizontal axis; `None` fits.
+    pub x_range: Option<(f64, f64)>,
+    /// Distance of the ticks of the horizontal axis; `None` fits.
+    pub x_step: Option<f64>,
+    /// What stands at the lower end of the vertical axis in any case.
+    pub y_floor: Option<f64>,
+    /// Words at places: peaks.
+    pub marks: &'a [(f64, f64, String)],
+    /// Bars instead of lines; their places are whole numbers.
+    pub bars: bool,
+}
+
+/// One series.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// Its name in the legend.
+    pub name: String,
+    /// Points.
+    pub points: Vec<(f64, f64)>,
+    /// Which of the series' colours.
+    pub colour: usize,
+    /// Its line is dashed, its bars are hollow.
+    pub dashed: bool,
+}
+
+/// Share of a place that its bars take.
+const BARS: f64 = 0.7;
+
+/// Draws it, with a legend above where there are several series.
+pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
+    legend(ui, skin, chart.traces);
+    let own = *skin;
+    let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
+    let told = move |hover: &HoverPosition<'_>| match hover {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => {
+            let (x, y) = (figures(&own, position.x), figures(&own, position.y));
+            Some(format!("{plot_name}\n{x} {x_unit}\n{y} {y_unit}"))
+        }
+        HoverPosition::Elsewhere { .. } => None,
+    };
+    skin.sunken().show(ui, |ui| {
+        // Ticks fade from one colour into the other as they come closer together.
+        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = skin.palette.muted.into();
+        ui.visuals_mut().override_text_color = Some(skin.palette.muted.into());
+        let mut plot = Plot::new(chart.label)
+            .height(chart.height)
+            .allow_scroll(false)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_boxed_zoom(false)
+            .allow_double_click_reset(false)
+            .show_background(false)
+            .grid_spacing(egui::Rangef::new(28.0, 240.0))
+            .grid_color(skin.palette.line.into())
+            .set_margin_fraction(Vec2::new(0.0, 0.08))
+            .label_formatter(told)
+            .x_axis_formatter(move |mark, _| tick(&own, mark))
+            .y_axis_formatter(move |mark, _| tick(&own, mark))
+            .auto_bounds(true);
+        if let Some((least, most)) = chart.x_range {
+            plot = plot.include_x(least).include_x(most);
+        }
+        if let Some(step) = chart.x_step {
+            plot = plot.x_grid_spacer(move |input| steps(input.bounds, step));
+        }
+        if let Some(floor) = chart.y_floor {
+            plot = plot.include_y(floor);
+        }
+        let response = plot.show(ui, |plot| {
+            if chart.bars {
+                bars(plot, skin, chart.traces);
+            } else {
+                lines(plot, skin, chart.traces);
+            }
+            for (x, y, words) in chart.marks {
+                let text = egui::RichText::new(words).size(skin.sizes.caption).color(skin.palette.text);
+                let place = PlotPoint::new(*x, *y);
+                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(Align2::CENTER_BOTTOM));
+            }
+        });
+        response.response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::Image, true, chart.label);
+            info.current_text_value = Some(chart.value.to_owned());
+            info
+        });
+    });
+}
+
+/// A line in its colour beside each name.
+fn legend(ui: &mut Ui, skin: &Skin, traces: &[Trace]) {
+    if traces.len() < 2 {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().interact_size.y = skin.space.groups;
+        for trace in traces {
+            let (rect, _) = ui.allocate_exact_size(Vec2::new(18.0, 12.0), Sense::hover());
+            let ends = [rect.left_center(), rect.right_center()];
+            let stroke = Stroke::new(2.0, series(skin, trace.colour));
+            if trace.dashed {
+                ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
+            } else {
+                ui.painter().line_segment(ends, stroke);
+            }
+            ui.label(skin.caption(&trace.name));
+        }
+    });
+}
+
+fn lines(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
+    for trace in traces {
+        let points = trace.points.iter().map(|(x, y)| PlotPoint::new(*x, *y)).collect();
+        let style = if trace.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
+        let line = Line::new(trace.name.clone(), PlotPoints::Owned(points));
+        plot.line(line.color(series(skin, trace.colour)).width(1.5).style(style));
+    }
+}
+
+fn bars(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
+    let width = BARS / traces.len().max(1) as f64;
+    for (number, trace) in traces.iter().enumerate() {
+        let colour = series(skin, trace.colour);
+        let fill = if trace.dashed { Color32::TRANSPARENT } else { colour };
+        let off = (number as f64 + 0.5) * width - BARS / 2.0;
+        let bar = |(x, y): &(f64, f64)| {
+            Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
+        };
+        let (own, name) = (*skin, trace.name.clone());
+        let told = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
+        let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
+        plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
+    }
+}
+
+/// Ticks at every so many, as many as can be told apart.
+fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
+    const MOST: usize = 64;
+    let first = (least / step).ceil();
+    let value = |at: usize| (first + at as f64) * step;
+    (0..MOST).map(value).take_while(|value| *value <= most).map(|value| GridMark { value, step_size: step }).collect()
+}
+
+/// A tick with the decimals of its step.
+fn tick(skin: &Skin, mark: GridMark) -> String {
+    let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
+    skin.number(mark.value, decimals)
+}
+
+/// A number with four figures.
+fn figures(skin: &Skin, value: f64) -> String {
+    let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
+    skin.number(value, decimals)
+}
