@@ -109,7 +109,7 @@ fn the_recording_is_saved_as_a_table() {
     let mut desk = Desk::begun("rpm=60");
     let desk_of = own(&desk);
     desk.act(Action::Recorder(desk_of, recorder::Action::Clear));
-    let path = desk.outside.path("table.csv");
+    let path = desk.outside.path("samples.csv");
     let question = |visible| FileQuestion::Table { desk: desk_of, visible, suggested: "x.csv".into() };
     desk.act(Action::Chosen(question(false), path.clone()));
     assert_eq!(desk.told(Severity::Warning), ["recorder.nothing_to_write"]);
@@ -133,7 +133,7 @@ fn the_recording_is_saved_as_a_table() {
     desk.until("it asks", |studio| studio.question.is_some());
     desk.act(Action::Escape);
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
-    let nowhere = desk.outside.path("no/table.csv");
+    let nowhere = desk.outside.path("no/samples.csv");
     desk.act(Action::Chosen(question(false), nowhere));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     assert!(recorder(&desk).export().is_none());

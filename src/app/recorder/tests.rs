@@ -211,7 +211,7 @@ fn clearing_forgets_samples_and_nothing_else() {
 
 fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("table.csv");
+    let path = folder.path().join("samples.csv");
     let writing = recorder.begin_export(&path, visible)?;
     let exported = std::thread::scope(|scope| {
         let written = scope.spawn(|| writing.run(&|| {}));
@@ -261,7 +261,7 @@ fn a_long_table_is_whole_and_can_be_given_up() {
         assert!(line.starts_with(&format!("{}.{:03}000000,{number},", number / 1000, number % 1000)), "{line}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("table.csv");
+    let path = folder.path().join("samples.csv");
     std::fs::write(&path, "the old one").unwrap();
     let writing = recorder.begin_export(&path, false).unwrap();
     assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
@@ -270,6 +270,6 @@ fn a_long_table_is_whole_and_can_be_given_up() {
     assert!(writing.run(&|| {}).rows.unwrap().is_none());
     recorder.end_export();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
-    let nowhere = recorder.begin_export(&folder.path().join("no/table.csv"), false).unwrap();
+    let nowhere = recorder.begin_export(&folder.path().join("no/samples.csv"), false).unwrap();
     assert!(nowhere.run(&|| {}).rows.is_err());
 }
