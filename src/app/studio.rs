@@ -16,7 +16,7 @@ use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{Store, StoreError, read_file};
 
 /// A session's number, from the start of the program on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(super) u32);
 
 /// A tab of the window: a kind of device.

@@ -8,7 +8,7 @@ mod header;
 mod hiperface;
 pub mod icons;
 mod panels;
-mod plot;
+pub mod plot;
 mod run;
 mod signals;
 mod skin;

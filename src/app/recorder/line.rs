@@ -53,7 +53,7 @@ pub struct Line {
 
 impl Line {
     /// The column of a group as a line; the first of the scales, which are one at least, is shown.
-    pub(in crate::app) fn of(
+    pub fn of(
         group: GroupId,
         column: usize,
         name: Text,

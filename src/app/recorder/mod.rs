@@ -102,7 +102,7 @@ impl Recorder {
     }
 
     /// Samples of these columns, of which so many are kept; those further apart than so many nanoseconds are not joined.
-    pub(in crate::app) fn add_group(
+    pub fn add_group(
         &mut self,
         columns: &[Kind],
         capacity: usize,
@@ -115,7 +115,7 @@ impl Recorder {
     }
 
     /// A line for a column of a group. The first of its scales is shown.
-    pub(in crate::app) fn add_line(&mut self, line: Line) -> LineId {
+    pub fn add_line(&mut self, line: Line) -> LineId {
         let id = LineId(self.new_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
         let colour = (0..).find(taken).unwrap_or(0);
@@ -144,7 +144,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The batch does not have the group's columns, or its time goes back.
-    pub(in crate::app) fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+    pub fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
         let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(Refused::Shape) };
         let before = history.all().end;
         history.append(times, parts)?;

@@ -22,7 +22,7 @@ use crate::app::{Action, Desk};
 
 /// What a plot remembers while the window is open.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub struct View {
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
@@ -47,7 +47,7 @@ impl Context<'_> {
 }
 
 /// Draws a recorder with its toolbar in what room there is. `empty` says what fills it.
-pub(in crate::ui) fn plot_ui(
+pub fn plot_ui(
     ui: &mut Ui,
     skin: &Skin,
     recorder: &Recorder,

@@ -1,0 +1,188 @@
+//! What a picture of the plot panel costs: layout, reduction and tessellation of four lines of ten million samples, all
+//! visible, zoomed out and in, standing still and following; beside it egui_plot on the same samples. Prints figures,
+//! judges none.
+//!
+//! `cargo bench --bench plot`
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use egui::{Context, RawInput, Rect, Vec2, pos2};
+use encoder_studio::app::recorder::{self, GroupId, Line, Recorder, Scale};
+use encoder_studio::app::{Desk, Language, Look, SessionId, Text, Theme};
+use encoder_studio::signal::Time;
+use encoder_studio::signal::history::{Flags, Kind, Part};
+use encoder_studio::ui::plot::{View, plot_ui};
+use encoder_studio::ui::{Skin, install_fonts};
+
+const SAMPLES: usize = 10_000_000;
+const SIGNALS: usize = 4;
+/// Nanoseconds between samples.
+const PERIOD: i64 = 10_000;
+const ROUNDS: usize = 101;
+/// A plot of a thousand pixels: the gutter of the labels beside it.
+const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
+
+fn main() {
+    let naive = std::env::args().any(|argument| argument == "naive");
+    let (mut recorder, group) = filled();
+    println!("{SIGNALS} × 10 M samples, {} MB, a plot of {} × {} points:", recorder.memory() / 1_000_000, SIZE.x, SIZE.y);
+    let mut bench = Bench::new();
+    let all = (Time::ORIGIN, Time::from_nanoseconds(SAMPLES as i64 * PERIOD));
+    let span = all.1.nanoseconds_since(all.0);
+    // Each picture another stretch: nothing of the one before can be used again.
+    let stretch = |share: f64, round: usize| {
+        let length = (span as f64 * share) as i64;
+        let from = (span - length).max(0) / 3 + round as i64 * length / 997;
+        recorder::Action::Look(Time::from_nanoseconds(from), Time::from_nanoseconds(from + length))
+    };
+    for (label, share) in
+        [("all visible", 1.0), ("a tenth", 0.1), ("a hundredth", 1e-2), ("a thousandth", 1e-3), ("20 samples a pixel", 2e-3), ("3 samples a pixel", 3e-4), ("1 sample in 2 pixels", 5e-5)]
+    {
+        let took = bench.rounds(&mut recorder, |recorder, round| recorder.act(stretch(share, round)));
+        println!("  {label:<26} {took}");
+    }
+    recorder.act(recorder::Action::Look(all.0, all.1));
+    println!("  {:<26} {}", "standing still", bench.rounds(&mut recorder, |_, _| {}));
+    recorder.act(recorder::Action::Fit);
+    recorder.act(recorder::Action::Follow);
+    let mut next = SAMPLES;
+    let took = bench.rounds(&mut recorder, |recorder, _| {
+        // Two thousand samples between two pictures, as they come at 100 kHz.
+        append(recorder, group, next, 2_000, false);
+        next += 2_000;
+    });
+    println!("  {:<26} {took}", "following 100 kHz");
+    let mut marked = Recorder::new(span);
+    let group = lines(&mut marked);
+    for at in (0..SAMPLES).step_by(100_000) {
+        append(&mut marked, group, at, 100_000, true);
+    }
+    let took = bench.rounds(&mut marked, |recorder, round| recorder.act(stretch(1.0, round)));
+    println!("  {:<26} {took}", "all, a flag in each block");
+    if naive {
+        println!("  {:<26} {}", "egui_plot, all visible", egui_plot_frame());
+    } else {
+        println!("  (egui_plot on the same samples: cargo bench --bench plot -- naive)");
+    }
+}
+
+fn lines(recorder: &mut Recorder) -> GroupId {
+    let group = recorder.add_group(&[Kind::Real; SIGNALS], SAMPLES + 1_000_000, Some(PERIOD * 10));
+    for column in 0..SIGNALS {
+        let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
+        recorder.add_line(Line::of(group, column, Text::new("recorder.position"), "value", scales));
+    }
+    group
+}
+
+fn filled() -> (Recorder, GroupId) {
+    let mut recorder = Recorder::new(SAMPLES as i64 * PERIOD);
+    let group = lines(&mut recorder);
+    for at in (0..SAMPLES).step_by(100_000) {
+        append(&mut recorder, group, at, 100_000, false);
+    }
+    (recorder, group)
+}
+
+fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, flagged: bool) {
+    let times: Vec<Time> = (first..first + count).map(|at| Time::from_nanoseconds(at as i64 * PERIOD)).collect();
+    let columns: Vec<Vec<f64>> =
+        (0..SIGNALS).map(|signal| (first..first + count).map(|at| value(signal, at)).collect()).collect();
+    let flags: Vec<Flags> =
+        (first..first + count).map(|at| if at % 4000 == 7 { Flags::WARNING } else { Flags::NONE }).collect();
+    let flags: &[Flags] = if flagged { &flags } else { &[] };
+    let parts: Vec<Part<'_>> = columns.iter().map(|values| Part::real(values).flagged(flags)).collect();
+    recorder.append(group, &times, &parts).unwrap();
+}
+
+/// A sine with a slower one and something like noise on it.
+fn value(signal: usize, at: usize) -> f64 {
+    let noise = (at.wrapping_mul(2_654_435_761) >> 16) % 1000;
+    let time = at as f64 * 1e-5;
+    (time * (3.0 + signal as f64)).sin() + 0.3 * (time * 977.0).sin() + noise as f64 * 1e-4
+}
+
+struct Bench {
+    ctx: Context,
+    skin: Skin,
+    view: View,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let ctx = Context::default();
+        install_fonts(&ctx);
+        let skin = Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English);
+        skin.dress(&ctx);
+        Bench { ctx, skin, view: View::default() }
+    }
+
+    fn rounds(&mut self, recorder: &mut Recorder, mut before: impl FnMut(&mut Recorder, usize)) -> String {
+        // What is laid out once, as the letters, is there.
+        self.frame(recorder);
+        let mut took: Vec<(Duration, usize)> = (0..ROUNDS)
+            .map(|round| {
+                before(recorder, round);
+                self.frame(recorder)
+            })
+            .collect();
+        took.sort();
+        let (median, vertices) = took[took.len() / 2];
+        let worst = took[took.len() - 1].0;
+        format!(
+            "{:6.3} ms median, {:6.3} ms at most of {ROUNDS}, {vertices} vertices",
+            median.as_secs_f64() * 1e3,
+            worst.as_secs_f64() * 1e3
+        )
+    }
+
+    /// One picture, up to what would be handed to the graphics card.
+    fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
+        frame(&self.ctx, |ui| {
+            let (skin, mut actions) = (self.skin, Vec::new());
+            let desk = Desk::Encoder(SessionId::default());
+            plot_ui(ui, &skin, recorder, desk, &mut self.view, "", &mut actions);
+        })
+    }
+}
+
+fn frame(ctx: &Context, mut content: impl FnMut(&mut egui::Ui)) -> (Duration, usize) {
+    let input = RawInput { screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), SIZE)), ..RawInput::default() };
+    let began = Instant::now();
+    let output = ctx.run_ui(input, |ui| content(ui));
+    let primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
+    let took = began.elapsed();
+    let vertices = |primitive: &egui::ClippedPrimitive| match &primitive.primitive {
+        egui::epaint::Primitive::Mesh(mesh) => mesh.vertices.len(),
+        egui::epaint::Primitive::Callback(_) => 0,
+    };
+    let vertices = black_box(primitives).iter().map(vertices).sum();
+    (took, vertices)
+}
+
+/// The same samples as lines of egui_plot, which looks at each of them for every picture.
+fn egui_plot_frame() -> String {
+    let columns: Vec<Vec<egui_plot::PlotPoint>> = (0..SIGNALS)
+        .map(|signal| {
+            (0..SAMPLES).map(|at| egui_plot::PlotPoint::new(at as f64 * PERIOD as f64 * 1e-9, value(signal, at))).collect()
+        })
+        .collect();
+    let ctx = Context::default();
+    let draw = || {
+        frame(&ctx, |ui| {
+            egui_plot::Plot::new("naive").show(ui, |plot| {
+                for (signal, points) in columns.iter().enumerate() {
+                    plot.line(egui_plot::Line::new(signal.to_string(), egui_plot::PlotPoints::Borrowed(points)));
+                }
+            });
+        })
+        .0
+    };
+    draw();
+    let mut took: Vec<Duration> = (0..5).map(|_| draw()).collect();
+    took.sort();
+    format!("{:6.0} ms median of 5", took[2].as_secs_f64() * 1e3)
+}
