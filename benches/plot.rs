@@ -28,7 +28,12 @@ const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
 fn main() {
     let naive = std::env::args().any(|argument| argument == "naive");
     let (mut recorder, group) = filled();
-    println!("{SIGNALS} × 10 M samples, {} MB, a plot of {} × {} points:", recorder.memory() / 1_000_000, SIZE.x, SIZE.y);
+    println!(
+        "{SIGNALS} × 10 M samples, {} MB, a plot of {} × {} points:",
+        recorder.memory() / 1_000_000,
+        SIZE.x,
+        SIZE.y
+    );
     let mut bench = Bench::new();
     let all = (Time::ORIGIN, Time::from_nanoseconds(SAMPLES as i64 * PERIOD));
     let span = all.1.nanoseconds_since(all.0);
@@ -38,9 +43,15 @@ fn main() {
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
         recorder::Action::Look(Time::from_nanoseconds(from), Time::from_nanoseconds(from + length))
     };
-    for (label, share) in
-        [("all visible", 1.0), ("a tenth", 0.1), ("a hundredth", 1e-2), ("a thousandth", 1e-3), ("20 samples a pixel", 2e-3), ("3 samples a pixel", 3e-4), ("1 sample in 2 pixels", 5e-5)]
-    {
+    for (label, share) in [
+        ("all visible", 1.0),
+        ("a tenth", 0.1),
+        ("a hundredth", 1e-2),
+        ("a thousandth", 1e-3),
+        ("20 samples a pixel", 2e-3),
+        ("3 samples a pixel", 3e-4),
+        ("1 sample in 2 pixels", 5e-5),
+    ] {
         let took = bench.rounds(&mut recorder, |recorder, round| recorder.act(stretch(share, round)));
         println!("  {label:<26} {took}");
     }
@@ -167,7 +178,9 @@ fn frame(ctx: &Context, mut content: impl FnMut(&mut egui::Ui)) -> (Duration, us
 fn egui_plot_frame() -> String {
     let columns: Vec<Vec<egui_plot::PlotPoint>> = (0..SIGNALS)
         .map(|signal| {
-            (0..SAMPLES).map(|at| egui_plot::PlotPoint::new(at as f64 * PERIOD as f64 * 1e-9, value(signal, at))).collect()
+            (0..SAMPLES)
+                .map(|at| egui_plot::PlotPoint::new(at as f64 * PERIOD as f64 * 1e-9, value(signal, at)))
+                .collect()
         })
         .collect();
     let ctx = Context::default();

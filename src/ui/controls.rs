@@ -1,6 +1,7 @@
 //! The small things that every view is made of: cards, rows of label and value, buttons with icons, badges, empty states.
 //! Each says to a screen reader what it says to the eye, without its icon.
 
+use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{Skin, icons};
@@ -176,6 +177,18 @@ pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str,
         ui.add_space(skin.space.groups);
     });
     pressed
+}
+
+/// An icon that opens a small panel below itself. What is ticked and typed there does not close it.
+pub(super) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
+    let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    let button = Button::new(icon).min_size(vec2(28.0, 28.0));
+    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+        // A menu is drawn without borders, in which nobody would see a box that is not ticked.
+        ui.set_style(ui.ctx().global_style());
+        content(ui);
+    });
+    name(response, true, word).on_hover_text(word);
 }
 
 /// A one-line entry with a name for screen readers.

@@ -58,7 +58,7 @@ impl Window {
     /// A window on a studio.
     pub fn new(studio: Studio, look: &'static Look) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
-        let views = Views { rate: 50, ..Views::default() };
+        let views = Views { rate: 50, plot: super::plot::View::in_panel(), ..Views::default() };
         Window { studio, views, docks, look, dressed: None, notice_since: None }
     }
 
@@ -224,7 +224,10 @@ impl Window {
         }
         let views = &mut self.views;
         if !self.studio.can_stop()
-            && (views.file.take().is_some() || std::mem::take(&mut views.about) || std::mem::take(&mut views.help))
+            && (views.file.take().is_some()
+                || std::mem::take(&mut views.about)
+                || std::mem::take(&mut views.help)
+                || views.plot.make_small())
         {
             return;
         }
@@ -275,6 +278,7 @@ fn navigation(
     for (tab, word) in [(Tab::Hiperface, "HIPERFACE".to_owned()), (Tab::Signals, skin.say("tab.signals"))] {
         let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
         if entry(ui, false, text, &word).clicked() {
+            views.plot.make_small();
             actions.push(Action::ShowTab(tab));
         }
         match tab {
@@ -303,6 +307,7 @@ fn hiperface_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views)
             text = text.color(skin.palette.staged);
         }
         if entry(ui, shown == page, text, &word).clicked() {
+            views.plot.make_small();
             views.hiperface(encoder).page = page;
         }
     }
@@ -313,6 +318,7 @@ fn signals_pages(ui: &mut Ui, skin: &Skin, views: &mut Views) {
         let word = skin.say(page.word());
         let text = egui::RichText::new(format!("{}  {word}", page.icon()));
         if entry(ui, views.signals.page == page, text, &word).clicked() {
+            views.plot.make_small();
             views.signals.page = page;
         }
     }

@@ -11,6 +11,13 @@ use crate::app::{connect, explain};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    if views.plot.is_large()
+        && let Some(encoder) = studio.encoder()
+    {
+        let margin = egui::Margin::same(skin.space.groups as i8);
+        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, encoder, views, actions));
+        return;
+    }
     match studio.settings.tab {
         Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
         Tab::Signals => signals::page_ui(ui, skin, &studio.signals, &mut views.signals, actions),
@@ -29,11 +36,6 @@ fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, ac
         });
         return;
     };
-    if views.plot.large {
-        let margin = egui::Margin::same(skin.space.groups as i8);
-        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, encoder, views, actions));
-        return;
-    }
     running(ui, skin, encoder, actions);
     lost(ui, skin, encoder, actions);
     hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);

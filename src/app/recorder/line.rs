@@ -53,13 +53,7 @@ pub struct Line {
 
 impl Line {
     /// The column of a group as a line; the first of the scales, which are one at least, is shown.
-    pub fn of(
-        group: GroupId,
-        column: usize,
-        name: Text,
-        heading: impl Into<String>,
-        scales: Vec<Scale>,
-    ) -> Self {
+    pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Line {
             id: LineId::default(),
             name,

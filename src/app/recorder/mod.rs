@@ -102,12 +102,7 @@ impl Recorder {
     }
 
     /// Samples of these columns, of which so many are kept; those further apart than so many nanoseconds are not joined.
-    pub fn add_group(
-        &mut self,
-        columns: &[Kind],
-        capacity: usize,
-        longest_pause: Option<i64>,
-    ) -> GroupId {
+    pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
         self.groups.insert(id, Group { history, columns: columns.to_vec(), capacity, longest_pause });

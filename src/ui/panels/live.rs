@@ -2,19 +2,21 @@
 
 use std::time::Duration;
 
-use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{PopupCloseBehavior, RichText, Ui};
+use egui::{RichText, Ui};
 
 use super::nothing;
 use crate::app::hiperface::{self, Action as Hiperface, Encoder, Phase};
 use crate::app::{Action, Desk, Studio, Text};
 use crate::device::hiperface::Watch;
-use crate::ui::controls::{choice, enabled_button, name, paragraph, row, text_entry};
+use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::{Skin, Views, icons, plot};
 
 /// How often the position may be read; back to back first.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50, "live.every_50"), (200, "live.every_200"), (1000, "live.every_1000")];
+
+/// Height in points below which the numbers beside the position stand in one line.
+const LOW: f32 = 460.0;
 
 /// Draws the panel.
 pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -26,7 +28,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     ui.add_space(skin.space.inside);
     controls(ui, skin, encoder, views, actions);
     ui.add_space(skin.space.between);
-    if !views.plot.large {
+    if !views.plot.is_large() {
         plot_ui(ui, skin, encoder, views, actions);
     }
 }
@@ -34,11 +36,9 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
 /// What is read beside the position.
 fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, actions: &mut Vec<Action>) {
     let word = skin.say("live.watch");
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let button = egui::Button::new(icons::EYE).min_size(egui::vec2(28.0, 28.0));
     let watched = encoder.record.watched();
-    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
-        ui.set_min_width(220.0);
+    icon_menu(ui, icons::EYE, &word, |ui| {
+        ui.set_max_width(240.0);
         ui.label(skin.heading(&word));
         paragraph(ui, skin.caption(skin.say("live.watch_words")));
         let usual = [Watch::Analogue(0x48), Watch::Counter];
@@ -60,7 +60,6 @@ fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, ac
             }
         });
     });
-    name(response, true, &word).on_hover_text(&word);
 }
 
 /// The plot of what was recorded of an encoder.
@@ -106,7 +105,17 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         }
     });
     let Some(reading) = reading else { return };
-    if let Some((turns, steps)) = position.and_then(|position| Some((position.turns()?, position.steps()?))) {
+    let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
+    if ui.available_height() < LOW {
+        // In a low window the plot needs the room.
+        let mut words = format!("{:08X}h", reading.raw);
+        if let Some((turns, steps)) = place {
+            words = format!("{} {turns} · {} {steps} · {words}", skin.say("live.turns"), skin.say("live.step"));
+        }
+        ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
+        return;
+    }
+    if let Some((turns, steps)) = place {
         row(ui, skin, &skin.say("live.turns"), skin.mono(turns.to_string()));
         row(ui, skin, &skin.say("live.step"), skin.mono(steps.to_string()));
     }
@@ -125,7 +134,7 @@ fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, acti
             actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
         }
         let ready = encoder.is_ready();
-        if enabled_button(ui, ready, "", &skin.say("live.once")).clicked() {
+        if icon_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
             actions.push(Action::Hiperface(encoder.id, Hiperface::ReadPosition));
         }
         watch_menu(ui, skin, encoder, views, actions);

@@ -81,6 +81,9 @@ fn value_axis(painter: &Painter, skin: &Skin, lane: &Lane, font: &FontId) {
         painter.hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
         // A label stands beside its line, and inside its lane.
         let y = y.clamp(rect.top() + 6.0, (rect.bottom() - 6.0).max(rect.top() + 6.0));
+        if lane.empty {
+            continue;
+        }
         let label = axes::value_label(value, lane.step, skin.language);
         let place = pos2(rect.left() - 6.0, y);
         painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), skin.palette.muted.into());

@@ -22,6 +22,8 @@ pub(super) struct Lane {
     pub(super) range: (f64, f64),
     /// Between two ticks.
     pub(super) step: f64,
+    /// There is nothing to be seen in it.
+    pub(super) empty: bool,
 }
 
 impl Lane {
@@ -119,11 +121,12 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let time = TimeAxis { from: grid.edge(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
         let lanes = lanes(chart, &groups, &time, reduced);
-        let wide = |lane: &Lane| {
+        let wide = |lane: &&Lane| {
             let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
             axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
         };
-        let needed = lanes.iter().map(wide).max().unwrap_or(0) as f32 * LETTER + 10.0;
+        let needed =
+            lanes.iter().filter(|lane| !lane.empty).map(|lane| wide(&lane)).max().unwrap_or(0) as f32 * LETTER + 10.0;
         if needed <= gutter || gutter >= 110.0 || rect.width() < gutter * 3.0 {
             return Layout { lanes, time, chart };
         }
@@ -143,22 +146,21 @@ fn lanes(chart: Rect, groups: &[Vec<&Line>], time: &TimeAxis, reduced: &Reduced)
     let lane = |(at, lines): (usize, &Vec<&Line>)| {
         let top = chart.top() + at as f32 * (height + BETWEEN);
         let rect = Rect::from_min_max(pos2(chart.left(), top), pos2(chart.right(), top + height));
-        let range = range(lines, time, chart, reduced);
+        let shown = range(lines, time, chart, reduced);
+        let range = shown.unwrap_or((0.0, 1.0));
         let step = axes::step(range.1 - range.0, f64::from((height / 28.0).max(1.0)));
-        Lane { rect, lines: lines.iter().map(|line| line.id).collect(), range, step }
+        Lane { rect, lines: lines.iter().map(|line| line.id).collect(), range, step, empty: shown.is_none() }
     };
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// The values that a lane shows: what the user chose, or what fits.
-fn range(lines: &[&Line], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> (f64, f64) {
+/// The values that a lane shows: what the user chose, or what fits; `None` where there are none.
+fn range(lines: &[&Line], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
-        return range;
+        return Some(range);
     }
     let all = lines.iter().filter_map(|line| reduced.extent(line, time, chart));
     let least = lines.iter().map(|line| 10_f64.powi(-(line.decimals() as i32)) * 8.0).fold(f64::INFINITY, f64::min);
-    match all.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1))) {
-        Some((low, high)) => axes::round_range(low, high, least),
-        None => (0.0, 1.0),
-    }
+    let (low, high) = all.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))?;
+    Some(axes::round_range(low, high, least))
 }

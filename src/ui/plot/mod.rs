@@ -28,8 +28,27 @@ pub struct View {
     trigger: trigger::Form,
     /// A picture of it that is wanted.
     shot: snapshot::Shot,
+    /// It takes the place of the page; `None`: it cannot.
+    large: Option<bool>,
+}
+
+impl View {
+    /// Of a plot in a panel at the side, which can take the place of the page.
+    pub(in crate::ui) fn in_panel() -> Self {
+        View { large: Some(false), ..View::default() }
+    }
+
     /// It takes the place of the page.
-    pub(in crate::ui) large: bool,
+    pub(in crate::ui) fn is_large(&self) -> bool {
+        self.large == Some(true)
+    }
+
+    /// Back into its panel. False: it was there.
+    pub(in crate::ui) fn make_small(&mut self) -> bool {
+        let was = self.is_large();
+        self.large = self.large.map(|_| false);
+        was
+    }
 }
 
 /// Whose plot it is, and where its actions go.

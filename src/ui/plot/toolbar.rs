@@ -1,12 +1,11 @@
 //! The plot's tools: standing still and going on, how long a stretch, cursors, trigger, lines and their units, export.
 
-use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{PopupCloseBehavior, RichText, Ui};
+use egui::{RichText, Ui};
 
 use super::{Context, View, chart, snapshot, trigger};
 use crate::app::Action as Studio;
 use crate::app::recorder::{Action, Cursor, TriggerState};
-use crate::ui::controls::{choice, icon_button, name};
+use crate::ui::controls::{choice, icon_button, icon_menu};
 use crate::ui::icons;
 
 /// Seconds that can be chosen.
@@ -54,10 +53,12 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View
         if tool(ui, some, icons::TRASH, "live.clear") {
             context.act(Action::Clear);
         }
-        let (icon, id) =
-            if view.large { (icons::CORNERS_IN, "recorder.small") } else { (icons::CORNERS_OUT, "recorder.large") };
-        if tool(ui, true, icon, id) {
-            view.large = !view.large;
+        if let Some(large) = &mut view.large {
+            let small = (icons::CORNERS_IN, "recorder.small");
+            let (icon, id) = if *large { small } else { (icons::CORNERS_OUT, "recorder.large") };
+            if tool(ui, true, icon, id) {
+                *large = !*large;
+            }
         }
     });
     state(ui, context);
@@ -90,15 +91,6 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
     });
 }
 
-fn menu<R>(ui: &mut Ui, context: &Context<'_>, icon: &str, id: &'static str, content: impl FnOnce(&mut Ui) -> R) {
-    let word = context.skin.say(id);
-    // What is ticked and typed in it does not close it.
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let button = egui::Button::new(icon).min_size(egui::vec2(28.0, 28.0));
-    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, content);
-    name(response, true, &word).on_hover_text(&word);
-}
-
 fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let icon = icons::LIGHTNING;
     let lines = context.recorder.shown().next().is_some();
@@ -108,7 +100,9 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     }
     let skin = context.skin;
     let mut actions = Vec::new();
-    menu(ui, context, icon, "recorder.trigger", |ui| trigger::form_ui(ui, skin, context.recorder, form, &mut actions));
+    icon_menu(ui, icon, &skin.say("recorder.trigger"), |ui| {
+        trigger::form_ui(ui, skin, context.recorder, form, &mut actions);
+    });
     actions.into_iter().for_each(|action| context.act(action));
 }
 
@@ -116,7 +110,7 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
 fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     let (skin, recorder) = (context.skin, context.recorder);
     let mut actions = Vec::new();
-    menu(ui, context, icons::LIST_CHECKS, "recorder.lines", |ui| {
+    icon_menu(ui, icons::LIST_CHECKS, &skin.say("recorder.lines"), |ui| {
         egui::Grid::new("lines").num_columns(2).spacing(egui::vec2(16.0, 4.0)).show(ui, |ui| {
             for line in recorder.lines() {
                 let mut shown = line.shown;
@@ -146,7 +140,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot
     let skin = context.skin;
     let (some, desk) = (!context.recorder.is_empty(), context.desk);
     let mut chosen = None;
-    menu(ui, context, icons::DOWNLOAD_SIMPLE, "recorder.export", |ui| {
+    icon_menu(ui, icons::DOWNLOAD_SIMPLE, &skin.say("recorder.export"), |ui| {
         ui.set_min_width(200.0);
         for (id, visible) in [("recorder.csv_visible", true), ("recorder.csv_all", false)] {
             if ui.add_enabled(some, egui::Button::new(skin.say(id))).clicked() {
