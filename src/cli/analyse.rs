@@ -40,6 +40,7 @@ fn json(analysis: &Analysis, findings: &[String]) -> Json {
     let (least, most) = coverage.vector_v;
     json!({
         "samples": analysis.samples,
+        "left_out": analysis.outliers.as_ref().map_or(0, |outliers| outliers.count),
         "periods": coverage.periods,
         "frequency_hz": analysis.frequency_hz(),
         "amplitude_v": ellipse.amplitude_v,
@@ -72,8 +73,11 @@ fn text(analysis: &Analysis, findings: &[String]) -> String {
     let (least, most) = coverage.vector_v;
     let share = |volts: f64| format!("{volts:+.4} V ({:+.1} % of the amplitude)", 100.0 * volts / ellipse.amplitude_v);
     let mut lines = Lines::default();
+    let left_out = analysis.outliers.as_ref().map_or_else(String::new, |outliers| {
+        format!(", {} of them left out: up to {:.3} V off the ellipse", outliers.count, outliers.farthest_v)
+    });
     lines
-        .add("samples", analysis.samples)
+        .add("samples", format!("{}{left_out}", analysis.samples))
         .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
     if let Some(frequency) = analysis.frequency_hz() {
         lines.add("frequency", format!("{frequency:.3} Hz"));

@@ -1,8 +1,10 @@
 //! All there is to say about a capture of sine and cosine: the ellipse (Heydemann 1981), how well it fits, how much of the
 //! period it covers, and the position error it stands for. Sections 2, 6 and 7 of the project's sine/cosine reference.
+//! Single samples far off are left out of all of it, and told.
 
 use super::coverage::Coverage;
 use super::ellipse::{Ellipse, FitError};
+use super::outliers::{self, Found, Outliers};
 use super::position_error::{PositionError, Samples};
 
 /// Fewest octants of a period that must hold samples (U).
@@ -20,10 +22,13 @@ pub struct Analysis {
     pub coverage: Coverage,
     /// The position error over one period.
     pub error: PositionError,
-    /// Samples.
+    /// Samples, with those that were left out.
     pub samples: usize,
     /// Time from the first to the last sample in seconds; `None` without growing times.
     pub duration_s: Option<f64>,
+    /// Samples that were left out because they are far off, with the ellipse as it would be with them; `None` where none
+    /// were.
+    pub outliers: Option<Outliers>,
 }
 
 /// Why a capture cannot be analysed.
@@ -52,9 +57,29 @@ impl Analysis {
     /// # Errors
     /// [`AnalysisError`] where they determine no ellipse or cover less than six octants of a period.
     pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
+        Self::attempt(samples).map_err(|error| match error {
+            // One spark on a dead channel makes it look alive, and what it gives then says nothing about the cause.
+            AnalysisError::Fit(FitError::NotAnEllipse)
+            | AnalysisError::Coverage { .. }
+            | AnalysisError::NoSignal { .. } => {
+                outliers::dead(samples.sine_v, samples.cosine_v).map_or(error, |channel| FitError::Dead(channel).into())
+            }
+            error => error,
+        })
+    }
+
+    fn attempt(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         let Samples { time_s, sine_v, cosine_v } = samples;
-        let ellipse = Ellipse::fit(sine_v, cosine_v)?;
-        let coverage = Coverage::of(sine_v, cosine_v, &ellipse).ok_or(FitError::TooFew { points: 0 })?;
+        let all = Ellipse::fit(sine_v, cosine_v);
+        if let Err(error @ (FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant)) = all {
+            return Err(error.into());
+        }
+        let (ellipse, outliers) = match outliers::find(sine_v, cosine_v, all.as_ref().ok()) {
+            Found::Nothing => (all?, None),
+            Found::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
+        };
+        let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+        let coverage = Coverage::without(sine_v, cosine_v, left_out, &ellipse).ok_or(FitError::TooFew { points: 0 })?;
         if coverage.residual_rms > LARGEST_RESIDUAL {
             return Err(AnalysisError::NoSignal { share: coverage.residual_rms });
         }
@@ -63,11 +88,12 @@ impl Analysis {
         }
         let duration = time_s.last().zip(time_s.first()).map(|(last, first)| last - first);
         Ok(Analysis {
-            error: PositionError::of(samples, &ellipse, coverage.periods, coverage.residual_rms),
+            error: PositionError::of(samples, left_out, &ellipse, &coverage),
             ellipse,
             coverage,
             samples: sine_v.len().min(cosine_v.len()),
             duration_s: duration.filter(|duration| duration.is_finite() && *duration > 0.0),
+            outliers,
         })
     }
 

@@ -1,7 +1,10 @@
 //! How much of the period a capture covers: octants, periods, and how far the samples keep from the ellipse. Validity of a
 //! fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
 
+use std::ops::Range;
+
 use super::ellipse::Ellipse;
+use super::outliers::kept;
 
 /// What samples do on their ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +23,7 @@ pub struct Coverage {
 
 /// An angle that grows over periods: quarters so far, and the vector inside the quarter.
 #[derive(Clone, Copy)]
-struct Angle {
+pub(super) struct Angle {
     quarters: i64,
     sine: f64,
     cosine: f64,
@@ -71,16 +74,24 @@ impl Coverage {
     /// Follows the samples in their order; from one to the next the angle must move by less than half a period.
     /// `None` without samples.
     pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
+        Coverage::without(sine, cosine, &[], ellipse)
+    }
+
+    /// Likewise, without the samples in `left_out`: stretches in their order that do not overlap.
+    pub(super) fn without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], ellipse: &Ellipse) -> Option<Self> {
         /// Samples summed before their sum is added: less rounding.
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
-        let (first_y, first_x) = correction.apply(*sine.first()?, *cosine.first()?);
+        let length = sine.len().min(cosine.len());
+        let start = kept(length, left_out).next()?.start;
+        let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
         let first = Angle::of(first_y, first_x);
         let (mut here, mut lowest, mut highest) = (first, first, first);
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        for (ys, xs) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)) {
+        let parts = kept(length, left_out).filter_map(|part| Some((sine.get(part.clone())?, cosine.get(part)?)));
+        for (ys, xs) in parts.flat_map(|(sine, cosine)| sine.chunks(BLOCK).zip(cosine.chunks(BLOCK))) {
             let mut sum = 0.0;
             for (y, x) in ys.iter().zip(xs) {
                 let raw = y * y + x * x;

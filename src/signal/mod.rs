@@ -15,6 +15,7 @@ pub mod input_circuit;
 pub mod moments;
 mod motion;
 pub mod nonlinearity;
+pub mod outliers;
 pub mod position_error;
 pub mod quality;
 pub mod spectrum;

@@ -8,10 +8,13 @@
 //! of it, the distance from the ellipse stands for the error: what distorts one distorts the other by as much.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
 
-use super::ellipse::Ellipse;
+use super::coverage::Coverage;
+use super::ellipse::{Correction, Ellipse};
+use super::outliers::kept;
 
 /// Harmonics of the period that are told apart.
 pub const HARMONICS: usize = 8;
@@ -74,12 +77,11 @@ pub struct Samples<'a> {
 }
 
 impl PositionError {
-    /// The error of samples on their ellipse; `periods` and `residual_rms` (a share of the amplitude) as their coverage
-    /// says.
-    pub fn of(samples: Samples<'_>, ellipse: &Ellipse, periods: f64, residual_rms: f64) -> Self {
-        let expected_deg = residual_rms.to_degrees();
-        let found =
-            fit(&samples, ellipse, periods).filter(|(_, noise_deg)| *noise_deg <= STEADY * expected_deg.max(0.01));
+    /// The error of samples on their ellipse, `left_out` not counted: stretches in their order that do not overlap.
+    pub(super) fn of(samples: Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, coverage: &Coverage) -> Self {
+        let expected_deg = coverage.residual_rms.to_degrees();
+        let found = fit(&samples, left_out, ellipse, coverage.periods)
+            .filter(|(_, noise_deg)| *noise_deg <= STEADY * expected_deg.max(0.01));
         let corrected_deg: Vec<f64> = match &found {
             Some((terms, _)) => angles().map(|angle| harmonics_at(angle).dot(terms).to_degrees()).collect(),
             None => vec![0.0; POINTS],
@@ -144,7 +146,7 @@ fn harmonics_at(angle: f64) -> Terms {
 }
 
 /// Harmonics in radians, and the rms of what is left in degrees; `None` where there is too little.
-fn fit(samples: &Samples<'_>, ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
+fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
     if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
         return None;
@@ -157,12 +159,40 @@ fn fit(samples: &Samples<'_>, ellipse: &Ellipse, periods: f64) -> Option<(Terms,
         ((count as f64 * SEGMENT_PERIODS / periods) as usize).clamp(LEAST_SAMPLES.min(count), count)
     };
     let bends = periods >= 2.0;
+    let correction = ellipse.correction();
     let mut sums = Sums { normal: Normal::zeros(), right: Terms::zeros(), squares: 0.0, count: 0, motions: 0 };
     for segment in 0..segments {
         let start = if segments == 1 { 0 } else { (count - length) * segment / (segments - 1) };
-        sums.add(samples, ellipse, start..start + length, timed, bends);
+        sums.add(&Segment::of(samples, left_out, start..start + length, timed), &correction, bends);
     }
     sums.solve()
+}
+
+/// Samples with a motion of their own.
+struct Segment {
+    times: Vec<f64>,
+    sine: Vec<f64>,
+    cosine: Vec<f64>,
+}
+
+impl Segment {
+    /// What of `range` is not left out.
+    fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
+        let from = left_out.partition_point(|stretch| stretch.end <= range.start);
+        let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);
+        // In the range's own numbers.
+        let own = |index: usize| index.clamp(range.start, range.end) - range.start;
+        let inside: Vec<Range<usize>> = inside.map(|stretch| own(stretch.start)..own(stretch.end)).collect();
+        let parts = |values: &[f64]| {
+            let values = values.get(range.clone()).unwrap_or_default();
+            kept(values.len(), &inside).flat_map(|part| values.get(part).unwrap_or_default()).copied().collect()
+        };
+        let times = match timed {
+            true => parts(samples.time_s),
+            false => kept(range.len(), &inside).flatten().map(|at| at as f64).collect(),
+        };
+        Segment { times, sine: parts(samples.sine_v), cosine: parts(samples.cosine_v) }
+    }
 }
 
 /// Normal equations of the harmonics, the motions already taken out.
@@ -175,19 +205,9 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(
-        &mut self,
-        samples: &Samples<'_>,
-        ellipse: &Ellipse,
-        range: std::ops::Range<usize>,
-        timed: bool,
-        bends: bool,
-    ) {
-        let stride = (range.len() / SEGMENT_SAMPLES).max(1);
-        let correction = ellipse.correction();
-        let part = |values: &'_ [f64]| values.get(range.clone()).unwrap_or_default().to_vec();
-        let (sine, cosine) = (part(samples.sine_v), part(samples.cosine_v));
-        let times = if timed { part(samples.time_s) } else { (0..range.len()).map(|at| at as f64).collect() };
+    fn add(&mut self, segment: &Segment, correction: &Correction, bends: bool) {
+        let Segment { times, sine, cosine } = segment;
+        let stride = (times.len() / SEGMENT_SAMPLES).max(1);
         let (Some(begin), Some(end)) = (times.first(), times.last()) else { return };
         let (middle, half) = ((begin + end) / 2.0, ((end - begin) / 2.0).max(f64::MIN_POSITIVE));
         // Motion: 1, t, t² with t from −1 to 1.
@@ -197,7 +217,7 @@ impl Sums {
         let mut normal = Normal::zeros();
         let mut right = Terms::zeros();
         let (mut turned, mut last) = (0.0, None);
-        for ((time, y), x) in times.iter().zip(&sine).zip(&cosine).step_by(stride) {
+        for ((time, y), x) in times.iter().zip(sine).zip(cosine).step_by(stride) {
             let (y, x) = correction.apply(*y, *x);
             let angle = y.atan2(x);
             let step = angle - last.unwrap_or(angle);

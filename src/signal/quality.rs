@@ -30,6 +30,43 @@ pub struct Limits {
     pub phase_deg: f64,
     /// Largest deviation from the ellipse, rms, as a share of the amplitude.
     pub residual: f64,
+    /// Least and greatest mean level of REFSIN and REFCOS in volts.
+    pub level_v: (f64, f64),
+}
+
+/// A family of encoders whose limits are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Family {
+    /// HIPERFACE motor feedback.
+    #[default]
+    Hiperface,
+    /// AFS60 and AFM60 with sine and cosine.
+    AfsAfm60,
+    /// TTK70.
+    Ttk70,
+}
+
+impl Family {
+    /// Every family.
+    pub const ALL: [Family; 3] = [Family::Hiperface, Family::AfsAfm60, Family::Ttk70];
+
+    /// As the manufacturer writes it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Family::Hiperface => "HIPERFACE",
+            Family::AfsAfm60 => "AFS/AFM60",
+            Family::Ttk70 => "TTK70",
+        }
+    }
+
+    /// Its limits.
+    pub const fn limits(self) -> Limits {
+        match self {
+            Family::Hiperface => Limits::HIPERFACE,
+            Family::AfsAfm60 => Limits::AFS_AFM60,
+            Family::Ttk70 => Limits::TTK70,
+        }
+    }
 }
 
 /// What is out of its limits.
@@ -60,7 +97,7 @@ pub enum Finding {
 const SLACK: f64 = 1e-9;
 
 impl Limits {
-    /// HIPERFACE: 0.9 … 1.1 V peak to peak.
+    /// HIPERFACE: 0.9 … 1.1 V peak to peak, mean level 2.0 … 3.0 V.
     pub const HIPERFACE: Limits = Limits {
         ok_v: (0.45, 0.55),
         fault_v: (0.30, 0.70),
@@ -68,13 +105,14 @@ impl Limits {
         gain_ratio: (0.9, 1.1),
         phase_deg: 5.0,
         residual: 0.02,
+        level_v: (2.0, 3.0),
     };
 
-    /// AFS/AFM60: 0.8 … 1.2 V peak to peak.
-    pub const AFS_AFM60: Limits = Limits { ok_v: (0.40, 0.60), ..Limits::HIPERFACE };
+    /// AFS/AFM60: 0.8 … 1.2 V peak to peak, mean level 2.5 V ± 10 %.
+    pub const AFS_AFM60: Limits = Limits { ok_v: (0.40, 0.60), level_v: (2.25, 2.75), ..Limits::HIPERFACE };
 
-    /// TTK70: 0.9 … 1.1 V peak to peak.
-    pub const TTK70: Limits = Limits::HIPERFACE;
+    /// TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
+    pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
     /// Judges the length of one amplitude vector; `None` is no signal at all. One vector also holds offset and gain error,
     /// so that the least and the largest over a period are what to judge.
@@ -115,7 +153,7 @@ impl Limits {
     }
 }
 
-fn within(value: f64, (least, most): (f64, f64)) -> bool {
+pub(super) fn within(value: f64, (least, most): (f64, f64)) -> bool {
     value >= least - SLACK && value <= most + SLACK
 }
 
@@ -141,6 +179,14 @@ mod tests {
         }
         assert_eq!(Limits::AFS_AFM60.vector(0.0, 0.4), Some(Verdict::Ok));
         assert_eq!(Limits::TTK70.vector(0.0, 0.4), Some(Verdict::Warn));
+    }
+
+    /// Section 1.
+    #[test]
+    fn families_have_their_levels() {
+        let levels = Family::ALL.map(|family| (family.name(), family.limits().level_v));
+        let expected = [("HIPERFACE", (2.0, 3.0)), ("AFS/AFM60", (2.25, 2.75)), ("TTK70", (2.375, 2.625))];
+        assert_eq!(levels, expected);
     }
 
     #[test]

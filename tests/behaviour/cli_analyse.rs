@@ -170,6 +170,20 @@ fn bad_captures_get_one_sentence() {
 }
 
 #[test]
+fn a_spike_is_left_out_and_told() {
+    let bench = Bench::new();
+    let mut rows = rows(&REFERENCE, 720, 0.0, 2.0);
+    rows[123][1] = 4.5;
+    let file = bench.write("spike.csv", table("time,sin,cos\n", &rows));
+    let told = bench.run(&["analyse", &file, "--json"]).json();
+    near(&told, "left_out", 1.0, 0.0);
+    near(&told, "amplitude_v", 0.5, 1e-6);
+    near(&told, "gain_ratio", 1.05, 1e-6);
+    let text = bench.run(&["analyse", &file]).out;
+    assert!(text.contains("720, 1 of them left out"), "{text}");
+}
+
+#[test]
 fn wrong_usage_is_status_2() {
     let bench = Bench::new();
     let file = bench.write("c.csv", table("", &rows(&REFERENCE, 100, 0.0, 1.0)));

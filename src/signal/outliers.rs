@@ -1,0 +1,215 @@
+//! Samples far off the ellipse, as a relay's spark or a loose contact leaves them: a few of them would bend an ellipse that
+//! is fitted by least squares. They are found by a deviation that they hardly influence (the median of the distances) and
+//! left out of a second fit; what is left out is told.
+
+use std::ops::Range;
+
+use super::coverage::Coverage;
+use super::ellipse::{Channel, Ellipse, FitError};
+use super::moments::{Moments, Scale};
+
+/// What was left out of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outliers {
+    /// The samples, by index from 0, in their order; no two stretches touch.
+    pub stretches: Vec<Range<usize>>,
+    /// How many samples.
+    pub count: usize,
+    /// The longest stretch.
+    pub longest: usize,
+    /// How far from the ellipse the farthest is, in volts.
+    pub farthest_v: f64,
+    /// The ellipse through all samples and what they do on it; `None` where they determine none.
+    pub all: Option<(Ellipse, Coverage)>,
+}
+
+/// Robust deviations beyond which a sample is left out: noise of the normal distribution comes so far in one of 10¹⁵.
+pub const DEVIATIONS: f64 = 8.0;
+/// What is not further from the ellipse than this share of the amplitude stays, however little noise there is.
+pub const LEAST_SHARE: f64 = 0.02;
+/// Beyond this share of the samples they are no outliers but a property of the signal.
+pub const MOST: f64 = 0.05;
+/// With fewer samples nobody can tell which of them are wrong.
+pub const LEAST_SAMPLES: usize = 50;
+
+/// Samples that medians are taken from, evenly spread.
+const SAMPLED: usize = 1 << 15;
+/// Fits without outliers, until they stay the same.
+const ROUNDS: usize = 4;
+/// A normal distribution's deviation over the median of its distances from zero.
+const NORMAL: f64 = 1.4826;
+/// Median distance from an upright ellipse, as a share of its amplitude, beyond which the samples lie on none: a cloud has
+/// 0.3.
+const UPRIGHT: f64 = 0.15;
+/// A channel with less than this share of the other's range does not move.
+const DEAD: f64 = 0.05;
+
+/// What a look for outliers gives.
+pub(super) enum Found {
+    /// None, or so many that they are none.
+    Nothing,
+    /// These, and the ellipse through the others.
+    Outliers(Ellipse, Outliers),
+}
+
+/// Looks for samples far off; `all` is the ellipse through all of them, if there is one.
+pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found {
+    let count = sine.len().min(cosine.len());
+    if count < LEAST_SAMPLES {
+        return Found::Nothing;
+    }
+    // An odd stride does not keep step with a period of 2ⁿ samples.
+    let stride = (count / SAMPLED) | 1;
+    let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
+    let (ys, xs) = (sampled(sine), sampled(cosine));
+    // An ellipse through a far sample misses the others; the upright one is taken where it misses them less.
+    let upright = boxed(&ys, &xs).ok().filter(|boxed| median_off(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
+    let start = match (all, upright) {
+        (Some(all), Some(upright)) => {
+            let off = median_off(&ys, &xs, all);
+            let misses = off > LEAST_SHARE * upright.amplitude_v && off > median_off(&ys, &xs, &upright);
+            if misses { upright } else { *all }
+        }
+        (Some(all), None) => *all,
+        (None, Some(upright)) => upright,
+        (None, None) => return Found::Nothing,
+    };
+    let mut ellipse = start;
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for round in 0..ROUNDS {
+        let limit = (DEVIATIONS * NORMAL * median_off(&ys, &xs, &ellipse)).max(LEAST_SHARE * ellipse.amplitude_v);
+        let found = beyond(sine, cosine, &ellipse, limit);
+        let left_out: usize = found.iter().map(Range::len).sum();
+        if left_out as f64 > MOST * count as f64 {
+            return Found::Nothing;
+        }
+        if (round > 0 || Some(&ellipse) == all) && found == stretches {
+            break;
+        }
+        stretches = found;
+        let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
+        match fit_without(sine, cosine, &stretches, scale) {
+            Ok(better) => ellipse = better,
+            Err(_) => return Found::Nothing,
+        }
+    }
+    if stretches.is_empty() {
+        return Found::Nothing;
+    }
+    let outliers = Outliers {
+        count: stretches.iter().map(Range::len).sum(),
+        longest: stretches.iter().map(Range::len).max().unwrap_or(0),
+        farthest_v: farthest(sine, cosine, &stretches, &ellipse),
+        all: all.and_then(|all| Some((*all, Coverage::of(sine, cosine, all)?))),
+        stretches,
+    };
+    Found::Outliers(ellipse, outliers)
+}
+
+/// The channel that does not move, single samples aside.
+pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
+    let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
+    boxed(sine, cosine).err().flatten().filter(|_| !few)
+}
+
+/// What remains of `length` samples without `left_out`.
+pub(super) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
+    let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
+    let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
+    starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end)
+}
+
+fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: Scale) -> Result<Ellipse, FitError> {
+    let mut moments = Moments::new(scale);
+    for part in kept(sine.len().min(cosine.len()), left_out) {
+        moments.add(sine.get(part.clone()).unwrap_or_default(), cosine.get(part).unwrap_or_default())?;
+    }
+    Ellipse::of_moments(&moments)
+}
+
+/// An upright ellipse by quantiles, which a few samples do not move; the channel that does not move where one does not, and
+/// nothing where neither does.
+fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
+    /// Of a sine, a tenth of the time is spent outside of cos(0.05·π) of its amplitude.
+    const SHARE: f64 = 0.05;
+    let reach = (SHARE * std::f64::consts::PI).cos();
+    let channel = |values: &[f64]| {
+        let mut values = values.to_vec();
+        let (last, rank) = (values.len().saturating_sub(1), (values.len() as f64 * SHARE) as usize);
+        let low = rank_of(&mut values, rank);
+        let high = rank_of(&mut values, last.saturating_sub(rank));
+        ((low + high) / 2.0, (high - low) / 2.0 / reach)
+    };
+    let ((offset_sine_v, sine_v), (offset_cosine_v, amplitude_v)) = (channel(sine), channel(cosine));
+    let most = sine_v.max(amplitude_v);
+    // A constant of 2.5 V has a range of a few units in the last place at most.
+    if most <= 1e-9 * offset_sine_v.abs().max(offset_cosine_v.abs()) {
+        Err(None)
+    } else if sine_v < DEAD * most {
+        Err(Some(Channel::Sine))
+    } else if amplitude_v < DEAD * most {
+        Err(Some(Channel::Cosine))
+    } else {
+        let gain_ratio = amplitude_v / sine_v;
+        Ok(Ellipse { amplitude_v, offset_cosine_v, offset_sine_v, gain_ratio, phase_error_rad: 0.0 })
+    }
+}
+
+/// Median of the distances from an ellipse, in volts of its corrected circle.
+fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
+    let correction = ellipse.correction();
+    let off = |(y, x): (&f64, &f64)| {
+        let (y, x) = correction.apply(*y, *x);
+        (y.hypot(x) - ellipse.amplitude_v).abs()
+    };
+    let mut offs: Vec<f64> = sine.iter().zip(cosine).map(off).collect();
+    let middle = offs.len() / 2;
+    rank_of(&mut offs, middle)
+}
+
+/// The value of that rank, counted from the least.
+fn rank_of(values: &mut [f64], rank: usize) -> f64 {
+    if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
+}
+
+/// The samples that are further from the ellipse than `limit` volts.
+fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
+    /// Samples that are looked at together: mostly there is none among them.
+    const BLOCK: usize = 256;
+    let correction = ellipse.correction();
+    let squared = |volts: f64| volts * volts;
+    let (least, most) = (squared((ellipse.amplitude_v - limit).max(0.0)), squared(ellipse.amplitude_v + limit));
+    let is_beyond = |y: &f64, x: &f64| {
+        let (y, x) = correction.apply(*y, *x);
+        let square = y * y + x * x;
+        (square > most) | (square < least)
+    };
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
+        if !ys.iter().zip(xs).fold(false, |any, (y, x)| any | is_beyond(y, x)) {
+            continue;
+        }
+        for at in ys.iter().zip(xs).enumerate().filter(|(_, (y, x))| is_beyond(y, x)).map(|(at, _)| block * BLOCK + at)
+        {
+            match stretches.last_mut() {
+                Some(last) if last.end == at => last.end = at + 1,
+                _ => stretches.push(at..at + 1),
+            }
+        }
+    }
+    stretches
+}
+
+fn farthest(sine: &[f64], cosine: &[f64], stretches: &[Range<usize>], ellipse: &Ellipse) -> f64 {
+    let correction = ellipse.correction();
+    let samples = stretches.iter().flat_map(|part| {
+        sine.get(part.clone()).unwrap_or_default().iter().zip(cosine.get(part.clone()).unwrap_or_default())
+    });
+    samples.fold(0.0, |most: f64, (y, x)| {
+        let (y, x) = correction.apply(*y, *x);
+        most.max((y.hypot(x) - ellipse.amplitude_v).abs())
+    })
+}
+
+#[cfg(test)]
+mod tests;
