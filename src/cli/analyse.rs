@@ -11,8 +11,9 @@ use super::{Done, Result};
 use crate::app::explain;
 use crate::signal::analysis::Analysis;
 use crate::signal::capture::Wishes;
+use crate::signal::diagnosis::{Record, diagnose};
 use crate::signal::position_error::{Basis, Samples, harmonics};
-use crate::signal::quality::Limits;
+use crate::signal::quality::Family;
 use crate::store::read_capture;
 
 pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
@@ -26,11 +27,11 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let (_, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let analysis = Analysis::of(samples).map_err(|error| failed(&explain::signal::analysis(path, &error)))?;
-    let findings: Vec<String> = Limits::HIPERFACE
-        .judge(&analysis.ellipse, analysis.coverage.residual_rms)
-        .iter()
-        .map(|finding| explain::signal::finding(finding).terminal())
-        .collect();
+    let references_v = capture.references_v.as_ref().map(|(refsin, refcos)| (refsin.as_slice(), refcos.as_slice()));
+    let record = Record { samples, references_v, periods: None };
+    let diagnosis = diagnose(&record, Ok(&analysis), Family::Hiperface);
+    let findings: Vec<String> =
+        diagnosis.findings.iter().map(|finding| explain::signal::finding(finding).terminal()).collect();
     output.show(&json(&analysis, &findings), &text(&analysis, &findings))?;
     Ok(Done::Well)
 }

@@ -200,6 +200,11 @@ impl Correction {
         let x = cosine - self.p;
         (x * self.tan + self.scale * (sine - self.q), x)
     }
+
+    /// How a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes as the cosine.
+    pub(super) fn stretch(&self) -> (f64, f64) {
+        (self.tan, self.scale)
+    }
 }
 
 /// Names what is wrong with points that have no area.

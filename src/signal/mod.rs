@@ -9,6 +9,7 @@ pub mod arctan;
 pub mod capture;
 pub mod commutation;
 pub mod coverage;
+pub mod diagnosis;
 pub mod ellipse;
 pub mod history;
 pub mod input_circuit;

@@ -108,7 +108,7 @@ impl Spectrum {
     }
 
     /// A sine between two lines of a Hann window: the ratio of the highest to its higher neighbour tells how far.
-    fn peak_at(&self, at: usize) -> Line {
+    pub(super) fn peak_at(&self, at: usize) -> Line {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
         let (side, sign) = if after > before { (after, 1.0) } else { (before, -1.0) };

@@ -15,4 +15,5 @@ mod cli_ports;
 mod cli_simulate;
 mod cli_status;
 mod foreign;
+mod source;
 mod support;

@@ -6,8 +6,9 @@ use super::file;
 use crate::app::Text;
 use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
+use crate::signal::diagnosis::{Finding, Stuck, What};
 use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
-use crate::signal::quality::{Finding, Verdict};
+use crate::signal::quality::{Finding as Parameter, Verdict};
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
@@ -65,11 +66,93 @@ fn fit(path: &Path, error: &FitError) -> Text {
     }
 }
 
-/// What of a signal is out of its limits.
+/// What was found to look at in a signal.
 pub fn finding(finding: &Finding) -> Text {
+    let of = |id, which: Channel| {
+        Text::new(id).with_text(
+            "channel",
+            Text::new(match which {
+                Channel::Sine => "diagnosis.sine",
+                Channel::Cosine => "diagnosis.cosine",
+            }),
+        )
+    };
+    let millivolts = |id, volts: f64, share: f64| {
+        Text::new(id).with_number("millivolts", volts * 1e3, 1).with_number("percent", share * 100.0, 1)
+    };
+    match finding.what {
+        What::Limit(parameter) => limit(&parameter),
+        What::Still => Text::new("diagnosis.still"),
+        What::Same => Text::new("diagnosis.same"),
+        What::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
+        What::Dead { channel, stuck: Stuck::Ground(wire) } => {
+            of("diagnosis.dead_ground", channel).with("wire", wire.name())
+        }
+        What::Dead { channel, stuck: Stuck::Supply(wire) } => {
+            of("diagnosis.dead_supply", channel).with("wire", wire.name())
+        }
+        What::Dead { channel, stuck: Stuck::Apart(volts) } => {
+            of("diagnosis.dead_apart", channel).with_number("volts", volts, 2)
+        }
+        What::Half { channel, share } => of("diagnosis.half", channel).with_number("percent", share * 100.0, 0),
+        What::Level { wire, volts, ok_v: (least, most) } => Text::new("diagnosis.level")
+            .with("wire", wire.name())
+            .with_number("volts", volts, 2)
+            .with_number("least", least, decimals(least).max(1))
+            .with_number("most", most, decimals(most).max(1)),
+        What::Hum { mains_hz, volts, share, common } => {
+            let id = if common { "diagnosis.hum_common" } else { "diagnosis.hum" };
+            millivolts(id, volts, share).with_number("hertz", mains_hz, 0)
+        }
+        What::Interference { frequency_hz, volts, share, common } => {
+            let id = if common { "diagnosis.interference_common" } else { "diagnosis.interference" };
+            hertz(millivolts(id, volts, share), frequency_hz)
+        }
+        What::Noise { volts, share } => millivolts("diagnosis.noise", volts, share),
+        What::Harmonics { order, share } => Text::new("diagnosis.harmonics")
+            .with("below", order - 1)
+            .with("above", order + 1)
+            .with_number("percent", share * 100.0, 1)
+            .with_number("degrees", share.to_degrees(), 1),
+        What::Clipping { channel, volts, samples } => {
+            of("diagnosis.clipping", channel).with_number("volts", volts, 3).with_number("percent", samples * 100.0, 0)
+        }
+        What::Modulation { share } => Text::new("diagnosis.modulation").with_number("percent", share * 100.0, 1),
+        What::Spikes { count, volts } => {
+            Text::new("diagnosis.spikes").with("count", count).with_number("volts", volts, 2)
+        }
+        What::LetsGo { count, longest } => Text::new("diagnosis.lets_go").with("count", count).with("longest", longest),
+        What::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
+        What::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
+            hertz(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
+        }
+        What::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
+            hertz(changed("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
+        }
+        What::AmplitudeChanged { from_v, to_v } => changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3),
+    }
+}
+
+fn hertz(text: Text, frequency_hz: f64) -> Text {
+    // What a person looks for is a round number: four digits are enough above 1 kHz.
+    text.with_number("hertz", frequency_hz, if frequency_hz < 1_000.0 { 1 } else { 0 })
+}
+
+fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
+    Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
+}
+
+/// Decimals that a number has, three at most.
+fn decimals(value: f64) -> usize {
+    let whole = |decimals: usize| (value * 10_f64.powi(decimals as i32)).fract() == 0.0;
+    (0..3).find(|decimals| whole(*decimals)).unwrap_or(3)
+}
+
+/// What of a signal's parameters is out of its limits.
+fn limit(parameter: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
-    match *finding {
-        Finding::Amplitude { volts, ok_v: (least, most), verdict } => {
+    match *parameter {
+        Parameter::Amplitude { volts, ok_v: (least, most), verdict } => {
             let id = if verdict == Verdict::Fault { "signal.amplitude_fault" } else { "signal.amplitude" };
             Text::new(id).with_number("volts", 2.0 * volts, 3).with_number("least", 2.0 * least, 1).with_number(
                 "most",
@@ -77,11 +160,11 @@ pub fn finding(finding: &Finding) -> Text {
                 1,
             )
         }
-        Finding::OffsetSine(share) => percent("signal.offset_sine", share),
-        Finding::OffsetCosine(share) => percent("signal.offset_cosine", share),
-        Finding::GainRatio(ratio) => Text::new("signal.gain").with_number("ratio", ratio, 3),
-        Finding::PhaseError(degrees) => Text::new("signal.phase").with_number("degrees", degrees, 2),
-        Finding::Residual(share) => percent("signal.residual", share),
+        Parameter::OffsetSine(share) => percent("signal.offset_sine", share),
+        Parameter::OffsetCosine(share) => percent("signal.offset_cosine", share),
+        Parameter::GainRatio(ratio) => Text::new("signal.gain").with_number("ratio", ratio, 3),
+        Parameter::PhaseError(degrees) => Text::new("signal.phase").with_number("degrees", degrees, 2),
+        Parameter::Residual(share) => percent("signal.residual", share),
     }
 }
 
@@ -112,9 +195,6 @@ pub fn quantity(quantity: Quantity) -> Text {
 pub fn setting(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };
-    // As many as it has, three at most.
-    let whole = |value: f64, decimals: usize| (value * 10_f64.powi(decimals as i32)).fract() == 0.0;
-    let decimals = |value: f64| (0..3).find(|decimals| whole(value, *decimals)).unwrap_or(3);
     Text::new(id)
         .with_text("quantity", quantity(of))
         .with_number("least", least, decimals(least))
@@ -127,7 +207,33 @@ pub fn setting(error: &SettingError) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language;
+    use crate::signal::diagnosis::Severity;
+    use crate::signal::wires::Wire;
     use crate::sim::sine_cosine::Settings;
+
+    #[test]
+    fn a_finding_says_what_to_do_in_both_languages() {
+        let said = |what| {
+            let finding = Finding { severity: Severity::Warning, what };
+            [Language::English, Language::German].map(|language| super::finding(&finding).words(language))
+        };
+        let drive = What::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };
+        assert_eq!(
+            said(drive),
+            [
+                "Interference at 8000 Hz in both channels in phase, 12.3 mV (2.5 % of the amplitude): it comes in by the \
+                 screen or the ground. Connect the screen at both ends.",
+                "Störung mit 8000 Hz gleichphasig in beiden Kanälen, 12,3 mV (2,5 % der Amplitude): Sie kommt über Schirm \
+                 oder Masse. Den Schirm an beiden Enden auflegen.",
+            ]
+        );
+        let dead = What::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
+        assert!(said(dead)[1].starts_with("Der Sinus ist tot, REFSIN liegt auf Masse:"));
+        let level = What::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
+        assert!(said(level)[0].contains("3.20 V, outside 2.375 … 2.625 V"));
+        let harmonics = What::Harmonics { order: 4, share: 0.02 };
+        assert!(said(harmonics)[0].starts_with("Harmonics 3 and 5 of the signal, 2.0 %: an imaging error of 1.1°"));
+    }
 
     #[test]
     fn a_setting_out_of_range_is_told_with_its_range() {

@@ -1,0 +1,299 @@
+//! Lines of the spectrum that are no harmonics of the signal: what a drive, the mains or a switching supply adds to it.
+//!
+//! A motion that is not quite even, or an amplitude that changes over the revolution, puts lines beside those of the signal
+//! as well. They are told from interference by direction: what is added from outside moves the vector of both channels any
+//! way, half of it (on average over the period) along the radius; an uneven motion moves it along the circle only, and an
+//! uneven amplitude along the radius only.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use super::LEAST_LINE;
+use crate::signal::analysis::Analysis;
+use crate::signal::ellipse::Correction;
+use crate::signal::position_error::Samples;
+use crate::signal::spectrum::{Spectrum, sample_rate_hz};
+
+/// Frequencies of the mains.
+pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+/// Multiples of the mains that are taken for it.
+const MULTIPLES: f64 = 10.0;
+/// Lines of a spectrum further apart than this cannot be told to be the mains.
+const MAINS_SPACING_HZ: f64 = 10.0;
+
+/// A record is looked at so long at least, as far as there is so much of it: ten periods of the mains.
+const SECONDS: f64 = 0.2;
+/// Fewest and most samples of the spectrum.
+const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
+/// Fewest periods: of less, the signal's own line covers everything.
+const LEAST_PERIODS: f64 = 8.0;
+/// Harmonics of the signal that are passed over; of an uneven motion fewer, because they cover much, and what is spread
+/// so far does not stand out.
+const HARMONICS: (usize, usize) = (25, 5);
+/// Lines to each side of a harmonic that belong to it in a Hann window.
+const REACH: usize = 3;
+/// The signal's line is as wide as it is above this share of its peak.
+const WIDTH: f64 = 0.01;
+/// Lines on each side among which the noise is looked for.
+const NEIGHBOURS: usize = 50;
+/// Above the median of its neighbours by this factor, a line is no noise.
+const ABOVE: f64 = 6.0;
+/// Most lines that are told.
+const MOST: usize = 8;
+/// What part of an interference moves the vector along the radius.
+const RADIAL: Range<f64> = 0.25..0.75;
+/// Within this angle both channels are in phase.
+const IN_PHASE: f64 = TAU / 12.0;
+
+/// A line that is no harmonic of the signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interference {
+    /// Its frequency in hertz.
+    pub frequency_hz: f64,
+    /// Peak in the channel that has more of it, in volts.
+    pub volts: f64,
+    /// In phase and about equally strong in both channels.
+    pub common: bool,
+    /// The mains that it is, or is a multiple of.
+    pub mains_hz: Option<f64>,
+}
+
+/// A line and what it does to the distance from the ellipse, mean square in V².
+struct Found {
+    line: Interference,
+    radial_v2: f64,
+}
+
+/// What a spectrum shows.
+pub(super) struct Seen {
+    /// The strongest first.
+    pub(super) lines: Vec<Interference>,
+    /// White noise of one channel, rms, in volts.
+    pub(super) noise_v: f64,
+    /// Distance of two lines in hertz.
+    pub(super) spacing_hz: f64,
+    /// What all lines together do to the distance from the ellipse, mean square in V².
+    pub(super) radial_v2: f64,
+}
+
+/// `None` where the times are not even, or there is too little.
+pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Seen> {
+    let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
+    let all = samples.time_s.get(..count)?;
+    let wanted = (SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
+    let length = wanted.clamp(SAMPLES.0, SAMPLES.1).min(count);
+    // The middle, where a motion is steadiest.
+    let start = (count - length) / 2;
+    let rate_hz = sample_rate_hz(all.get(start..start + length)?).ok()?;
+    if analysis.coverage.periods * length as f64 / (count as f64) < LEAST_PERIODS {
+        return None;
+    }
+    let without = |values: &[f64]| {
+        let mut values = values.get(start..start + length).unwrap_or_default().to_vec();
+        hold(&mut values, start, analysis);
+        values
+    };
+    let (sine, cosine) = (without(samples.sine_v), without(samples.cosine_v));
+    let spectra = (Spectrum::of(&sine, rate_hz).ok()?, Spectrum::of(&cosine, rate_hz).ok()?);
+    let both: Vec<f64> = spectra
+        .0
+        .amplitudes_v()
+        .iter()
+        .zip(spectra.1.amplitudes_v())
+        .map(|(sine, cosine)| sine.hypot(*cosine))
+        .collect();
+    let is_signal = signal(&both);
+    let rest: Vec<f64> =
+        both.iter().zip(&is_signal).filter(|(_, signal)| !**signal).map(|(height, _)| *height).collect();
+    let noise_v = noise(median(rest)?, length);
+    let projector =
+        Projector { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
+    let spacing_hz = spectra.0.spacing_hz();
+    let mut found: Vec<Found> = candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
+        .into_iter()
+        .filter_map(|at| {
+            let louder = |at: usize| height(spectra.0.amplitudes_v(), at) > height(spectra.1.amplitudes_v(), at);
+            let spectrum = if louder(at) { &spectra.0 } else { &spectra.1 };
+            projector.line(spectrum.peak_at(at).frequency_hz)
+        })
+        .filter(|found| found.line.volts >= LEAST_LINE * analysis.ellipse.amplitude_v)
+        .collect();
+    found.sort_by(|a, b| b.line.volts.total_cmp(&a.line.volts));
+    found.truncate(MOST);
+    let radial_v2 = found.iter().map(|found| found.radial_v2).sum();
+    let mut lines: Vec<Interference> = found.into_iter().map(|found| found.line).collect();
+    name_mains(&mut lines, spacing_hz);
+    Some(Seen { lines, noise_v, spacing_hz, radial_v2 })
+}
+
+/// Outliers have the value before them: a spike would raise every line.
+fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
+    let end = start + values.len();
+    let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    for stretch in stretches.iter().filter(|stretch| stretch.start < end && stretch.end > start) {
+        let (from, to) = (stretch.start.max(start) - start, stretch.end.min(end) - start);
+        let before = from.checked_sub(1).or(Some(to)).and_then(|at| values.get(at)).copied();
+        if let (Some(before), Some(part)) = (before, values.get_mut(from..to)) {
+            part.fill(before);
+        }
+    }
+}
+
+fn height(lines: &[f64], at: usize) -> f64 {
+    lines.get(at).copied().unwrap_or(0.0)
+}
+
+/// Which lines belong to the signal: its own and its harmonics, also where these are folded back at half the sample rate.
+fn signal(both: &[f64]) -> Vec<bool> {
+    let mut belongs = vec![false; both.len()];
+    let first = REACH.min(both.len());
+    let peak = (first..both.len()).max_by(|a, b| height(both, *a).total_cmp(&height(both, *b))).unwrap_or(0);
+    // An uneven motion widens a line, and the harmonics by as many times.
+    let above = |at: usize| height(both, at) > WIDTH * height(both, peak);
+    let up = (peak..both.len()).take_while(|at| above(*at)).count();
+    let down = (0..=peak).rev().take_while(|at| above(*at)).count();
+    let width = up.max(down).saturating_sub(1);
+    let whole = 2 * both.len().saturating_sub(1).max(1);
+    let even = width <= REACH;
+    for order in 0..=if even { HARMONICS.0 } else { HARMONICS.1 } {
+        let place = order * peak % whole;
+        let place = place.min(whole - place);
+        let reach = if even { REACH + order / 2 } else { width * order.max(1) };
+        let (from, to) = (place.saturating_sub(reach), (place + reach + 1).min(both.len()));
+        belongs.get_mut(from..to).unwrap_or_default().fill(true);
+    }
+    belongs
+}
+
+/// Peaks above the noise around them, the highest first.
+fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
+    let free = |at: usize| !is_signal.get(at).copied().unwrap_or(true);
+    let mut found: Vec<usize> = (1..both.len().saturating_sub(1))
+        .filter(|at| {
+            let own = height(both, *at);
+            let peak = own >= height(both, at - 1) && own > height(both, at + 1);
+            free(*at) && peak && own >= LEAST_LINE / 2.0 * amplitude
+        })
+        .collect();
+    found.sort_by(|a, b| height(both, *b).total_cmp(&height(both, *a)));
+    let mut taken: Vec<usize> = Vec::new();
+    // Of many that are no more than noise none is taken, however many there are.
+    for at in found.into_iter().take(4 * MOST) {
+        let near =
+            (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS).filter(|other| free(*other) && other.abs_diff(at) > REACH);
+        let floor = median(near.map(|other| height(both, other)).collect()).unwrap_or(0.0);
+        if height(both, at) >= ABOVE * floor && taken.iter().all(|other| other.abs_diff(at) > REACH) {
+            taken.push(at);
+        }
+    }
+    taken
+}
+
+/// White noise of one channel from the median line of both together: the square of such a line is the sum of four squares
+/// of the normal distribution, whose median is 3.3567 times their variance.
+fn noise(median: f64, samples: usize) -> f64 {
+    const MEDIAN: f64 = 3.356_694;
+    // A line is 4/n times a sum whose real and imaginary part each have the variance σ²·Σw²/2, Σw² = 3n/8.
+    median * samples as f64 / 4.0 / (MEDIAN * 3.0 * samples as f64 / 16.0).sqrt()
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Tells lines of the mains. 300 Hz and 600 Hz are of both: they go with what else is there.
+fn name_mains(lines: &mut [Interference], spacing_hz: f64) {
+    if spacing_hz > MAINS_SPACING_HZ {
+        return;
+    }
+    let is_of = |line: &Interference, mains: f64| {
+        let times = (line.frequency_hz / mains).round();
+        (1.0..=MULTIPLES).contains(&times) && (line.frequency_hz - times * mains).abs() <= (0.2 * spacing_hz).max(0.5)
+    };
+    let of = MAINS_HZ.map(|mains| lines.iter().filter(|line| is_of(line, mains)).count());
+    let [fifty, sixty] = MAINS_HZ;
+    let order = if of[1] > of[0] { [sixty, fifty] } else { [fifty, sixty] };
+    for line in lines {
+        line.mains_hz = order.into_iter().find(|mains| is_of(line, *mains));
+    }
+}
+
+/// A number in the plane.
+#[derive(Clone, Copy, Default)]
+struct Complex {
+    re: f64,
+    im: f64,
+}
+
+impl Complex {
+    fn times(self, factor: f64) -> Self {
+        Complex { re: self.re * factor, im: self.im * factor }
+    }
+
+    fn plus(self, other: Complex) -> Self {
+        Complex { re: self.re + other.re, im: self.im + other.im }
+    }
+
+    fn rotated(self, by: Complex) -> Self {
+        Complex { re: self.re * by.re - self.im * by.im, im: self.re * by.im + self.im * by.re }
+    }
+
+    fn square(self) -> f64 {
+        self.re * self.re + self.im * self.im
+    }
+}
+
+/// Looks at one frequency in both channels, and in what of them goes along the radius.
+struct Projector<'a> {
+    sine: &'a [f64],
+    cosine: &'a [f64],
+    analysis: &'a Analysis,
+    correction: Correction,
+    rate_hz: f64,
+}
+
+impl Projector<'_> {
+    /// The line at a frequency, if it is interference.
+    fn line(&self, frequency_hz: f64) -> Option<Found> {
+        let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
+        let stretch = self.correction.stretch();
+        // The correction is linear, so that it can be done to the line instead of the samples.
+        let corrected = sine.times(stretch.1).plus(cosine.times(stretch.0)).square() + cosine.square();
+        let radial = (along_sine.square() + along_cosine.square()) / corrected;
+        if !RADIAL.contains(&radial.sqrt()) {
+            return None;
+        }
+        let (sine_v, cosine_v) = (sine.square().sqrt(), cosine.square().sqrt());
+        let apart = (sine.im * cosine.re - sine.re * cosine.im).atan2(sine.re * cosine.re + sine.im * cosine.im);
+        let equal = (0.5..2.0).contains(&(sine_v / cosine_v));
+        let common = equal && apart.abs() < IN_PHASE;
+        let line = Interference { frequency_hz, volts: sine_v.max(cosine_v), common, mains_hz: None };
+        // Of the mean squares of both channels half goes along the radius.
+        Some(Found { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
+    }
+
+    /// Amplitude and phase of sine, cosine and what of their corrected values goes along the radius, in a Hann window.
+    fn at(&self, frequency_hz: f64) -> [Complex; 4] {
+        let count = self.sine.len() as f64;
+        let turn = |angle: f64| Complex { re: angle.cos(), im: angle.sin() };
+        let (step, window_step) = (turn(TAU * frequency_hz / self.rate_hz), turn(TAU / count));
+        let mut sums = [Complex::default(); 4];
+        let (mut phasor, mut window) = (turn(0.0), turn(0.0));
+        for (y, x) in self.sine.iter().zip(self.cosine) {
+            let (own_y, own_x) = self.correction.apply(*y, *x);
+            let length = own_y.hypot(own_x);
+            let off = 1.0 - self.analysis.ellipse.amplitude_v / length.max(f64::MIN_POSITIVE);
+            // The mean level is taken off, or it would leak into low frequencies.
+            let y = y - self.analysis.ellipse.offset_sine_v;
+            let x = x - self.analysis.ellipse.offset_cosine_v;
+            let weight = 1.0 - window.re;
+            for (sum, value) in sums.iter_mut().zip([y, x, off * own_y, off * own_x]) {
+                *sum = sum.plus(phasor.times(weight * value));
+            }
+            (phasor, window) = (phasor.rotated(step), window.rotated(window_step));
+        }
+        // The weights have the mean 1, and a sine has half its amplitude at its frequency.
+        sums.map(|sum| sum.times(2.0 / count))
+    }
+}

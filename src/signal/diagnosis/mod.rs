@@ -1,0 +1,390 @@
+//! What an engineer should look at: what is wrong with a recorded signal, and what it points to — a broken wire, the
+//! screen, a drive, the scale. Limits of the parameters are those of the family (`quality`); what belongs to the wiring is
+//! told by how samples lie (sections 1 and 2 of the project's sine/cosine reference), by lines of the spectrum and by what
+//! repeats with the period or the revolution.
+//!
+//! Thresholds without a source are assumptions (U) and stand in one place, below.
+
+mod compare;
+mod lines;
+mod shape;
+
+pub use compare::compare;
+pub use lines::Interference;
+
+use super::analysis::{Analysis, AnalysisError};
+use super::ellipse::{Channel, FitError};
+use super::position_error::Samples;
+use super::quality::{Family, Finding as OutOfLimits, Verdict, within};
+use super::wires::Wire;
+
+/// Hum and interference below this share of the amplitude are not told.
+pub const LEAST_LINE: f64 = 0.002;
+/// From this share of the amplitude on, a disturbance is a warning and no notice: it costs 0.6 electrical degrees.
+pub const WARNING_SHARE: f64 = 0.01;
+/// A channel whose amplitude is this share of the other's has lost one of its two wires.
+const HALF: (f64, f64) = (0.4, 0.6);
+/// What stays within so many volts of zero stands where both wires of a pair are equal.
+const SAME_LEVEL_V: f64 = 0.1;
+/// A wire below or above these is shorted to ground or to a supply, in volts.
+const RAILS_V: (f64, f64) = (0.5, 4.5);
+/// Samples left out of the fit, as a share of all, from which on they are a warning.
+const MANY_SPIKES: f64 = 1e-3;
+/// Samples in a row from which on it is no spike but a contact that lets go.
+const LETS_GO: usize = 16;
+/// Amplitude modulation over a revolution: told, and warned of.
+const MODULATION: (f64, f64) = (0.03, 0.1);
+
+/// The part of the residual's mean square that other findings have to explain.
+const EXPLAINED: f64 = 0.7;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Good to know; the signal is usable.
+    Notice,
+    /// Outside of its limits, or a disturbance that costs accuracy.
+    Warning,
+    /// The position is wrong or will be.
+    Fault,
+}
+
+/// Something to look at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finding {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What it is.
+    pub what: What,
+}
+
+/// What can be found. Shares are of the amplitude of the cosine channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What {
+    /// A parameter outside of the family's limits.
+    Limit(OutOfLimits),
+    /// Neither channel moves.
+    Still,
+    /// One channel does not move while the other does.
+    Dead {
+        /// Which.
+        channel: Channel,
+        /// Where its wires stand.
+        stuck: Stuck,
+    },
+    /// One channel has half of the other's amplitude: one of its two wires is open.
+    Half {
+        /// Which.
+        channel: Channel,
+        /// Its amplitude over the other's.
+        share: f64,
+    },
+    /// Both channels show the same, or one the opposite of the other.
+    Same,
+    /// The mean level of a reference is outside of the family's limits.
+    Level {
+        /// REFSIN or REFCOS.
+        wire: Wire,
+        /// Its mean in volts.
+        volts: f64,
+        /// Good from, good to, in volts.
+        ok_v: (f64, f64),
+    },
+    /// The mains and its multiples.
+    Hum {
+        /// 50 or 60 Hz.
+        mains_hz: f64,
+        /// All of its lines together, peak, in volts.
+        volts: f64,
+        /// As a share.
+        share: f64,
+        /// In phase and about equally strong in both channels: it comes in by the screen or the ground.
+        common: bool,
+    },
+    /// A line that is no harmonic of the signal.
+    Interference {
+        /// Its frequency in hertz.
+        frequency_hz: f64,
+        /// Peak in the channel that has more of it, in volts.
+        volts: f64,
+        /// As a share.
+        share: f64,
+        /// As of the hum.
+        common: bool,
+    },
+    /// White noise.
+    Noise {
+        /// Of one channel, rms, in volts.
+        volts: f64,
+        /// As a share.
+        share: f64,
+    },
+    /// The distance from the ellipse repeats so many times a period: harmonics one below and one above that.
+    Harmonics {
+        /// How many times, 3 to 8.
+        order: usize,
+        /// As a share, peak; so many radians are what it costs.
+        share: f64,
+    },
+    /// A channel is cut off.
+    Clipping {
+        /// Which.
+        channel: Channel,
+        /// Where, in volts.
+        volts: f64,
+        /// Share of the samples that stand there.
+        samples: f64,
+    },
+    /// The amplitude changes over a revolution.
+    Modulation {
+        /// Half of the difference between largest and least, over the mean.
+        share: f64,
+    },
+    /// Single samples far off were left out.
+    Spikes {
+        /// How many.
+        count: usize,
+        /// The farthest, in volts off the ellipse.
+        volts: f64,
+    },
+    /// Several samples in a row were far off and left out.
+    LetsGo {
+        /// How many in all.
+        count: usize,
+        /// The most in a row.
+        longest: usize,
+    },
+    /// Of two captures, the second has more noise.
+    NoiseRose {
+        /// First, rms, in volts.
+        from_v: f64,
+        /// Second.
+        to_v: f64,
+    },
+    /// Of two captures, only the second has this interference, or has more of it.
+    InterferenceRose {
+        /// Its frequency in hertz.
+        frequency_hz: f64,
+        /// First, peak, in volts; 0 where there was none to be seen.
+        from_v: f64,
+        /// Second.
+        to_v: f64,
+        /// In the second, as of the hum.
+        common: bool,
+    },
+    /// Of two captures, the second has another amplitude.
+    AmplitudeChanged {
+        /// First, peak, in volts.
+        from_v: f64,
+        /// Second.
+        to_v: f64,
+    },
+}
+
+/// Where the wires of a channel that does not move stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stuck {
+    /// Both at the same level: one is open, or they are shorted to each other.
+    Together,
+    /// This wire is at ground.
+    Ground(Wire),
+    /// This wire is at a supply.
+    Supply(Wire),
+    /// So many volts apart: one of them is shorted to something, or open where no resistor joins them.
+    Apart(f64),
+}
+
+/// What there is to judge by.
+#[derive(Clone, Copy, Debug)]
+pub struct Record<'a> {
+    /// The samples, references taken off.
+    pub samples: Samples<'a>,
+    /// REFSIN and REFCOS in volts, where they were recorded.
+    pub references_v: Option<(&'a [f64], &'a [f64])>,
+    /// Signal periods in a revolution, where known.
+    pub periods: Option<u32>,
+}
+
+/// What was found, and what a later capture can be compared with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Diagnosis {
+    /// The findings, the worst first.
+    pub findings: Vec<Finding>,
+    /// Amplitude of the cosine channel, peak, in volts; `None` where there is no ellipse.
+    pub amplitude_v: Option<f64>,
+    /// White noise of one channel, rms, in volts.
+    pub noise_v: Option<f64>,
+    /// Lines that are no harmonics of the signal, the mains among them, the strongest first; `None` where the capture has
+    /// no even times, or too little of them for a spectrum.
+    pub interference: Option<Vec<Interference>>,
+    /// Distance of two lines of that spectrum in hertz.
+    pub spacing_hz: Option<f64>,
+}
+
+/// Looks at a capture and at what its analysis gave.
+pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, family: Family) -> Diagnosis {
+    let mut diagnosis = Diagnosis::default();
+    let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
+    levels(record, family, &mut say);
+    match analysis {
+        Err(error) => without_ellipse(record, error, &mut say),
+        Ok(analysis) => {
+            let amplitude = analysis.ellipse.amplitude_v;
+            parameters(analysis, family, &mut say);
+            let seen = lines::look(&record.samples, analysis);
+            let noise_v = seen.as_ref().map_or(analysis.coverage.residual_rms * amplitude, |seen| seen.noise_v);
+            disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
+            let harmonics = shape::harmonics(&record.samples, analysis);
+            let modulation = record.periods.and_then(|periods| shape::modulation(&record.samples, analysis, periods));
+            shapes(record, analysis, harmonics, modulation, &mut say);
+            // A residual whose causes are told needs no words of its own.
+            let by_lines =
+                seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
+            let by_shape = [harmonics.map(|(_, share)| share), modulation].into_iter().flatten();
+            let explained = by_lines + by_shape.map(|share| share * share / 2.0).sum::<f64>();
+            if explained >= EXPLAINED * analysis.coverage.residual_rms.powi(2) {
+                diagnosis.findings.retain(|finding| !matches!(finding.what, What::Limit(OutOfLimits::Residual(_))));
+            }
+            diagnosis.amplitude_v = Some(amplitude);
+            diagnosis.noise_v = Some(noise_v);
+            diagnosis.spacing_hz = seen.as_ref().map(|seen| seen.spacing_hz);
+            diagnosis.interference = seen.map(|seen| seen.lines);
+        }
+    }
+    // The order of one severity stays.
+    diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    diagnosis
+}
+
+fn severity(share: f64) -> Severity {
+    if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
+}
+
+fn levels(record: &Record<'_>, family: Family, say: &mut dyn FnMut(Severity, What)) {
+    let Some((refsin, refcos)) = record.references_v else { return };
+    let ok_v = family.limits().level_v;
+    for (wire, values) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
+        if let Some(volts) = mean(values)
+            && !within(volts, ok_v)
+        {
+            say(Severity::Warning, What::Level { wire, volts, ok_v });
+        }
+    }
+}
+
+/// Where there is no ellipse, how the samples lie still tells why.
+fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, What)) {
+    match error {
+        AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, What::Still),
+        AnalysisError::Fit(FitError::Line) => say(Severity::Fault, What::Same),
+        AnalysisError::Fit(FitError::Dead(channel)) => {
+            say(Severity::Fault, What::Dead { channel: *channel, stuck: stuck(record, *channel) });
+        }
+        _ => {}
+    }
+}
+
+fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
+    let references = record.references_v.unwrap_or_default();
+    let (values, reference, wires) = match channel {
+        Channel::Sine => (record.samples.sine_v, references.0, (Wire::Sin, Wire::Refsin)),
+        Channel::Cosine => (record.samples.cosine_v, references.1, (Wire::Cos, Wire::Refcos)),
+    };
+    let difference = mean(values).unwrap_or(0.0);
+    let level = mean(reference);
+    // Both may stand at ground, where the pair is open at the encoder and the receiver has no bias.
+    let wires = level.map(|level| [(wires.0, level + difference), (wires.1, level)]);
+    let at = |is: fn(f64) -> bool| wires.and_then(|wires| wires.into_iter().find(|(_, level)| is(*level)));
+    match (at(|level| level < RAILS_V.0), at(|level| level > RAILS_V.1)) {
+        _ if difference.abs() <= SAME_LEVEL_V => Stuck::Together,
+        (Some((wire, _)), _) => Stuck::Ground(wire),
+        (None, Some((wire, _))) => Stuck::Supply(wire),
+        (None, None) => Stuck::Apart(difference),
+    }
+}
+
+/// The ellipse against its limits. A channel that has lost a wire explains amplitude and gain.
+fn parameters(analysis: &Analysis, family: Family, say: &mut dyn FnMut(Severity, What)) {
+    let ratio = analysis.ellipse.gain_ratio;
+    let half = if within(1.0 / ratio, HALF) {
+        Some((Channel::Sine, 1.0 / ratio))
+    } else if within(ratio, HALF) {
+        Some((Channel::Cosine, ratio))
+    } else {
+        None
+    };
+    if let Some((channel, share)) = half {
+        say(Severity::Fault, What::Half { channel, share });
+    }
+    for found in family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms) {
+        let explained = matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_));
+        let severity = match found {
+            OutOfLimits::Amplitude { verdict: Verdict::Fault, .. } => Severity::Fault,
+            _ => Severity::Warning,
+        };
+        if half.is_none() || !explained {
+            say(severity, What::Limit(found));
+        }
+    }
+}
+
+fn disturbances(amplitude: f64, noise_v: f64, seen: Option<&lines::Seen>, say: &mut dyn FnMut(Severity, What)) {
+    let lines = seen.map_or(&[][..], |seen| &seen.lines);
+    for mains_hz in lines::MAINS_HZ {
+        let of_it = || lines.iter().filter(|line| line.mains_hz == Some(mains_hz));
+        if let Some(strongest) = of_it().next() {
+            let volts = of_it().map(|line| line.volts * line.volts).sum::<f64>().sqrt();
+            let share = volts / amplitude;
+            say(severity(share), What::Hum { mains_hz, volts, share, common: strongest.common });
+        }
+    }
+    for line in lines.iter().filter(|line| line.mains_hz.is_none()) {
+        let Interference { frequency_hz, volts, common, .. } = *line;
+        let share = volts / amplitude;
+        say(severity(share), What::Interference { frequency_hz, volts, share, common });
+    }
+    let share = noise_v / amplitude;
+    if share >= WARNING_SHARE && seen.is_some() {
+        say(Severity::Warning, What::Noise { volts: noise_v, share });
+    }
+}
+
+fn shapes(
+    record: &Record<'_>,
+    analysis: &Analysis,
+    harmonics: Option<(usize, f64)>,
+    modulation: Option<f64>,
+    say: &mut dyn FnMut(Severity, What),
+) {
+    if let Some((order, share)) = harmonics
+        && share >= WARNING_SHARE
+    {
+        say(Severity::Warning, What::Harmonics { order, share });
+    }
+    for (channel, volts, samples) in shape::clipping(&record.samples, analysis) {
+        say(Severity::Warning, What::Clipping { channel, volts, samples });
+    }
+    if let Some(share) = modulation
+        && share >= MODULATION.0
+    {
+        let severity = if share >= MODULATION.1 { Severity::Warning } else { Severity::Notice };
+        say(severity, What::Modulation { share });
+    }
+    if let Some(outliers) = &analysis.outliers {
+        let many = outliers.count as f64 > MANY_SPIKES * analysis.samples as f64;
+        let severity = if many { Severity::Warning } else { Severity::Notice };
+        if outliers.longest >= LETS_GO {
+            let (count, longest) = (outliers.count, outliers.longest);
+            say(Severity::Fault, What::LetsGo { count, longest });
+        } else {
+            say(severity, What::Spikes { count: outliers.count, volts: outliers.farthest_v });
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+#[cfg(test)]
+mod tests;

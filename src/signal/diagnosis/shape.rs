@@ -1,0 +1,128 @@
+//! What repeats with the period or the revolution, or stands at an end of the range: harmonics of the scale, channels that
+//! are cut off, an amplitude that changes over the revolution. None of it needs even times.
+
+use std::f64::consts::TAU;
+
+use crate::signal::analysis::Analysis;
+use crate::signal::ellipse::Channel;
+use crate::signal::outliers::kept;
+use crate::signal::position_error::Samples;
+
+/// Sectors of the period in which the distance from the ellipse is averaged.
+const SECTORS: usize = 64;
+/// Most samples that are looked at for that.
+const SAMPLES: usize = 1 << 18;
+/// Orders of that curve; the first two are what the ellipse takes.
+const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
+/// Sectors of a revolution.
+const OF_REVOLUTION: usize = 36;
+/// Samples a period that are enough to follow the angle.
+const FOLLOWED: f64 = 16.0;
+
+/// How near to its end a sample stands at it, as a share of the amplitude.
+const AT_END: f64 = 0.002;
+/// So many times the share of a sine that is not cut off are needed: it has √(2·0.002)/π = 2 % there.
+const CUT_OFF: f64 = 3.0 * 0.0201;
+/// Fewest periods: a shaft that stands would leave its samples in one place.
+const LEAST_PERIODS: f64 = 2.0;
+/// A sine that is cut off keeps at least so far off its ellipse, rms as a share of the amplitude.
+const LEAST_RESIDUAL: f64 = 0.002;
+
+/// The strongest order of the distance from the ellipse over the period, and its peak as a share of the amplitude; `None`
+/// where not every part of the period has samples.
+pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
+    let correction = analysis.ellipse.correction();
+    let mut sectors = [(0.0, 0_u32); SECTORS];
+    // An odd stride does not keep step with a period of 2ⁿ samples.
+    let stride = (analysis.samples / SAMPLES) | 1;
+    for (y, x) in good(samples, analysis).step_by(stride) {
+        let (y, x) = correction.apply(y, x);
+        let share = (y.atan2(x) / TAU).rem_euclid(1.0);
+        if let Some((sum, count)) = sectors.get_mut((share * SECTORS as f64) as usize) {
+            *sum += y.hypot(x) / analysis.ellipse.amplitude_v - 1.0;
+            *count += 1;
+        }
+    }
+    if sectors.iter().any(|(_, count)| *count == 0) {
+        return None;
+    }
+    let order_of = |order: usize| {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (at, (sum, count)) in sectors.iter().enumerate() {
+            let angle = TAU * order as f64 * at as f64 / SECTORS as f64;
+            let height = sum / f64::from(*count);
+            (sine, cosine) = (sine + height * angle.sin(), cosine + height * angle.cos());
+        }
+        // The mean over a sector lessens the higher orders.
+        let half = TAU / 2.0 * order as f64 / SECTORS as f64;
+        2.0 / SECTORS as f64 * f64::hypot(sine, cosine) * half / half.sin()
+    };
+    ORDERS.map(|order| (order, order_of(order))).max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Channels that are cut off: at which voltage, and the share of the samples that stand there.
+pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Channel, f64, f64)> {
+    if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
+        return Vec::new();
+    }
+    let ellipse = &analysis.ellipse;
+    let channels = [
+        (Channel::Sine, good(samples, analysis).map(|(y, _)| y).collect::<Vec<f64>>(), ellipse.amplitude_sine_v()),
+        (Channel::Cosine, good(samples, analysis).map(|(_, x)| x).collect(), ellipse.amplitude_v),
+    ];
+    let mut found = Vec::new();
+    for (channel, values, amplitude) in channels {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        for end in [least, most] {
+            let standing = values.iter().filter(|value| (*value - end).abs() <= AT_END * amplitude).count();
+            let share = standing as f64 / values.len().max(1) as f64;
+            if share >= CUT_OFF {
+                found.push((channel, end, share));
+            }
+        }
+    }
+    found
+}
+
+/// How far the amplitude rises and falls over a revolution of so many periods, as a share; `None` where the capture covers
+/// less than one.
+pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
+    let revolution = f64::from(periods);
+    if periods == 0 || analysis.coverage.periods < revolution {
+        return None;
+    }
+    let correction = analysis.ellipse.correction();
+    let mut sectors = [(0.0, 0_u32); OF_REVOLUTION];
+    let stride = ((analysis.samples as f64 / analysis.coverage.periods / FOLLOWED) as usize).max(1);
+    let (mut place, mut last) = (0.0, None);
+    for (y, x) in good(samples, analysis).step_by(stride) {
+        let (y, x) = correction.apply(y, x);
+        let phase = y.atan2(x) / TAU;
+        let step: f64 = phase - last.unwrap_or(phase);
+        place += step - step.round();
+        last = Some(phase);
+        let share = (place / revolution).rem_euclid(1.0);
+        if let Some((sum, count)) = sectors.get_mut((share * OF_REVOLUTION as f64) as usize) {
+            *sum += y.hypot(x);
+            *count += 1;
+        }
+    }
+    if sectors.iter().any(|(_, count)| *count == 0) {
+        return None;
+    }
+    let lengths = sectors.map(|(sum, count)| sum / f64::from(count));
+    let least = lengths.into_iter().fold(f64::INFINITY, f64::min);
+    let most = lengths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    Some((most - least) / (most + least))
+}
+
+/// Sine and cosine of the samples that were not left out.
+fn good<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
+    let (sine, cosine) = (samples.sine_v, samples.cosine_v);
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    kept(sine.len().min(cosine.len()), left_out).flat_map(move |part| {
+        let values = |values: &'a [f64]| values.get(part.clone()).unwrap_or_default().iter().copied();
+        values(sine).zip(values(cosine))
+    })
+}

@@ -1,0 +1,349 @@
+//! Signals made by arithmetic with one thing wrong, and good ones of which nothing may be said.
+
+use std::f64::consts::TAU;
+
+use super::*;
+
+const RATE: f64 = 100_000.0;
+const COUNT: usize = 40_000;
+
+/// Sine and cosine of 0.5 V; of each sample: time, angle in periods.
+struct Made {
+    time: Vec<f64>,
+    sine: Vec<f64>,
+    cosine: Vec<f64>,
+    references: Option<(Vec<f64>, Vec<f64>)>,
+    periods: Option<u32>,
+}
+
+/// 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine and cosine.
+fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) -> (f64, f64)) -> Made {
+    let mut random = fastrand::Rng::with_seed(3);
+    // Four even numbers have a variance of a third.
+    let mut noise = || 5e-4 * 3.0_f64.sqrt() * ((0..4).map(|_| random.f64()).sum::<f64>() - 2.0);
+    let mut made = Made { time: vec![], sine: vec![], cosine: vec![], references: None, periods: None };
+    for at in 0..COUNT {
+        let time = at as f64 / RATE;
+        let angle = TAU * motion(time);
+        let (sine, cosine) = disturbed(time, angle, (0.5 * angle.sin(), 0.5 * angle.cos()));
+        made.time.push(time);
+        made.sine.push(sine + noise());
+        made.cosine.push(cosine + noise());
+    }
+    made
+}
+
+/// 1234.5 periods a second.
+fn steady(time: f64) -> f64 {
+    1234.5 * time
+}
+
+fn added(volts_sine: f64, volts_cosine: f64, hertz: f64) -> impl Fn(f64, f64, (f64, f64)) -> (f64, f64) {
+    move |time, _, (sine, cosine)| {
+        let wave = (TAU * hertz * time).sin();
+        (sine + volts_sine * wave, cosine + volts_cosine * wave)
+    }
+}
+
+impl Made {
+    fn record(&self) -> Record<'_> {
+        Record {
+            samples: Samples { time_s: &self.time, sine_v: &self.sine, cosine_v: &self.cosine },
+            references_v: self.references.as_ref().map(|(refsin, refcos)| (refsin.as_slice(), refcos.as_slice())),
+            periods: self.periods,
+        }
+    }
+
+    fn diagnosed(&self) -> Diagnosis {
+        let record = self.record();
+        diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Hiperface)
+    }
+
+    /// The one finding.
+    #[track_caller]
+    fn finding(&self) -> Finding {
+        let found = self.diagnosed().findings;
+        assert_eq!(found.len(), 1, "{found:?}");
+        found[0]
+    }
+}
+
+#[track_caller]
+fn near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
+}
+
+#[test]
+fn of_a_good_signal_nothing_is_said() {
+    let uneven = |time: f64| steady(time) + 0.3 * (TAU * 20.5 * time).sin() + 0.02 * (TAU * 300.0 * time).sin();
+    let plain = |_, _, signal| signal;
+    let slow = |time: f64| 3.0 * time;
+    let speeding = |time: f64| 100.0 * time + 4_000.0 * time * time;
+    for (label, made, spectrum) in [
+        ("steady", made(steady, plain), true),
+        ("backwards", made(|time| -steady(time), plain), true),
+        ("an uneven motion", made(uneven, plain), true),
+        ("speeding up a little", made(|time| steady(time) + 50.0 * time * time, plain), true),
+        ("speeding up", made(speeding, plain), true),
+        ("nearly too fast", made(|time| 49_000.0 * time, plain), true),
+        ("few periods", made(slow, plain), false),
+    ] {
+        let told = made.diagnosed();
+        assert_eq!(told.findings, [], "{label}: {told:?}");
+        near(told.noise_v.unwrap(), 5e-4, 5e-5);
+        assert_eq!(told.interference.is_some(), spectrum, "{label}");
+    }
+}
+
+#[test]
+fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
+    // 16 periods a revolution: 77 Hz beside the signal on both sides.
+    let wobbling = |_, angle: f64, (sine, cosine)| {
+        let amplitude = 1.0 + 0.04 * (angle / 16.0).cos();
+        (sine * amplitude, cosine * amplitude)
+    };
+    let mut capture = made(steady, wobbling);
+    assert_eq!(capture.diagnosed().interference, Some(vec![]));
+    capture.periods = Some(16);
+    let finding = capture.finding();
+    let What::Modulation { share } = finding.what else { panic!("{finding:?}") };
+    assert_eq!(finding.severity, Severity::Notice);
+    // The mean over a 36th of a revolution lessens it by a thousandth.
+    near(share, 0.04, 3e-4);
+    capture.periods = Some(2_000);
+    // Less than a revolution says nothing of it, so that the distance from the ellipse is what there is to tell.
+    let finding = capture.finding();
+    assert!(matches!(finding.what, What::Limit(OutOfLimits::Residual(_))), "{finding:?}");
+}
+
+#[test]
+fn a_drive_is_told_by_its_frequency_and_amplitude() {
+    for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
+        for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
+            let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding();
+            let What::Interference { frequency_hz, volts: found, share, common } = finding.what else {
+                panic!("{finding:?}")
+            };
+            near(frequency_hz, hertz, 0.5);
+            // The noise moves a line by 2·0.5 mV·√(1.5/80 000) = 4 µV.
+            near(found, volts, 4e-5);
+            near(share, volts / 0.5, 1e-4);
+            assert_eq!((finding.severity, common), (severity, false));
+        }
+    }
+}
+
+#[test]
+fn also_while_the_speed_changes() {
+    let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding();
+    let What::Interference { frequency_hz, volts, common, .. } = finding.what else { panic!("{finding:?}") };
+    near(frequency_hz, 8_000.0, 0.5);
+    near(volts, 0.02, 2e-4);
+    assert!(common, "in phase and of nearly the same strength");
+}
+
+#[test]
+fn the_mains_are_told_with_their_multiples() {
+    for mains in [50.0, 60.0] {
+        let hum = |time: f64, _, (sine, cosine)| {
+            let wave = 0.008 * (TAU * mains * time).sin() + 0.006 * (TAU * 3.0 * mains * time + 1.0).sin();
+            (sine + wave, cosine + wave)
+        };
+        let finding = made(steady, hum).finding();
+        let What::Hum { mains_hz, volts, share, common } = finding.what else { panic!("{finding:?}") };
+        assert_eq!((mains_hz, common, finding.severity), (mains, true, Severity::Warning));
+        near(volts, 0.01, 5e-5);
+        near(share, 0.02, 1e-4);
+    }
+    // Ten milliseconds cannot tell 50 Hz from the mean level.
+    let mut short = made(steady, added(0.01, 0.01, 50.0));
+    for column in [&mut short.time, &mut short.sine, &mut short.cosine] {
+        column.truncate(1_000);
+    }
+    assert!(!short.diagnosed().findings.iter().any(|finding| matches!(finding.what, What::Hum { .. })));
+}
+
+#[test]
+fn noise_is_told_beside_the_lines() {
+    let mut random = fastrand::Rng::with_seed(9);
+    let mut capture = made(steady, added(0.02, 0.0, 8_000.0));
+    for value in capture.sine.iter_mut().chain(&mut capture.cosine) {
+        *value += 0.01 * 3.0_f64.sqrt() * ((0..4).map(|_| random.f64()).sum::<f64>() - 2.0);
+    }
+    let found = capture.diagnosed().findings;
+    let noise = found.iter().find_map(|finding| match finding.what {
+        What::Noise { volts, share } => Some((finding.severity, volts, share)),
+        _ => None,
+    });
+    let (severity, volts, share) = noise.unwrap();
+    assert_eq!(severity, Severity::Warning);
+    near(volts, 0.01, 2e-4);
+    near(share, 0.02, 4e-4);
+    assert_eq!(found.len(), 2, "the distance from the ellipse needs no words of its own: {found:?}");
+}
+
+#[test]
+fn a_third_harmonic_is_told_whatever_the_motion() {
+    let third =
+        |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
+    for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
+        let finding = made.finding();
+        let What::Harmonics { order, share } = finding.what else { panic!("{finding:?}") };
+        assert_eq!((order, finding.severity), (4, Severity::Warning));
+        near(share, 0.02, 2e-4);
+    }
+}
+
+#[test]
+fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
+    let cut = |_, _, (sine, cosine): (f64, f64)| (sine, cosine.min(0.45));
+    let mut capture = made(steady, cut);
+    // A converter at its end has no noise.
+    capture.cosine.iter_mut().for_each(|value| *value = value.min(0.45));
+    let found = capture.diagnosed().findings;
+    let cut_off = found.iter().find_map(|finding| match finding.what {
+        What::Clipping { channel, volts, samples } => Some((channel, volts, samples)),
+        _ => None,
+    });
+    let (channel, volts, samples) = cut_off.unwrap();
+    assert_eq!(channel, Channel::Cosine);
+    near(volts, 0.45, 1e-9);
+    // arccos(0.9)/π of the time, and what is within 0.2 % below.
+    near(samples, 0.1436, 0.003);
+}
+
+#[test]
+fn broken_wires() {
+    let dead = |level: f64| move |_, _, (sine, _): (f64, f64)| (sine, level);
+    let with = |level: f64, refcos: f64| Made {
+        references: Some((vec![2.5; COUNT], vec![refcos; COUNT])),
+        ..made(steady, dead(level))
+    };
+    let cases = [
+        ("open at a terminated receiver", made(steady, dead(0.0)), Stuck::Together),
+        ("open elsewhere", made(steady, dead(-0.8)), Stuck::Apart(-0.8)),
+        ("COS at ground", with(-2.4, 2.5), Stuck::Ground(Wire::Cos)),
+        ("COS at 5 V", with(2.4, 2.5), Stuck::Supply(Wire::Cos)),
+        ("REFCOS at ground", with(2.5, 0.0), Stuck::Ground(Wire::Refcos)),
+        ("both together", with(0.0, 2.5), Stuck::Together),
+    ];
+    for (label, made, expected) in cases {
+        let found = made.diagnosed().findings;
+        let What::Dead { channel, stuck } = found[0].what else { panic!("{label}: {found:?}") };
+        assert_eq!((channel, found[0].severity), (Channel::Cosine, Severity::Fault));
+        match (stuck, expected) {
+            (Stuck::Apart(found), Stuck::Apart(expected)) => near(found, expected, 1e-4),
+            _ => assert_eq!(stuck, expected, "{label}"),
+        }
+    }
+    let half = made(steady, |_, _, (sine, cosine)| (sine / 2.0, cosine)).finding();
+    let What::Half { channel: Channel::Sine, share } = half.what else { panic!("{half:?}") };
+    near(share, 0.5, 1e-3);
+    let same = made(steady, |_, _, (sine, _)| (sine, -sine)).finding();
+    assert_eq!(same, Finding { severity: Severity::Fault, what: What::Same });
+    let mut still = made(steady, |_, _, _| (0.0, 0.0));
+    still.sine.fill(0.3);
+    still.cosine.fill(-0.1);
+    assert_eq!(still.finding(), Finding { severity: Severity::Fault, what: What::Still });
+}
+
+#[test]
+fn levels_of_the_references_are_judged_by_the_family() {
+    let mut capture = made(steady, |_, _, signal| signal);
+    capture.references = Some((vec![2.3; COUNT], vec![3.2; COUNT]));
+    let finding = capture.finding();
+    let What::Level { wire: Wire::Refcos, volts, ok_v: (2.0, 3.0) } = finding.what else { panic!("{finding:?}") };
+    near(volts, 3.2, 1e-9);
+    let record = capture.record();
+    let narrow = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Ttk70);
+    assert_eq!(narrow.findings.len(), 2);
+}
+
+#[test]
+fn spikes_are_told_and_are_no_interference() {
+    let mut capture = made(steady, |_, _, signal| signal);
+    (0..20).for_each(|at| capture.sine[2_000 * at + 77] = 2.0);
+    let finding = capture.finding();
+    let What::Spikes { count: 20, volts } = finding.what else { panic!("{finding:?}") };
+    assert!(volts > 1.0 && finding.severity == Severity::Notice);
+    // One of the spikes is among them.
+    for at in 24_000..24_300 {
+        (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
+    }
+    let finding = capture.finding();
+    assert_eq!(finding, Finding { severity: Severity::Fault, what: What::LetsGo { count: 319, longest: 300 } });
+}
+
+#[test]
+fn the_worst_comes_first_and_limits_are_the_family_s() {
+    let mut capture = made(steady, |_, _, (sine, cosine)| (0.84 * sine + 0.06, 0.84 * cosine));
+    capture.sine[9] = 3.0;
+    let severities: Vec<Severity> = capture.diagnosed().findings.iter().map(|finding| finding.severity).collect();
+    assert_eq!(severities, [Severity::Warning, Severity::Warning, Severity::Notice]);
+    let record = capture.record();
+    let wide = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::AfsAfm60);
+    assert_eq!(wide.findings.len(), 2, "0.84 V is good there: {wide:?}");
+}
+
+#[test]
+fn of_two_captures_it_is_told_what_became_worse() {
+    let off = made(steady, |_, _, signal| signal).diagnosed();
+    let hum = |hum: f64, drive: f64, amplitude: f64| {
+        made(steady, move |time, _, (sine, cosine)| {
+            let hum = hum * (TAU * 50.0 * time).sin();
+            let drive = drive * (TAU * 8_000.0 * time).sin();
+            (amplitude * sine + hum + drive, amplitude * cosine + hum)
+        })
+        .diagnosed()
+    };
+    assert_eq!(compare(&off, &off), []);
+    assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), [], "what is gone is not worse");
+    let on = compare(&hum(0.004, 0.0, 1.0), &hum(0.004, 0.02, 1.0));
+    let [
+        Finding {
+            severity: Severity::Warning,
+            what: What::InterferenceRose { frequency_hz, from_v, to_v, common: false },
+        },
+    ] = on.as_slice()
+    else {
+        panic!("{on:?}")
+    };
+    near(*frequency_hz, 8_000.0, 0.5);
+    assert_eq!(*from_v, 0.0);
+    near(*to_v, 0.02, 5e-5);
+    let weaker = compare(&off, &hum(0.0, 0.0, 0.95));
+    let [Finding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] = weaker.as_slice()
+    else {
+        panic!("{weaker:?}")
+    };
+    near(*from_v, 0.5, 1e-4);
+    near(*to_v, 0.475, 1e-4);
+    let mut noisy = made(steady, |_, _, signal| signal);
+    let mut random = fastrand::Rng::with_seed(5);
+    noisy.sine.iter_mut().chain(&mut noisy.cosine).for_each(|value| *value += 0.01 * (random.f64() - 0.5));
+    let rose = compare(&off, &noisy.diagnosed());
+    let [Finding { severity: Severity::Notice, what: What::NoiseRose { to_v, .. } }] = rose.as_slice() else {
+        panic!("{rose:?}")
+    };
+    // Even numbers over 10 mV deviate by 10/√12 mV.
+    near(*to_v, (0.01 * 0.01 / 12.0 + 5e-4 * 5e-4_f64).sqrt(), 6e-5);
+    let dead = Diagnosis::default();
+    assert_eq!(compare(&dead, &off), []);
+}
+
+#[test]
+fn nothing_to_look_at_is_no_disaster() {
+    for (time, values) in [(vec![], vec![]), (vec![0.0], vec![0.1]), (vec![0.0; 9], vec![f64::NAN; 9])] {
+        let record = Record {
+            samples: Samples { time_s: &time, sine_v: &values, cosine_v: &values },
+            references_v: Some((&[], &[])),
+            periods: Some(0),
+        };
+        let told = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Hiperface);
+        assert_eq!(told, Diagnosis::default());
+    }
+    let mut capture = made(steady, |_, _, signal| signal);
+    capture.periods = Some(0);
+    capture.time.fill(1.0);
+    assert_eq!((capture.diagnosed().findings, capture.diagnosed().interference), (vec![], None));
+}
