@@ -3,10 +3,12 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use encoder_studio::app::signals::{Action as Signals, Column, Example, Family, Origin};
-use encoder_studio::app::{Action, FileQuestion, Severity, Studio, Tab};
+use encoder_studio::app::signals::{Action as Signals, Column, Example, Family, Origin, Place, SourceAction};
+use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio, Tab};
 use encoder_studio::signal::capture::{Delimiter, TimeUnit};
 use encoder_studio::signal::quality::Finding;
+use encoder_studio::signal::wires::Wire;
+use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
 
@@ -60,7 +62,10 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     assert!(desk.studio.encoder().is_none());
     let path = desk.file("circle.CSV", &circle(4));
     desk.open_capture(&path);
-    assert_eq!((desk.studio.settings.tab, shown(&desk.studio)), (Tab::Signals, Some(&Origin::File(path.clone()))));
+    assert_eq!(
+        (desk.studio.settings.tab, shown(&desk.studio)),
+        (Tab::Signals, Some(&Origin::Table(Place::File(path.clone()))))
+    );
     let measurement = desk.studio.signals.measurement().unwrap().clone();
     let analysis = measurement.analysis.as_ref().unwrap();
     assert!((analysis.ellipse.amplitude_v - 0.5).abs() < 1e-9);
@@ -72,7 +77,7 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     let other = desk.file("table.txt", &circle(2));
     desk.act(Action::Typed(FileQuestion::OpenCapture, other.clone()));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::File(other)));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(other))));
     desk.act(Action::ShowTab(Tab::Hiperface));
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
@@ -118,7 +123,7 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
         let path = desk.file(name, text);
         desk.open_capture(&path);
         assert_eq!(desk.problem(), told, "{name}");
-        assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::Healthy)), "{name}");
+        assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))), "{name}");
         let lines = text.lines().next().map(str::to_owned).into_iter().collect::<Vec<_>>();
         assert_eq!(desk.studio.signals.table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
     }
@@ -170,7 +175,7 @@ fn what_was_found_out_is_corrected_and_found_out_again() {
     assert_eq!(desk.problem(), "signal.not_a_number");
     desk.signals(Signals::SetDelimiter(Delimiter::Tab));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::File(path)), "what was read last is still shown");
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))), "what was read last is still shown");
     desk.signals(Signals::Detect);
     desk.until_measured();
     assert!(desk.studio.signals.problem().is_none());
@@ -191,7 +196,7 @@ fn data_without_an_ellipse_are_shown_and_refused_with_the_reason() {
         desk.open_capture(&path);
         let measurement = desk.studio.signals.measurement().unwrap();
         assert!(!measurement.points.is_empty() && measurement.corrected_points().is_empty(), "{name}");
-        assert_eq!(measurement.refusal().map(|why| why.id()), Some(told), "{name}");
+        assert_eq!(measurement.refusal(Language::English).map(|why| why.id()), Some(told), "{name}");
         assert_eq!(desk.studio.signals.findings(), [], "{name}");
     }
 }
@@ -207,20 +212,20 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
     desk.act(Action::Escape);
     assert!(desk.studio.signals.reading().is_some_and(encoder_studio::app::signals::Reading::is_cancelled));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::Healthy)));
-    assert_eq!(desk.studio.signals.table().unwrap().origin, Origin::Example(Example::Healthy));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))));
+    assert_eq!(desk.studio.signals.table().unwrap().place, Place::Example(Example::Healthy));
     assert_eq!(desk.told(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
     // The later one counts, whichever is read sooner.
     desk.act(Action::Open(large));
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
     for _ in 0..50 {
         desk.studio.poll();
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
-    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
 }
 
 #[test]
@@ -243,8 +248,120 @@ fn a_capture_is_put_aside_and_stays_while_others_come() {
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
     let kept = |studio: &Studio| studio.signals.comparison().map(|own| own.origin.clone());
-    assert_eq!(kept(&desk.studio), Some(Origin::Example(Example::Healthy)));
-    assert_eq!(shown(&desk.studio), Some(&Origin::Example(Example::WithErrors)));
+    assert_eq!(kept(&desk.studio), Some(Origin::Table(Place::Example(Example::Healthy))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
     desk.signals(Signals::DropComparison);
     assert_eq!(kept(&desk.studio), None);
+}
+
+impl Desk {
+    fn source(&mut self, action: SourceAction) {
+        self.signals(Signals::Source(action));
+    }
+
+    /// Polls until what is shown is virtual and as good as asked for.
+    #[track_caller]
+    fn until_live(&mut self, what: &str, wanted: impl Fn(&encoder_studio::signal::analysis::Analysis) -> bool) {
+        self.until(what, |studio| {
+            let shown = studio.signals.measurement().filter(|own| own.origin == Origin::Virtual);
+            shown.and_then(|own| own.analysis.as_ref().ok()).is_some_and(&wanted)
+        });
+    }
+}
+
+#[test]
+fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
+    let mut desk = Desk::fresh("");
+    desk.source(SourceAction::Set(Quantity::Periods, 512.0));
+    desk.source(SourceAction::Start);
+    assert_eq!(desk.studio.signals.periods, 512);
+    assert!(desk.studio.can_stop());
+    // 512 periods a revolution at one revolution a second, in 0.2 s at 100 kHz.
+    desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
+    assert_eq!(desk.studio.signals.findings(), []);
+    desk.source(SourceAction::Set(Quantity::OffsetSine, 0.05));
+    desk.source(SourceAction::Set(Quantity::PhaseError, -7.0));
+    desk.until_live("the errors are seen", |own| {
+        (own.ellipse.offset_sine_v - 0.05).abs() < 1e-3 && (own.ellipse.phase_error_deg() + 7.0).abs() < 0.05
+    });
+    desk.source(SourceAction::SetWindow(50));
+    desk.until_live("less is measured", |own| own.samples == 5_000);
+    // What the receiver sees of a channel with an open wire is no signal.
+    desk.source(SourceAction::SetOpenWire(Some(Wire::Sin)));
+    desk.until("the open wire is refused", |studio| {
+        studio.signals.measurement().is_some_and(|own| own.analysis.is_err())
+    });
+    desk.source(SourceAction::Reset);
+    desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
+}
+
+#[test]
+fn what_is_held_stays_and_what_is_stopped_comes_no_more() {
+    let mut desk = Desk::fresh("");
+    desk.source(SourceAction::Start);
+    desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
+    desk.source(SourceAction::Hold(true));
+    let held = desk.studio.signals.measurement().unwrap().clone();
+    desk.source(SourceAction::Set(Quantity::OffsetCosine, 0.1));
+    let began = std::time::Instant::now();
+    desk.until("a second has passed", |_| began.elapsed().as_millis() > 1_000);
+    assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals.measurement().unwrap()));
+    desk.source(SourceAction::Hold(false));
+    desk.until_live("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
+    assert_eq!(desk.studio.signals.source().lost(), 0);
+    desk.act(Action::Escape);
+    assert!(!desk.studio.signals.source().is_running() && !desk.studio.can_stop());
+    let last = desk.studio.signals.measurement().unwrap().clone();
+    let wakes = || desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let before = wakes();
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(wakes(), before, "nothing wakes the window when nothing runs");
+    desk.studio.poll();
+    assert!(std::sync::Arc::ptr_eq(&last, desk.studio.signals.measurement().unwrap()));
+}
+
+#[test]
+fn a_setting_out_of_range_is_refused_and_changes_nothing() {
+    let mut desk = Desk::fresh("");
+    for value in [3.0, -1.0, f64::NAN, f64::INFINITY] {
+        desk.source(SourceAction::Set(Quantity::Amplitude, value));
+        assert_eq!(desk.studio.signals.source().problem().unwrap().id(), "source.out_of_range", "{value}");
+        assert_eq!(desk.studio.signals.source().settings().amplitude_v, 0.5);
+    }
+    desk.source(SourceAction::Set(Quantity::Amplitude, 0.4));
+    assert!(desk.studio.signals.source().problem().is_none());
+    for (wanted, taken) in [(0, 10), (u32::MAX, 10_000)] {
+        desk.source(SourceAction::SetWindow(wanted));
+        assert_eq!(desk.studio.signals.source().window_ms(), taken);
+    }
+}
+
+#[test]
+fn a_window_that_nobody_draws_loses_samples_and_says_how_many() {
+    let mut desk = Desk::fresh("");
+    desk.source(SourceAction::Set(Quantity::Rate, 1_000_000.0));
+    desk.source(SourceAction::Start);
+    // At most 200 000 samples wait: a fifth of a second at 1 MHz.
+    let began = std::time::Instant::now();
+    while desk.studio.signals.source().lost() == 0 && began.elapsed() < crate::support::LONG {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(desk.studio.signals.source().lost() > 0);
+    desk.until_live("it goes on", |own| own.samples == 200_000);
+}
+
+#[test]
+fn a_file_takes_the_place_of_the_virtual_encoder() {
+    let mut desk = Desk::fresh("");
+    desk.source(SourceAction::Start);
+    desk.until_live("it is measured", |_| true);
+    let path = desk.file("circle.csv", &circle(4));
+    desk.act(Action::Open(path.clone()));
+    desk.until_measured();
+    assert!(!desk.studio.signals.source().is_running());
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))));
+    desk.source(SourceAction::Start);
+    desk.until_live("it is measured again", |_| true);
+    assert!(desk.studio.signals.table().is_none());
 }

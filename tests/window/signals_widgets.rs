@@ -2,8 +2,9 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::signals::{Action as Signals, Example};
+use encoder_studio::app::signals::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::app::{Action, Language, Tab, Theme};
+use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;
 use crate::support::{HANGING, Outside};
@@ -156,4 +157,35 @@ fn a_pair_of_voltages_is_looked_up_both_ways() {
     screen.click("page.error");
     // Section 3: 7.93e-5 rad with 32 intervals, 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
     assert!(screen.shows("0.00454°") && screen.shows("16.27") && screen.shows("30.00073°"));
+}
+
+#[test]
+fn the_virtual_encoder_is_started_set_held_and_stopped() {
+    for size in SIZES {
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        screen.act(Action::ShowTab(Tab::Signals));
+        screen.click("virtual.start");
+        let measured = |studio: &encoder_studio::app::Studio| {
+            studio.signals.measurement().is_some_and(|own| own.origin == Origin::Virtual)
+        };
+        screen.until("it is measured", measured);
+        assert!(screen.shows(&screen.say("shell.virtual")) && screen.shows(&screen.say("virtual.running")));
+        screen.click("virtual.settings");
+        screen.look_at_signals();
+        let slider = screen.words(&encoder_studio::app::explain::signal::quantity(Quantity::Noise));
+        assert!(screen.harness.query_all_by_role_and_label(egui::Role::Slider, &slider).next().is_some());
+        screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
+        assert!(screen.shows("Amplitude: 7 is outside 0 … 2 V."));
+        screen.click("virtual.hold");
+        assert!(screen.studio().signals.source().is_held());
+        screen.click("virtual.go_on");
+        assert!(!screen.studio().signals.source().is_held());
+        screen.click("shell.stop");
+        assert!(!screen.studio().signals.source().is_running());
+        assert!(screen.shows(&screen.say("virtual.stopped")) && screen.has_button("virtual.again"));
+        screen.click("signals.source");
+        screen.click("signals.example_healthy");
+        screen.until("it is read", |studio| studio.signals.table().is_some());
+        assert!(!screen.shows(&screen.say("shell.virtual")) && !screen.has_button("virtual.settings"));
+    }
 }

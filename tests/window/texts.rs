@@ -65,6 +65,7 @@ pub(crate) fn check_all(studio: &Studio) {
         dialog.search.iter().filter_map(|search| search.end.as_ref()).for_each(check);
     }
     studio.signals.problem().into_iter().for_each(check);
+    studio.signals.source().problem().into_iter().for_each(check);
     studio.encoders().iter().for_each(check_encoder);
 }
 

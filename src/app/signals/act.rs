@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::reading::{self, Reading};
-use super::{Action, Done, Family, Measurement, Origin, Read, Table, forms};
+use super::{Action, Done, Family, Measurement, Place, Read, Source, Table, forms};
 use crate::app::action::Done as StudioDone;
 use crate::app::services::Services;
 use crate::app::{Action as StudioAction, Severity, Text, explain};
@@ -17,6 +17,8 @@ pub struct Signals {
     pub family: Family,
     /// Signal periods in a revolution.
     pub periods: u32,
+    /// The virtual encoder.
+    pub(super) source: Source,
     measurement: Option<Arc<Measurement>>,
     comparison: Option<Arc<Measurement>>,
     table: Option<Table>,
@@ -30,6 +32,7 @@ impl Default for Signals {
         Signals {
             family: Family::default(),
             periods: 1024,
+            source: Source::default(),
             measurement: None,
             comparison: None,
             table: None,
@@ -44,6 +47,11 @@ impl Signals {
     /// The capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
+    }
+
+    /// The virtual encoder.
+    pub fn source(&self) -> &Source {
+        &self.source
     }
 
     /// The capture that it is compared with.
@@ -76,11 +84,16 @@ impl Signals {
 
     /// There is something to stop.
     pub(in crate::app) fn can_stop(&self) -> bool {
-        self.reading.is_some()
+        self.reading.is_some() || self.source.is_running()
     }
 
     /// Stops all that runs.
     pub(in crate::app) fn stop(&mut self) {
+        self.source.stop();
+        self.give_up();
+    }
+
+    fn give_up(&self) {
         if let Some(reading) = &self.reading {
             reading.cancel();
         }
@@ -89,8 +102,8 @@ impl Signals {
     /// Does what is asked.
     pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            Action::Open(path) => self.open(Origin::File(path), services),
-            Action::Example(example) => self.open(Origin::Example(example), services),
+            Action::Open(path) => self.open(Place::File(path), services),
+            Action::Example(example) => self.open(Place::Example(example), services),
             Action::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
             Action::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
             Action::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
@@ -105,7 +118,8 @@ impl Signals {
                     self.read_again(settled, services);
                 }
             }
-            Action::Cancel => self.stop(),
+            Action::Cancel => self.give_up(),
+            Action::Source(action) => self.act_source(action, services),
             Action::SetFamily(family) => self.family = family,
             Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
             Action::DropComparison => self.comparison = None,
@@ -121,17 +135,23 @@ impl Signals {
                     self.take(*read, &reading, services);
                 }
             }
+            Done::Measured { number, measurement } => self.measured(number, *measurement),
         }
+    }
+
+    /// The newest samples of the virtual encoder take the place of what was shown.
+    pub(super) fn show_live(&mut self, measurement: Measurement) {
+        self.measurement = Some(Arc::new(measurement));
+        self.problem = None;
+        self.table = None;
     }
 
     fn take(&mut self, read: Read, reading: &Reading, services: &mut Services) {
         let Read { table, result } = read;
-        let path = match &table.origin {
-            Origin::File(path) => path.clone(),
-            origin @ Origin::Example(_) => origin.name().into(),
-        };
+        let path = table.place.path();
         match result {
             Ok(measurement) => {
+                self.source.stop();
                 self.measurement = Some(Arc::new(measurement));
                 self.problem = None;
                 self.table = Some(table);
@@ -165,23 +185,23 @@ impl Signals {
 
     fn read_again(&mut self, settled: Option<Table>, services: &mut Services) {
         if let Some(table) = &self.table {
-            self.read(table.origin.clone(), table.wishes.clone(), settled, services);
+            self.read(table.place.clone(), table.wishes.clone(), settled, services);
         }
     }
 
-    fn open(&mut self, origin: Origin, services: &mut Services) {
+    fn open(&mut self, place: Place, services: &mut Services) {
         let settled = self.settled();
-        self.read(origin, Wishes::default(), settled, services);
+        self.read(place, Wishes::default(), settled, services);
     }
 
     /// Begins to read; what was being read is given up.
-    fn read(&mut self, origin: Origin, wishes: Wishes, settled: Option<Table>, services: &mut Services) {
+    fn read(&mut self, place: Place, wishes: Wishes, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;
-        let (reading, progress) = Reading::new(number, origin.clone(), settled);
+        let (reading, progress) = Reading::new(number, place.clone(), settled);
         self.reading = Some(reading);
         services.tasks.run("capture", move || {
-            let read = Box::new(reading::read(origin, wishes, &progress));
+            let read = Box::new(reading::read(place, wishes, &progress));
             StudioAction::Done(StudioDone::Signals(Done::Read { number, read }))
         });
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Column, Example, Family, Measurement, Table};
+use super::{Column, Example, Family, Measurement, SourceAction, Table};
 use crate::signal::capture::{Delimiter, TimeUnit};
 use crate::store::ReadCaptureError;
 
@@ -35,6 +35,8 @@ pub enum Action {
     Keep,
     /// Compare no longer.
     DropComparison,
+    /// About the virtual encoder.
+    Source(SourceAction),
 }
 
 /// What tasks come back with.
@@ -45,6 +47,13 @@ pub enum Done {
         number: u32,
         /// What came of it.
         read: Box<Read>,
+    },
+    /// The newest samples of the virtual encoder were measured.
+    Measured {
+        /// Since which start: only the latest counts.
+        number: u32,
+        /// What came of it.
+        measurement: Box<Measurement>,
     },
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Example;
-use crate::app::{Text, explain};
+use crate::app::{Language, Text, explain};
 use crate::signal::analysis::{Analysis, AnalysisError};
 use crate::signal::capture::Capture;
 use crate::signal::position_error::Samples;
@@ -12,6 +12,15 @@ use crate::signal::position_error::Samples;
 /// Where a capture comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
+    /// A table.
+    Table(Place),
+    /// The virtual encoder.
+    Virtual,
+}
+
+/// Where a table lies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
     /// A file.
     File(PathBuf),
     /// One that ships with the program.
@@ -20,12 +29,26 @@ pub enum Origin {
 
 impl Origin {
     /// Its name, short: without folders.
-    pub fn name(&self) -> String {
+    pub fn name(&self) -> Text {
         match self {
-            Origin::File(path) => {
-                path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-            }
-            Origin::Example(example) => example.file_name().to_owned(),
+            Origin::Virtual => Text::new("signals.virtual"),
+            Origin::Table(place) => place.name(),
+        }
+    }
+}
+
+impl Place {
+    /// The name of the file, without folders.
+    pub fn name(&self) -> Text {
+        let path = self.path();
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        explain::plain(name.to_string_lossy())
+    }
+
+    pub(super) fn path(&self) -> PathBuf {
+        match self {
+            Place::File(path) => path.clone(),
+            Place::Example(example) => example.file_name().into(),
         }
     }
 }
@@ -55,9 +78,9 @@ impl Measurement {
     }
 
     /// Why there is no analysis, in words.
-    pub fn refusal(&self) -> Option<Text> {
+    pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
-        Some(explain::signal::analysis(Path::new(&self.origin.name()), error))
+        Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
     }
 
     /// What they are after the correction of the ellipse; nothing without one.

@@ -1,4 +1,4 @@
-//! The Signals tab: a capture of sine and cosine on the desk, from a file, and what is to be known about it. Complete
+//! The Signals tab: a capture of sine and cosine on the desk, from a file or a virtual encoder, and what is to be known about it. Complete
 //! without a window and without an encoder; what takes long runs as a task, and what comes late is dropped.
 
 mod act;
@@ -6,6 +6,7 @@ mod action;
 mod family;
 pub mod forms;
 pub mod interpolation;
+mod live;
 mod measurement;
 mod quantities;
 mod reading;
@@ -14,7 +15,8 @@ mod table;
 pub use act::Signals;
 pub use action::{Action, Done, Read};
 pub use family::Family;
-pub use measurement::{Measurement, Origin};
+pub use live::{Source, SourceAction};
+pub use measurement::{Measurement, Origin, Place};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
 pub use table::{Column, Table};

@@ -178,7 +178,7 @@ pub fn error_quantities(analysis: &Analysis, periods: u32) -> Vec<Quantity> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::signals::{Example, Measurement, Origin};
+    use crate::app::signals::{Measurement, Origin};
     use crate::signal::capture::Capture;
     use std::sync::Arc;
 
@@ -193,7 +193,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos() + 0.02).collect(),
             ..Capture::default()
         };
-        Measurement::of(Origin::Example(Example::Healthy), Arc::new(capture)).analysis.unwrap()
+        Measurement::of(Origin::Virtual, Arc::new(capture)).analysis.unwrap()
     }
 
     #[test]
@@ -241,7 +241,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
             ..Capture::default()
         };
-        let analysis = Measurement::of(Origin::Example(Example::Healthy), Arc::new(capture)).analysis.unwrap();
+        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture)).analysis.unwrap();
         let list = error_quantities(&analysis, 1024);
         assert!((list[0].value - 1.1459).abs() < 1e-3 && list[0].unit == Unit::Degrees, "{:?}", list[0]);
         let (arc_seconds, _, unit) = list[0].also.unwrap();

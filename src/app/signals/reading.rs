@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::{Measurement, Origin, Read, Table};
+use super::{Measurement, Origin, Place, Read, Table};
 use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Wishes};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
@@ -50,7 +50,7 @@ pub struct Reading {
     /// Which attempt.
     pub(super) number: u32,
     /// What is read.
-    pub origin: Origin,
+    pub place: Place,
     /// The table before, for when this one is given up.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
@@ -65,9 +65,9 @@ pub(super) struct Progress {
 }
 
 impl Reading {
-    pub(super) fn new(number: u32, origin: Origin, settled: Option<Table>) -> (Self, Arc<Progress>) {
+    pub(super) fn new(number: u32, place: Place, settled: Option<Table>) -> (Self, Arc<Progress>) {
         let progress = Arc::<Progress>::default();
-        (Reading { number, origin, settled, progress: progress.clone() }, progress)
+        (Reading { number, place, settled, progress: progress.clone() }, progress)
     }
 
     /// How much is read, from 0 to 1; `None` where nobody knows how much there is.
@@ -94,19 +94,19 @@ impl Drop for Reading {
 }
 
 /// Reads and measures; takes as long as the file is large.
-pub(super) fn read(origin: Origin, wishes: Wishes, progress: &Progress) -> Read {
-    let (head, result) = match &origin {
-        Origin::Example(example) => {
+pub(super) fn read(place: Place, wishes: Wishes, progress: &Progress) -> Read {
+    let (head, result) = match &place {
+        Place::Example(example) => {
             let bytes = example.bytes();
             (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &wishes))
         }
-        Origin::File(path) => match capture_head(path) {
+        Place::File(path) => match capture_head(path) {
             Ok(head) => (head, read_file(path, &wishes, progress)),
             Err(error) => (Vec::new(), Err(error.into())),
         },
     };
-    let table = Table::of(origin, &head, wishes);
-    let result = result.map(|capture| Measurement::of(table.origin.clone(), Arc::new(capture)));
+    let table = Table::of(place, &head, wishes);
+    let result = result.map(|capture| Measurement::of(Origin::Table(table.place.clone()), Arc::new(capture)));
     Read { table, result }
 }
 

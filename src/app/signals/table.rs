@@ -1,13 +1,13 @@
 //! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
 
-use super::Origin;
+use super::Place;
 use crate::signal::capture::{Columns, Delimiter, Layout, Wishes};
 
 /// The beginning of a table, and how it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// Where it comes from.
-    pub origin: Origin,
+    pub place: Place,
     /// Its first lines as text; long ones are cut.
     pub head: Vec<String>,
     /// What was said about it.
@@ -42,7 +42,7 @@ const MOST_COLUMNS: usize = 64;
 
 impl Table {
     /// The beginning of a table, from its first bytes.
-    pub(super) fn of(origin: Origin, head: &[u8], wishes: Wishes) -> Self {
+    pub(super) fn of(place: Place, head: &[u8], wishes: Wishes) -> Self {
         let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
         let shown = |line: &[u8]| {
             let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
@@ -51,7 +51,7 @@ impl Table {
         };
         let lines = head.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
         let layout = Layout::detect(head, &wishes).ok();
-        Table { origin, head: lines, wishes, layout, half_chosen: (None, None) }
+        Table { place, head: lines, wishes, layout, half_chosen: (None, None) }
     }
 
     /// What stands between two columns.
@@ -124,7 +124,7 @@ mod tests {
     use crate::app::signals::Example;
 
     fn table(text: &str) -> Table {
-        Table::of(Origin::Example(Example::Healthy), text.as_bytes(), Wishes::default())
+        Table::of(Place::Example(Example::Healthy), text.as_bytes(), Wishes::default())
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod octant;
 mod quality;
 mod source;
 mod table;
+mod virtual_encoder;
 
 use egui::{ScrollArea, Ui};
 
@@ -57,7 +58,7 @@ type Draft = Option<(String, Option<Text>)>;
 pub(in crate::ui) struct View {
     /// The open page.
     pub page: Page,
-    table: table::View,
+    source: source::View,
     periods: Draft,
     corrected: bool,
     octant: octant::View,
@@ -71,12 +72,12 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
     ScrollArea::vertical().id_salt(view.page.word()).auto_shrink(false).show(ui, |ui| {
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
             Page::Quality => {
-                if source::source_ui(ui, skin, signals, &mut view.table, actions) {
+                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
                     quality::page_ui(ui, skin, signals, view, actions);
                 }
             }
             Page::Error => {
-                if source::source_ui(ui, skin, signals, &mut view.table, actions) {
+                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
                     error::page_ui(ui, skin, signals, view, actions);
                 }
             }

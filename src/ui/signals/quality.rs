@@ -95,7 +95,7 @@ fn figure_of(measurement: &Measurement, corrected: bool, (colour, dashed): (usiz
 
 /// Why there is nothing to be said about a capture.
 pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Measurement) {
-    let Some(why) = measurement.refusal() else { return };
+    let Some(why) = measurement.refusal(skin.language) else { return };
     card(ui, skin, "quality.findings", |ui| {
         finding(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
     });

@@ -18,14 +18,14 @@ pub(super) struct View {
 }
 
 const COLUMNS: [(Column, &str); 5] = [
-    (Column::Time, "table.time"),
-    (Column::Sine, "table.sine"),
-    (Column::Cosine, "table.cosine"),
-    (Column::RefSine, "table.refsin"),
-    (Column::RefCosine, "table.refcos"),
+    (Column::Time, "columns.time"),
+    (Column::Sine, "columns.sine"),
+    (Column::Cosine, "columns.cosine"),
+    (Column::RefSine, "columns.refsin"),
+    (Column::RefCosine, "columns.refcos"),
 ];
 const DELIMITERS: [(Delimiter, &str); 3] =
-    [(Delimiter::Comma, "table.comma"), (Delimiter::Semicolon, "table.semicolon"), (Delimiter::Tab, "table.tab")];
+    [(Delimiter::Comma, "columns.comma"), (Delimiter::Semicolon, "columns.semicolon"), (Delimiter::Tab, "columns.tab")];
 const TIME_UNITS: [(TimeUnit, &str); 4] = [
     (TimeUnit::Seconds, "s"),
     (TimeUnit::Milliseconds, "ms"),
@@ -38,9 +38,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
     let mut wish = |action: Signals| actions.push(Action::Signals(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
-        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("table.detect")).clicked();
+        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("columns.detect")).clicked();
     };
-    card_with(ui, skin, "table.title", aside, |ui| {
+    card_with(ui, skin, "columns.title", aside, |ui| {
         lines(ui, skin, table);
         ui.add_space(skin.space.between);
         two_columns(
@@ -57,7 +57,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
             problem(ui, skin, Some(why));
         }
         if table.half_chosen != (None, None) {
-            paragraph(ui, skin.caption(skin.say("table.half_chosen")));
+            paragraph(ui, skin.caption(skin.say("columns.half_chosen")));
         }
     });
     if again {
@@ -83,7 +83,7 @@ fn lines(ui: &mut Ui, skin: &Skin, table: &Table) {
 }
 
 fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
-    let word = skin.say("table.delimiter");
+    let word = skin.say("columns.delimiter");
     let mut delimiter = table.delimiter();
     entry(ui, skin, &word, |ui| {
         let options = DELIMITERS.map(|(own, id)| (Some(own), skin.say(id)));
@@ -91,10 +91,10 @@ fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals))
             delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
         }
     });
-    let word = skin.say("table.decimal");
+    let word = skin.say("columns.decimal");
     let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
     entry(ui, skin, &word, |ui| {
-        let options = [(Some(false), skin.say("table.point")), (Some(true), skin.say("table.comma"))];
+        let options = [(Some(false), skin.say("columns.point")), (Some(true), skin.say("columns.comma"))];
         if choice(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
         }
@@ -107,7 +107,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
         let mut number = table.column(column);
         let needed = matches!(column, Column::Sine | Column::Cosine);
         entry(ui, skin, &word, |ui| {
-            let none = (!needed).then(|| (None, skin.say("table.none")));
+            let none = (!needed).then(|| (None, skin.say("columns.none")));
             let width = table.width().max(number.unwrap_or(0));
             let numbers = (1..=width).map(|own| match table.name(own) {
                 Some(name) => (Some(own), format!("{own}: {name}")),
@@ -118,7 +118,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
             }
         });
         if column == Column::Time && number.is_some() {
-            let word = skin.say("table.time_unit");
+            let word = skin.say("columns.time_unit");
             let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
             entry(ui, skin, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
@@ -133,7 +133,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
 fn volts(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, wish: &mut impl FnMut(Signals)) {
     let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
     let shown = volts.map(|volts| skin.plain(volts)).unwrap_or_default();
-    let word = skin.say("table.volts");
+    let word = skin.say("columns.volts");
     entry(ui, skin, &word, |ui| {
         settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             wish(Signals::SetVolts(forms::volts_per_unit(text)?));

@@ -81,7 +81,7 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
             .allow_boxed_zoom(false)
             .allow_double_click_reset(false)
             .show_background(false)
-            .grid_spacing(egui::Rangef::new(28.0, 240.0))
+            .grid_spacing(egui::Rangef::new(8.0, 24.0))
             .grid_color(skin.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, 0.08))
             .label_formatter(told)
@@ -91,9 +91,10 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
         if let Some((least, most)) = chart.x_range {
             plot = plot.include_x(least).include_x(most);
         }
-        if let Some(step) = chart.x_step {
-            plot = plot.x_grid_spacer(move |input| steps(input.bounds, step));
-        }
+        let x_step = chart.x_step;
+        plot = plot
+            .x_grid_spacer(move |input| steps(input.bounds, x_step.unwrap_or_else(|| round_step(input.bounds))))
+            .y_grid_spacer(|input| steps(input.bounds, round_step(input.bounds)));
         if let Some(floor) = chart.y_floor {
             plot = plot.include_y(floor);
         }
@@ -161,6 +162,14 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
         plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
     }
+}
+
+/// A step of 1, 2 or 5 times a power of ten, of which about five fit.
+fn round_step((least, most): (f64, f64)) -> f64 {
+    let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
+    let power = 10_f64.powf(rough.log10().floor());
+    let times = [1.0, 2.0, 5.0].into_iter().find(|times| times * power >= rough).unwrap_or(10.0);
+    times * power
 }
 
 /// Ticks at every so many, as many as can be told apart.

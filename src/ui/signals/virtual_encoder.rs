@@ -1,0 +1,141 @@
+//! The virtual encoder's settings: what it does, and what is wrong with it.
+
+use egui::{Slider, SliderClamping, Ui, WidgetInfo};
+
+use crate::app::signals::{Action as Signals, Source, SourceAction};
+use crate::app::{Action, explain};
+use crate::signal::wires::Wire;
+use crate::sim::sine_cosine::{Quantity, References, Settings};
+use crate::ui::controls::{LABELS, button, card_with, choice, entry, problem, two_columns};
+use crate::ui::{Skin, icons};
+
+/// A setting that is slid: where its slider ends (more can be typed), and its decimals.
+struct Slid {
+    quantity: Quantity,
+    ends: (f64, f64),
+    decimals: usize,
+    /// Small values have as much room as large ones.
+    logarithmic: bool,
+}
+
+const fn slid(quantity: Quantity, least: f64, most: f64, decimals: usize) -> Slid {
+    Slid { quantity, ends: (least, most), decimals, logarithmic: false }
+}
+
+const fn wide(quantity: Quantity, least: f64, most: f64, decimals: usize) -> Slid {
+    Slid { quantity, ends: (least, most), decimals, logarithmic: true }
+}
+
+const SIGNAL: [Slid; 9] = [
+    wide(Quantity::Speed, -6000.0, 6000.0, 1),
+    wide(Quantity::Periods, 1.0, 65_536.0, 0),
+    wide(Quantity::Rate, 1_000.0, 1_000_000.0, 0),
+    slid(Quantity::Amplitude, 0.0, 1.0, 3),
+    slid(Quantity::GainRatio, 0.5, 1.5, 3),
+    slid(Quantity::PhaseError, -20.0, 20.0, 2),
+    slid(Quantity::OffsetSine, -0.2, 0.2, 3),
+    slid(Quantity::OffsetCosine, -0.2, 0.2, 3),
+    slid(Quantity::Level, 0.0, 5.0, 2),
+];
+const DISTURBANCES: [Slid; 8] = [
+    wide(Quantity::Noise, 0.0, 0.2, 4),
+    wide(Quantity::Interference, 0.0, 0.2, 4),
+    wide(Quantity::InterferenceFrequency, 10.0, 100_000.0, 0),
+    wide(Quantity::Hum, 0.0, 0.2, 4),
+    slid(Quantity::HumFrequency, 16.0, 400.0, 1),
+    slid(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
+    slid(Quantity::Modulation, 0.0, 20.0, 1),
+    wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
+];
+/// Windows to choose from, in milliseconds.
+const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
+
+/// Draws the card.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) {
+    let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
+    let mut reset = false;
+    let aside = |ui: &mut Ui| {
+        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("virtual.reset")).clicked();
+    };
+    card_with(ui, skin, "virtual.title", aside, |ui| {
+        problem(ui, skin, source.problem());
+        two_columns(
+            ui,
+            skin,
+            &mut ask,
+            |ui, ask| sliders(ui, skin, source.settings(), &SIGNAL, *ask),
+            |ui, ask| {
+                sliders(ui, skin, source.settings(), &DISTURBANCES, *ask);
+                wires(ui, skin, source.settings(), *ask);
+                window(ui, skin, source, *ask);
+            },
+        );
+    });
+    if reset {
+        ask(SourceAction::Reset);
+    }
+}
+
+fn sliders(ui: &mut Ui, skin: &Skin, settings: &Settings, list: &[Slid], ask: &mut impl FnMut(SourceAction)) {
+    /// What the number behind a slider takes.
+    const NUMBER: f32 = 96.0;
+    let label = LABELS.min(ui.available_width() * 0.4);
+    let rail = (ui.available_width() - label - NUMBER - 3.0 * skin.space.between).clamp(40.0, 220.0);
+    ui.spacing_mut().slider_width = rail;
+    for own in list {
+        let word = skin.words(&explain::signal::quantity(own.quantity));
+        let mut value = settings.get(own.quantity);
+        let (skin_, decimals) = (*skin, own.decimals);
+        let unit = own.quantity.unit();
+        let suffix = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
+        entry(ui, skin, &word, |ui| {
+            let slider = Slider::new(&mut value, own.ends.0..=own.ends.1)
+                .logarithmic(own.logarithmic)
+                .clamping(SliderClamping::Never)
+                .suffix(suffix)
+                .max_decimals(own.decimals)
+                .custom_formatter(move |value, _| skin_.number(value, decimals))
+                .custom_parser(|text| text.trim().replace(',', ".").parse().ok());
+            let response = ui.add(slider);
+            response.widget_info(|| WidgetInfo::slider(true, value, &word));
+            if response.on_hover_text(&word).changed() {
+                ask(SourceAction::Set(own.quantity, value));
+            }
+        });
+    }
+}
+
+fn wires(ui: &mut Ui, skin: &Skin, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
+    let word = skin.say("virtual.open_wire");
+    let mut open = settings.open_wire;
+    entry(ui, skin, &word, |ui| {
+        let wires = Wire::ALL.map(|wire| (Some(wire), wire.name().to_owned()));
+        let none = [(None, skin.say("virtual.no_wire"))];
+        if choice(ui, &word, &mut open, none.into_iter().chain(wires)) {
+            ask(SourceAction::SetOpenWire(open));
+        }
+    });
+    let word = skin.say("virtual.references");
+    let mut references = settings.references;
+    entry(ui, skin, &word, |ui| {
+        let options =
+            [(References::Level, skin.say("virtual.level")), (References::Complement, skin.say("virtual.complement"))];
+        if choice(ui, &word, &mut references, options) {
+            ask(SourceAction::SetReferences(references));
+        }
+    });
+    let mut terminated = settings.terminated;
+    if ui.checkbox(&mut terminated, skin.say("virtual.terminated")).changed() {
+        ask(SourceAction::SetTerminated(terminated));
+    }
+}
+
+fn window(ui: &mut Ui, skin: &Skin, source: &Source, ask: &mut impl FnMut(SourceAction)) {
+    let word = skin.say("virtual.window");
+    let mut window = source.window_ms();
+    entry(ui, skin, &word, |ui| {
+        if choice(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {
+            ask(SourceAction::SetWindow(window));
+        }
+    });
+}
