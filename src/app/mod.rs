@@ -12,6 +12,7 @@ mod leaving;
 mod line;
 mod look;
 mod notices;
+mod number;
 mod opening;
 mod picture;
 pub mod recorder;

@@ -114,6 +114,10 @@ impl Device for Hiperface {
             HiperfaceJob::Position(geometry) => {
                 HiperfaceOutput::Position(read_position(&mut self.master(desk), geometry)?)
             }
+            HiperfaceJob::Rest => {
+                let geometry = self.geometry;
+                HiperfaceOutput::Rest(device::read_at_rest(&mut self.master(desk), geometry)?)
+            }
             HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
             HiperfaceJob::Save(options) => {
                 let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });

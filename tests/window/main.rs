@@ -4,6 +4,7 @@
 
 mod blocking;
 mod closing;
+mod commutation;
 mod connecting;
 mod drafts;
 mod leaving;
@@ -18,6 +19,7 @@ mod signals_widgets;
 mod state;
 mod support;
 mod texts;
+mod widgets_commutation;
 mod widgets_idle;
 mod widgets_pages;
 mod widgets_writing;

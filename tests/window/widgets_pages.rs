@@ -11,7 +11,8 @@ use crate::support::{HANGING, Outside, PORT};
 
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
-const PAGES: [&str; 5] = ["page.encoder", "page.memory", "page.values", "page.setup", "page.backups"];
+const PAGES: [&str; 6] =
+    ["page.encoder", "page.memory", "page.values", "page.setup", "page.commutation", "page.backups"];
 const PANELS: [&str; 4] = ["panel.live", "panel.trace", "panel.jobs", "panel.log"];
 const ALWAYS: [&str; 5] = ["shell.stop", "shell.connect", "shell.open", "shell.help", "shell.language"];
 
@@ -151,9 +152,14 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
 #[test]
 fn f1_helps_and_escape_closes_it() {
     let mut screen = Screen::begun(SMALL);
-    for (page, help) in
-        PAGES.into_iter().zip(["help.encoder", "help.memory", "help.values", "help.setup", "help.backups"])
-    {
+    for (page, help) in PAGES.into_iter().zip([
+        "help.encoder",
+        "help.memory",
+        "help.values",
+        "help.setup",
+        "help.commutation",
+        "help.backups",
+    ]) {
         screen.click(page);
         screen.key(Key::F1);
         assert!(screen.shows(&screen.say(help)), "{page}");

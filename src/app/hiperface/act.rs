@@ -83,6 +83,7 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
             }
             Action::Save(path) => self.save(path, services),
+            Action::Commutation(action) => self.act_commutation(action, services),
             Action::Restore(path) => self.read_backup(path, services),
         }
     }
@@ -122,7 +123,7 @@ impl Encoder {
     }
 
     /// Starts a job, or says why not and gives false.
-    fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
+    pub(super) fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
         let what = what(&job);
         let writes = matches!(job, HiperfaceJob::Commit(_));
         let name = self.name();
@@ -164,7 +165,7 @@ impl Encoder {
         }
     }
 
-    fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
+    pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.phase, self.field(field)) {
             _ if self.is_writing() => Err(Text::new("session.busy")),
             // A profile is a text: what it says about protection does not protect it.
@@ -288,6 +289,7 @@ impl Encoder {
                 let mut document = (**document).clone();
                 let Body::Hiperface(profile) = &mut document.body;
                 profile.fields = self.staged.wanted();
+                profile.mark_mounting();
                 self.write_document(path, document, Vec::new(), services);
             }
         }
@@ -344,6 +346,7 @@ impl Encoder {
     /// itself, and tells how.
     pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         (self.asked, self.save_to) = (None, None);
+        self.commutation.give_up();
         let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
         if self.review.as_ref().is_some_and(is_plan) {
             self.review = None;
@@ -372,6 +375,7 @@ fn what(job: &HiperfaceJob) -> Text {
         HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
         HiperfaceJob::Status => Text::new("job.status"),
         HiperfaceJob::Position(_) => Text::new("job.position"),
+        HiperfaceJob::Rest => Text::new("job.rest"),
         HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
         HiperfaceJob::Save(_) => Text::new("job.save"),
         HiperfaceJob::Check { .. } => Text::new("job.check"),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::DraftKey;
+use super::{DraftKey, commutation};
 use crate::app::studio::SessionId;
 use crate::device::hiperface::Watch;
 use crate::profile::PlanId;
@@ -81,6 +81,8 @@ pub enum Action {
     Save(PathBuf),
     /// Show what restoring a backup would do.
     Restore(PathBuf),
+    /// The commutation assistant.
+    Commutation(commutation::Action),
     /// Show what writing this profile into a connected encoder would do.
     WriteInto(SessionId),
 }

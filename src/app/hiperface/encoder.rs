@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use super::commutation::Commutation;
 use super::drafts::Drafting;
 use super::meaning::Meaning;
 use super::record::Record;
@@ -95,6 +96,8 @@ pub struct Encoder {
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     /// What was recorded while it was polled.
     pub record: Record,
+    /// The commutation assistant.
+    pub commutation: Commutation,
     /// A write on its way.
     pub review: Option<Review>,
     /// Backups, or why there are none.
@@ -138,6 +141,7 @@ impl Encoder {
             position_set: None,
             analogue: BTreeMap::new(),
             record: Record::default(),
+            commutation: Commutation::default(),
             review: None,
             backups: None,
             writes: None,
@@ -391,6 +395,7 @@ impl Encoder {
         self.writes = None;
         self.access_codes.clear();
         self.tried_code = None;
+        self.commutation = Commutation::default();
         self.review = None;
     }
 

@@ -2,6 +2,7 @@
 
 mod act;
 mod action;
+pub mod commutation;
 mod drafts;
 mod encoder;
 pub mod forms;
@@ -20,4 +21,5 @@ pub(in crate::app) use encoder::{Opening, without_codes};
 pub(in crate::app) use news::{LastWords, last_words};
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
+pub use rules::Allowed;
 pub use staged::{Staged, StagedError};

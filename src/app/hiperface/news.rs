@@ -133,6 +133,7 @@ impl Encoder {
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
+            HiperfaceOutput::Rest(rest) => self.take_rest(rest),
             HiperfaceOutput::Value(value) => self.take_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);
@@ -196,6 +197,8 @@ impl Encoder {
                 }
                 Op::SetPosition { from, to, .. } => {
                     self.position_set = Some((*from, *to));
+                    // They were read from another zero.
+                    self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
                     services.note(Severity::Note, vec![text.with("steps", format!("{steps:+}"))], Some(&self.name()));
@@ -257,6 +260,7 @@ impl Encoder {
         let texts = explain::hiperface::job(error);
         let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
         services.job_ends(self.id, id, JobEnd::Failed(first.clone()));
+        let stands_there = self.commutation.failed(&first);
         if let (Some(crate::profile::hiperface::Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) =
             (self.asked.take(), error)
         {
@@ -286,7 +290,7 @@ impl Encoder {
             // That is told below.
             _ if gone.is_some() => {}
             // It stands where the session is shown.
-            _ if silent => services.note(Severity::Error, texts, Some(&self.name())),
+            _ if silent || stands_there => services.note(Severity::Error, texts, Some(&self.name())),
             _ => services.tell(Severity::Error, texts, Some(&self.name())),
         }
         if let Some(why) = gone {
@@ -319,6 +323,7 @@ impl Encoder {
         services.job_ends(self.id, id, JobEnd::Cancelled);
         self.follow_what_was_done(error, services);
         self.asked = None;
+        self.commutation.give_up();
         self.save_to = None;
         let texts = explain::hiperface::job(error);
         let begun = matches!(error, JobError::Interrupted { .. });

@@ -11,6 +11,7 @@ mod identify;
 mod master;
 mod position;
 mod reset;
+mod rest;
 mod save;
 mod station;
 mod survey;
@@ -25,6 +26,7 @@ pub use position::{
     read_counter, read_position, read_sample, read_watched,
 };
 pub use reset::{change_line_for_now, reset};
+pub use rest::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{Codes, Echo, PARAMETERS, Station};
 use survey::look_around;

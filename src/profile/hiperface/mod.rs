@@ -1,5 +1,6 @@
 //! HIPERFACE: what is saved of an encoder, how two differ, and what restoring would do.
 
+mod commutation;
 mod compare;
 mod edit;
 mod item;
@@ -7,6 +8,7 @@ mod plan;
 mod record;
 mod restore;
 
+pub use commutation::{CommutationRecord, Damaged};
 pub use compare::{compare, runs};
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
 pub use item::{FieldRange, Item, ItemError};

@@ -96,13 +96,17 @@ impl HiperfaceProfile {
     /// Bytes of a commutation offset as this program stores it.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks what is recognised as a value of the mounting.
+    /// Marks what is recognised as a value of the mounting, and is not marked yet.
     pub fn mark_mounting(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };
             let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
             for (_, block) in blocks.filter(|(block, _)| block.starts_with(Self::COMMUTATION_MAGIC)) {
                 let start = block * Self::COMMUTATION_BYTES;
+                let marked = |mark: &MountingMark| mark.range.contains(field.number, start);
+                if self.mounting.iter().any(marked) {
+                    continue;
+                }
                 self.mounting.push(MountingMark {
                     range: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
                     meaning: "commutation offset".to_owned(),

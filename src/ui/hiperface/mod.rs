@@ -1,6 +1,7 @@
 //! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
 
 mod backups;
+mod commutation;
 mod encoder;
 mod memory;
 mod review;
@@ -28,12 +29,15 @@ pub(in crate::ui) enum Page {
     Values,
     /// Position, address, line settings, restart, access codes.
     Setup,
+    /// The offset between encoder and motor.
+    Commutation,
     /// Profiles, backups and what was written.
     Backups,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Backups];
+    pub(super) const ALL: [Page; 6] =
+        [Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Commutation, Page::Backups];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
@@ -41,6 +45,7 @@ impl Page {
             Page::Memory => icons::MEMORY,
             Page::Values => icons::GAUGE,
             Page::Setup => icons::SLIDERS,
+            Page::Commutation => icons::LIGHTNING,
             Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
         }
     }
@@ -51,6 +56,7 @@ impl Page {
             Page::Memory => "page.memory",
             Page::Values => "page.values",
             Page::Setup => "page.setup",
+            Page::Commutation => "page.commutation",
             Page::Backups => "page.backups",
         }
     }
@@ -61,6 +67,7 @@ impl Page {
             Page::Memory => "help.memory",
             Page::Values => "help.values",
             Page::Setup => "help.setup",
+            Page::Commutation => "help.commutation",
             Page::Backups => "help.backups",
         }
     }
@@ -115,6 +122,7 @@ pub(super) fn page_ui(
             Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
+            Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
             Page::Backups => backups::page_ui(ui, skin, encoder, actions),
             Page::Memory => {}
         });

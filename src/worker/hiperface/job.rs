@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::device::hiperface::check::Line;
 use crate::device::hiperface::find::{Attempt, FindOptions, Findings, Found};
 use crate::device::hiperface::write::{Interrupted, Written};
-use crate::device::hiperface::{Error, Identity, PositionReading, SaveOptions, Survey};
+use crate::device::hiperface::{Error, Identity, PositionReading, Rest, SaveOptions, Survey};
 use crate::profile::Consent;
 use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RestoreOptions};
 use crate::protocol::hiperface::{
@@ -29,6 +29,8 @@ pub enum HiperfaceJob {
     Status,
     /// The position, once. With the geometry, where it is known already.
     Position(Option<Geometry>),
+    /// The shaft at rest: position, and sine and cosine where the encoder gives them.
+    Rest,
     /// One value.
     Read(Item),
     /// Everything that can be restored.
@@ -264,6 +266,7 @@ pub enum HiperfaceOutput {
     Identity(Identity),
     Status(Vec<StatusCode>),
     Position(PositionReading),
+    Rest(Rest),
     Value(Value),
     Saved(Box<SavedProfile>),
     Check(Vec<Line>),

@@ -1,0 +1,184 @@
+//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder
+//! and motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine reference).
+//! It energises nothing and writes nothing: what comes of it are edits of the memory or a position to be set, and both go
+//! through the review of a write.
+
+mod act;
+mod form;
+mod outcome;
+mod report;
+
+use crate::app::Text;
+use crate::device::hiperface::Rest;
+use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
+use crate::signal::arctan::{Phase, exact};
+use crate::signal::quality::{Limits, Verdict};
+use crate::signal::synchronise::Synchroniser;
+
+pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
+pub use outcome::{Offset, Setting, Stored, may_read, stored};
+pub use report::kind_words;
+
+/// What can be done in the assistant.
+pub enum Action {
+    /// The form was edited.
+    Edit(Box<Form>),
+    /// Read the position at rest.
+    Read(Slot),
+    /// Take the position that is typed.
+    Use(Slot),
+    /// Forget what was read and taken.
+    Clear,
+    /// Method 1: put the offset into the memory, as an edit.
+    Store,
+    /// Method 2: show what setting the position would do.
+    Set,
+}
+
+/// The assistant for one encoder.
+#[derive(Debug, Default)]
+pub struct Commutation {
+    /// What is ticked, chosen and typed.
+    pub form: Form,
+    /// Why the last thing that was asked for was not done.
+    pub problem: Option<Text>,
+    readings: [Option<Reading>; 3],
+    /// What was read last: there the shaft still is, as far as anybody knows.
+    last: Option<Slot>,
+    /// What the reading is for that is under way.
+    asked: Option<Slot>,
+}
+
+/// A position at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The position in periods, in the whole range of the encoder.
+    pub fine_periods: f64,
+    /// How it came.
+    pub kind: Kind,
+    /// The position word, where the encoder was read.
+    pub raw: Option<u32>,
+}
+
+/// How a position came, and how good it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Absolute position and phase brought together.
+    Fine {
+        /// Absolute minus fine position in periods.
+        residual_periods: f64,
+        /// Whether that is little enough.
+        verdict: Verdict,
+        /// The smallest step that can be told apart, in periods; `None` where the phase was typed.
+        resolution_periods: Option<f64>,
+    },
+    /// The absolute position alone: the middle of its step.
+    Absolute,
+    /// Typed.
+    Typed,
+}
+
+impl Commutation {
+    /// The position for a slot.
+    pub fn reading(&self, slot: Slot) -> Option<&Reading> {
+        let [one, other, second] = &self.readings;
+        match slot {
+            Slot::OneSide => one,
+            Slot::OtherSide => other,
+            Slot::Second => second,
+        }
+        .as_ref()
+    }
+
+    /// What is being read.
+    pub fn asked(&self) -> Option<Slot> {
+        self.asked
+    }
+
+    fn note(&mut self, slot: Slot, reading: Reading) {
+        let [one, other, second] = &mut self.readings;
+        let place = match slot {
+            Slot::OneSide => one,
+            Slot::OtherSide => other,
+            Slot::Second => second,
+        };
+        *place = Some(reading);
+        self.last = Some(slot);
+        self.problem = None;
+    }
+
+    /// What was read belongs to another zero, or is not wanted any more.
+    pub(super) fn forget_readings(&mut self) {
+        (self.readings, self.last, self.problem) = ([None; 3], None, None);
+    }
+
+    /// The encoder was read at rest: is it for a slot?
+    pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
+        let Some(slot) = self.asked.take() else { return };
+        match self.reading_of(rest, geometry) {
+            Ok(reading) => self.note(slot, reading),
+            Err(why) => self.problem = Some(why),
+        }
+    }
+
+    /// A job has failed; true where it is the reading, and the reason stands where it was asked for.
+    pub(super) fn failed(&mut self, why: &Text) -> bool {
+        let own = self.asked.take().is_some();
+        if own {
+            self.problem = Some(why.clone());
+        }
+        own
+    }
+
+    /// What was asked for does not come any more.
+    pub(super) fn give_up(&mut self) {
+        self.asked = None;
+    }
+
+    fn use_typed(&mut self, slot: Slot) {
+        match self.form.fine(slot) {
+            Ok(fine_periods) => self.note(slot, Reading { fine_periods, kind: Kind::Typed, raw: None }),
+            Err(why) => self.problem = Some(why),
+        }
+    }
+
+    fn reading_of(&self, rest: Rest, geometry: Option<Geometry>) -> Result<Reading, Text> {
+        if !rest.valid {
+            return Err(Text::new("commutation.invalid"));
+        }
+        let absolute = Reading {
+            fine_periods: (f64::from(rest.raw) + 0.5) / f64::from(STEPS_PER_PERIOD),
+            kind: Kind::Absolute,
+            raw: Some(rest.raw),
+        };
+        match (self.form.source, rest.signals) {
+            (Source::Absolute, _) | (Source::Signals, None) => Ok(absolute),
+            (Source::Typed, _) => fine(rest.raw, self.form.phase()?, geometry, None),
+            (Source::Signals, Some(signals)) => {
+                let volts = signals.sine_v.hypot(signals.cosine_v);
+                let no_signal = || Text::new("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
+                if Limits::HIPERFACE.amplitude(volts) == Verdict::Fault {
+                    return Err(no_signal());
+                }
+                let phase = exact(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
+                fine(rest.raw, phase, geometry, Some(signals.resolution_periods()))
+            }
+        }
+    }
+}
+
+/// Absolute position and phase brought together; a residual beyond 14/32 is no agreement.
+fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<Reading, Text> {
+    let steps = u64::from(STEPS_PER_PERIOD);
+    // A range that nobody knows is not gone round.
+    let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
+    let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
+    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| Text::new("commutation.half_apart"))?;
+    if told.verdict == Verdict::Fault {
+        let apart = told.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
+        return Err(Text::new("commutation.far_apart").with_number("steps", apart, 1));
+    }
+    let kind =
+        Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
+    Ok(Reading { fine_periods: told.periods(), kind, raw: Some(raw) })
+}

@@ -1,0 +1,65 @@
+//! What the user asks of the commutation assistant, carried out.
+
+use super::outcome::may_read;
+use super::{Action, Slot};
+use crate::app::hiperface::Encoder;
+use crate::app::services::Services;
+use crate::app::{Severity, Text};
+use crate::device::hiperface::Rest;
+use crate::protocol::hiperface::Geometry;
+use crate::worker::hiperface::{Change, HiperfaceJob};
+
+impl Encoder {
+    /// Periods and turns, where the type tells them.
+    pub fn geometry(&self) -> Option<Geometry> {
+        self.identity.as_ref().and_then(|identity| identity.geometry)
+    }
+
+    pub(in crate::app::hiperface) fn act_commutation(&mut self, action: Action, services: &mut Services) {
+        match action {
+            Action::Edit(form) => {
+                self.commutation.form = *form;
+                self.commutation.problem = None;
+            }
+            Action::Read(slot) => self.read_for(slot, services),
+            Action::Use(slot) => self.commutation.use_typed(slot),
+            Action::Clear => self.commutation.forget_readings(),
+            Action::Store => match self.commutation.bytes(self.geometry()) {
+                Ok((field, address, bytes)) => {
+                    self.put(field, address, &bytes, services);
+                    let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
+                    if (address..).zip(&bytes).all(is_there) {
+                        let text = Text::new("commutation.staged").with("field", field).with("address", address);
+                        services.tell(Severity::Good, vec![text], Some(&self.name()));
+                    }
+                }
+                Err(why) => self.commutation.problem = Some(why),
+            },
+            Action::Set => match self.commutation.setting(self.geometry()) {
+                Ok(setting) => {
+                    let (wanted, exact) = (setting.value, setting.exact);
+                    let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };
+                    self.plan(change, services);
+                }
+                Err(why) => self.commutation.problem = Some(why),
+            },
+        }
+    }
+
+    fn read_for(&mut self, slot: Slot, services: &mut Services) {
+        if let Err(why) = may_read(&self.commutation, self.is_ready()) {
+            self.commutation.problem = Some(why);
+            return;
+        }
+        self.commutation.problem = None;
+        if self.try_submit(HiperfaceJob::Rest, services) {
+            self.commutation.asked = Some(slot);
+        }
+    }
+
+    /// The shaft was read at rest.
+    pub(in crate::app::hiperface) fn take_rest(&mut self, rest: Rest) {
+        let geometry = self.geometry();
+        self.commutation.take(rest, geometry);
+    }
+}

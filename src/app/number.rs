@@ -1,0 +1,92 @@
+//! Numbers as people type them: with a point or a comma, without words, never infinite; within a range that the refusal
+//! names.
+
+use super::Text;
+
+/// A decimal number; `None` where it is none.
+pub(super) fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (negative, digits) = match text.strip_prefix(['-', '−']) {
+        Some(digits) => (true, digits),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    };
+    // The parser would take an exponent, a second sign and words.
+    let plain = digits.bytes().all(|c| c.is_ascii_digit() || c == b'.' || c == b',');
+    let value: f64 = digits.replace(',', ".").parse().ok().filter(|value: &f64| plain && value.is_finite())?;
+    Some(if negative { -value } else { value })
+}
+
+/// A number from `least` to `most`; `what` is the name of the entry in the table of texts.
+///
+/// # Errors
+/// In words.
+pub(super) fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, Text> {
+    filled(what, text)?;
+    let refused = || {
+        let refusal = Text::new("entry.number").with_text("what", Text::new(what)).with("entry", text.trim());
+        refusal.with_number("least", least, decimals(least)).with_number("most", most, decimals(most))
+    };
+    number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
+}
+
+/// A whole number from `least` to `most`, decimal or with `0x` in front.
+///
+/// # Errors
+/// In words.
+pub(super) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Result<u32, Text> {
+    filled(what, text)?;
+    let digits = text.trim();
+    let value = match digits.strip_prefix("0x") {
+        Some(hex) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => u32::from_str_radix(hex, 16).ok(),
+        None if digits.bytes().all(|c| c.is_ascii_digit()) => digits.parse().ok(),
+        _ => None,
+    };
+    let refused = || {
+        let refusal = Text::new("entry.whole").with_text("what", Text::new(what)).with("entry", digits);
+        refusal.with("least", least).with("most", most)
+    };
+    value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
+}
+
+fn filled(what: &'static str, text: &str) -> Result<(), Text> {
+    if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", Text::new(what))) } else { Ok(()) }
+}
+
+/// As many decimals as a limit needs, three at most.
+fn decimals(value: f64) -> usize {
+    (0..3).find(|count| (value * 10_f64.powi(*count)).fract() == 0.0).unwrap_or(3) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+
+    #[test]
+    fn numbers_have_a_point_or_a_comma_and_nothing_else() {
+        for (text, value) in
+            [("1.5", 1.5), (" 1,5 ", 1.5), ("-0.25", -0.25), ("−2", -2.0), ("+7", 7.0), (".5", 0.5), ("3.", 3.0)]
+        {
+            assert_eq!(number(text), Some(value), "{text}");
+        }
+        let endless = "9".repeat(400);
+        for text in
+            ["", " ", "-", ".", "1e3", "NaN", "nan", "inf", "-inf", "--1", "+-1", "1.2.3", "1 2", "0x10", "½", &endless]
+        {
+            assert_eq!(number(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_refusal_names_the_entry_and_the_range() {
+        let refusal = within("commutation.limit", "91", 0.1, 90.0).unwrap_err();
+        assert_eq!(refusal.words(Language::English), "Friction limit (°): \"91\" is no number from 0.1 to 90.");
+        assert!(refusal.words(Language::German).ends_with("keine Zahl von 0,1 bis 90."));
+        assert_eq!(within("commutation.limit", "90", 0.1, 90.0), Ok(90.0));
+        assert_eq!(within("commutation.limit", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");
+        for text in ["-1", "1.5", "4294967296", "99999999999999999999999", "0x", "0xG", "+1", "0", "501"] {
+            assert_eq!(whole("commutation.pole_pairs", text, 1, 500).unwrap_err().id(), "entry.whole", "{text}");
+        }
+        assert_eq!(whole("commutation.pole_pairs", "0x10", 1, 500), Ok(16));
+    }
+}

@@ -1,0 +1,118 @@
+//! A commutation offset as this program stores it in a data field. The manual leaves the format free (SICK 8010701,
+//! commutation; section 5 of the project's sine/cosine reference): sixteen bytes, so that it fills a block of the EEPROM
+//! and is recognised in a backup as a value of the mounting.
+
+use super::HiperfaceProfile;
+use crate::signal::commutation::ElectricalAngle;
+
+/// What is stored for one motor.
+///
+/// | bytes | what |
+/// |---|---|
+/// | 0…2 | `CO1` |
+/// | 3 | flags; bit 0: a second vector has confirmed it |
+/// | 4…7 | offset in units of 2⁻³² electrical turns, high byte first |
+/// | 8 | pole pairs |
+/// | 9 | direction: 0 with the electrical angle, 1 against it |
+/// | 10…13 | 0 |
+/// | 14…15 | CRC of bytes 0…13: polynomial 1021h, start FFFFh, high byte first |
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CommutationRecord {
+    /// The offset: electrical angle = pole pairs × shaft − offset.
+    pub offset: ElectricalAngle,
+    /// Pole pairs of the motor.
+    pub pole_pairs: u8,
+    /// The position falls while the electrical angle rises.
+    pub reversed: bool,
+    /// A second vector has confirmed pole pairs and order of the phases.
+    pub confirmed: bool,
+}
+
+/// Bytes that begin as a record and are none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Damaged;
+
+impl CommutationRecord {
+    /// Its length in bytes.
+    pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
+
+    /// The bytes to be stored.
+    pub fn emit(&self) -> [u8; Self::BYTES] {
+        let [o3, o2, o1, o0] = self.offset.bits().to_be_bytes();
+        let flags = u8::from(self.confirmed);
+        let body = [b'C', b'O', b'1', flags, o3, o2, o1, o0, self.pole_pairs, u8::from(self.reversed), 0, 0, 0, 0];
+        let mut bytes = [0; Self::BYTES];
+        for (place, byte) in bytes.iter_mut().zip(body.into_iter().chain(crc(&body).to_be_bytes())) {
+            *place = byte;
+        }
+        bytes
+    }
+
+    /// Reads what stands at the beginning of `bytes`; `None` where no record begins.
+    pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
+        if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
+            return None;
+        }
+        Some(Self::checked(bytes).ok_or(Damaged))
+    }
+
+    fn checked(bytes: &[u8]) -> Option<Self> {
+        let (body, check) = bytes.get(..Self::BYTES)?.split_at(Self::BYTES - 2);
+        let &[_, _, _, flags, o3, o2, o1, o0, pole_pairs, direction, ..] = body else { return None };
+        let sound = check == crc(body).to_be_bytes() && direction <= 1 && pole_pairs > 0;
+        let offset = ElectricalAngle::from_bits(u32::from_be_bytes([o3, o2, o1, o0]));
+        sound.then_some(CommutationRecord { offset, pole_pairs, reversed: direction == 1, confirmed: flags & 1 == 1 })
+    }
+}
+
+/// CRC-16 with polynomial 1021h from FFFFh, bit by bit.
+fn crc(bytes: &[u8]) -> u16 {
+    bytes.iter().fold(0xFFFF, |crc, byte| {
+        let start = crc ^ u16::from(*byte) << 8;
+        (0..8).fold(start, |crc: u16, _| if crc & 0x8000 == 0 { crc << 1 } else { crc << 1 ^ 0x1021 })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The offset of section 5 for four pole pairs; the CRC by Python's `binascii.crc_hqx(body, 0xFFFF)`.
+    const RECORD: [u8; 16] =
+        [0x43, 0x4F, 0x31, 0x01, 0x53, 0x05, 0x1E, 0xB8, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF2, 0x6A];
+
+    fn record() -> CommutationRecord {
+        let offset = ElectricalAngle::from_bits(0x5305_1EB8);
+        CommutationRecord { offset, pole_pairs: 4, reversed: false, confirmed: true }
+    }
+
+    #[test]
+    fn a_record_is_sixteen_bytes_and_comes_back() {
+        assert_eq!(record().emit(), RECORD);
+        assert_eq!(CommutationRecord::parse(&RECORD), Some(Ok(record())));
+        let longer = [&RECORD[..], &[0xFF; 3]].concat();
+        assert_eq!(CommutationRecord::parse(&longer), Some(Ok(record())));
+        let reversed = CommutationRecord { reversed: true, confirmed: false, ..record() };
+        assert_eq!(CommutationRecord::parse(&reversed.emit()), Some(Ok(reversed)));
+    }
+
+    #[test]
+    fn every_flipped_bit_and_every_cut_is_seen() {
+        for bit in 0..RECORD.len() * 8 {
+            let mut bytes = RECORD;
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            let expected = if bit < 24 { None } else { Some(Err(Damaged)) };
+            assert_eq!(CommutationRecord::parse(&bytes), expected, "bit {bit}");
+        }
+        for length in 0..RECORD.len() {
+            let expected = if length < 3 { None } else { Some(Err(Damaged)) };
+            assert_eq!(CommutationRecord::parse(&RECORD[..length]), expected, "{length} bytes");
+        }
+    }
+
+    #[test]
+    fn the_check_is_the_usual_one() {
+        // The check value of CRC-16/CCITT-FALSE for the digits 1 to 9.
+        assert_eq!(crc(b"123456789"), 0x29B1);
+    }
+}

@@ -1,0 +1,398 @@
+//! The commutation assistant: what has to be so before, readings, the offset, both ways to keep it, and what goes wrong on
+//! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
+
+use encoder_studio::app::hiperface::commutation::{Action as Assistant, Form, Kind, Slot, Source, Storage, Vector};
+use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState, commutation};
+use encoder_studio::app::{Action, Severity};
+use encoder_studio::signal::quality::Verdict;
+use encoder_studio::worker::hiperface::Change;
+
+use crate::support::Desk;
+use crate::texts;
+
+/// The virtual SKM36 a hundred and three quarter periods from its zero: 128 periods, sine and cosine counts 409 and 511.
+const AT_REST: &str = "position=3224";
+
+impl Desk {
+    fn assist(&mut self, action: Assistant) {
+        self.ask(Hiperface::Commutation(action));
+    }
+
+    fn edit(&mut self, change: impl FnOnce(&mut Form)) {
+        let mut form = self.encoder().commutation.form.clone();
+        change(&mut form);
+        self.assist(Assistant::Edit(Box::new(form)));
+    }
+
+    /// Everything ticked and written down, for a motor of four pole pairs.
+    fn prepare(&mut self) {
+        self.edit(|form| {
+            (form.disabled, form.uncoupled, form.released) = (true, true, true);
+            (form.current_a, form.time_s) = ("2,5".to_owned(), "30".to_owned());
+            form.pole_pairs = "4".to_owned();
+        });
+    }
+
+    fn read(&mut self, slot: Slot) {
+        self.assist(Assistant::Read(slot));
+        self.until("it is read", |studio| studio.encoder().unwrap().commutation.asked().is_none());
+        self.until_ready();
+    }
+
+    fn type_in(&mut self, slot: Slot, text: &str) {
+        self.edit(|form| {
+            let at = Slot::ALL.iter().position(|own| *own == slot).unwrap();
+            form.typed[at] = text.to_owned();
+        });
+        self.assist(Assistant::Use(slot));
+    }
+
+    fn why_not(&self) -> Option<&'static str> {
+        let problem = self.encoder().commutation.problem.as_ref();
+        problem.inspect(|text| texts::check(text)).map(|text| text.id())
+    }
+
+    fn offset(&self) -> Result<u32, &'static str> {
+        let offset = self.encoder().commutation.offset(self.encoder().geometry());
+        offset.map(|offset| offset.angle.bits()).map_err(|text| {
+            texts::check(&text);
+            text.id()
+        })
+    }
+
+    fn second(&self) -> (Verdict, &'static str) {
+        let second = self.encoder().commutation.second(self.encoder().geometry()).expect("it was read");
+        let (verdict, text) = second.unwrap();
+        texts::check(&text);
+        (verdict, text.id())
+    }
+}
+
+#[test]
+fn nothing_is_read_before_everything_is_ticked_and_written_down() {
+    let mut desk = Desk::begun(AT_REST);
+    let before = desk.wire().sent();
+    for (change, why) in [
+        ((|_| {}) as fn(&mut Form), "commutation.unprepared"),
+        (|form| (form.disabled, form.uncoupled) = (true, true), "commutation.unprepared"),
+        (|form| form.released = true, "entry.missing"),
+        (|form| form.current_a = "NaN".to_owned(), "entry.number"),
+        (|form| form.current_a = "0".to_owned(), "entry.number"),
+        (|form| form.current_a = "2,5".to_owned(), "entry.missing"),
+        (|form| (form.time_s, form.vector) = ("30".to_owned(), Vector::Other), "entry.missing"),
+        (|form| form.vector_deg = "1e9".to_owned(), "entry.number"),
+        (|form| (form.vector_deg, form.source) = ("15".to_owned(), Source::Typed), "entry.missing"),
+        (|form| form.phase = "1".to_owned(), "entry.number"),
+    ] {
+        desk.edit(change);
+        desk.assist(Assistant::Read(Slot::OneSide));
+        assert_eq!(desk.why_not(), Some(why));
+    }
+    assert_eq!(desk.wire().sent(), before, "the encoder was not asked");
+    desk.edit(|form| form.phase = "0.75".to_owned());
+    desk.read(Slot::OneSide);
+    assert_eq!(desk.why_not(), None);
+}
+
+#[test]
+fn the_whole_run_ends_with_the_offset_in_the_encoder() {
+    let mut desk = Desk::begun(AT_REST);
+    desk.prepare();
+    // Polled meanwhile: the readings come in between.
+    desk.ask(Hiperface::Poll(Some(std::time::Duration::ZERO)));
+    desk.read(Slot::OneSide);
+    let reading = *desk.encoder().commutation.reading(Slot::OneSide).unwrap();
+    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps on.
+    assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
+    let Kind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
+    assert!((residual_periods * 32.0 - 0.524_844).abs() < 1e-6);
+    assert_eq!(desk.offset(), Err("commutation.one_side_only"));
+    desk.read(Slot::OtherSide);
+    assert!(desk.studio.is_live(), "polling goes on");
+    desk.ask(Hiperface::Poll(None));
+    // frac(4 · 100.749 223 64 / 128) = 53.428 766° = 25FE 68F7h.
+    assert_eq!(desk.offset(), Ok(0x25FE_68F7));
+    // A quarter of an electrical turn is eight periods.
+    desk.type_in(Slot::Second, "108,75");
+    assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
+
+    desk.edit(|form| form.address = "16".to_owned());
+    desk.assist(Assistant::Store);
+    // The CRC by Python's `binascii.crc_hqx`.
+    let record = [0x43, 0x4F, 0x31, 0x01, 0x25, 0xFE, 0x68, 0xF7, 4, 0, 0, 0, 0, 0, 0x29, 0x44];
+    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[16..32], record);
+    assert_eq!(desk.times_told("commutation.staged"), 1);
+    assert_ne!(desk.wire().field(0)[16..32], record, "nothing is written before the review");
+    let found = commutation::stored(&desk.encoder().staged);
+    assert_eq!(found.iter().map(|own| (own.field, own.address, own.edited)).collect::<Vec<_>>(), [(0, 16, true)]);
+    desk.write();
+    assert_eq!(desk.wire().field(0)[16..32], record);
+    let marks = desk.encoder().mounting(0);
+    assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
+    let found = commutation::stored(&desk.encoder().staged);
+    assert!(!found[0].edited && found[0].record.unwrap().confirmed);
+    let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
+    report.iter().for_each(texts::check);
+    let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal).collect();
+    assert!(english.iter().any(|line| line == "Limits: 2.50 A for 30.0 s"), "{english:?}");
+    assert!(english.iter().any(|line| line == "Offset: 53.4288° el. = 25FE68F7h"), "{english:?}");
+}
+
+/// Section 5: fine position 339.02 of 1024 periods, four pole pairs. Without an encoder.
+#[test]
+fn a_typed_position_gives_the_offset_of_the_reference() {
+    let mut desk = Desk::fresh("");
+    desk.open("serial:/dev/nothing");
+    desk.until("it is told", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    assert_eq!(desk.offset(), Err("entry.missing"));
+    desk.edit(|form| (form.pole_pairs, form.periods) = ("4".to_owned(), "1024".to_owned()));
+    assert_eq!(desk.offset(), Err("commutation.no_reading"));
+    desk.type_in(Slot::OneSide, "339.02");
+    assert_eq!(desk.offset(), Ok(0x5305_1EB8));
+    // The other way round: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
+    desk.edit(|form| form.reversed = true);
+    assert_eq!(desk.offset(), Ok(0xACFA_E148));
+    desk.edit(|form| (form.reversed, form.vector) = (false, Vector::UAgainstV));
+    assert_eq!(desk.offset(), Ok(0x685A_740D));
+    desk.edit(|form| form.vector = Vector::UAgainstBoth);
+    for (pairs, periods) in [("0", "1024"), ("501", "1024"), ("NaN", "1024"), ("4", "0"), ("4", "65537"), ("4", "-1")] {
+        desk.edit(|form| (form.pole_pairs, form.periods) = (pairs.to_owned(), periods.to_owned()));
+        assert_eq!(desk.offset(), Err("entry.whole"), "{pairs} {periods}");
+    }
+    for text in ["NaN", "-1", "1e3", "134217729", "339.02.1"] {
+        desk.type_in(Slot::OneSide, text);
+        assert_eq!(desk.why_not(), Some("entry.number"), "{text}");
+    }
+    desk.assist(Assistant::Read(Slot::OneSide));
+    assert!(desk.why_not().is_some());
+    desk.assist(Assistant::Store);
+    desk.assist(Assistant::Set);
+    assert!(desk.edits().is_empty() && desk.encoder().review.is_none());
+}
+
+#[test]
+fn sides_that_are_too_far_apart_are_refused() {
+    let mut desk = Desk::begun("");
+    desk.prepare();
+    // Half a period of 128 is 1.40625°, with four pole pairs 5.625°.
+    desk.type_in(Slot::OneSide, "127.9");
+    desk.type_in(Slot::OtherSide, "0.4");
+    assert_eq!(desk.offset(), Err("commutation.friction"));
+    desk.assist(Assistant::Store);
+    desk.assist(Assistant::Set);
+    assert!(desk.edits().is_empty() && desk.encoder().review.is_none());
+    desk.edit(|form| form.limit_deg = "5,7".to_owned());
+    let offset = desk.encoder().commutation.offset(desk.encoder().geometry()).unwrap();
+    assert!((offset.apart_deg.unwrap() - 5.625).abs() < 1e-9);
+    assert!((offset.fine_periods - 0.15).abs() < 1e-9, "the mean the short way round");
+    desk.edit(|form| form.limit_deg = "0".to_owned());
+    assert_eq!(desk.offset(), Err("entry.number"));
+}
+
+#[test]
+fn the_second_vector_tells_what_is_wrong() {
+    let mut desk = Desk::begun("");
+    desk.prepare();
+    desk.type_in(Slot::OneSide, "4");
+    for (second, pairs, verdict, id) in [
+        ("12", "4", Verdict::Ok, "commutation.fits"),
+        // Over the end of the revolution.
+        ("124", "4", Verdict::Fault, "commutation.exchanged"),
+        // 22.5° of the shaft are a quarter turn of four pole pairs, whatever was typed.
+        ("12", "5", Verdict::Fault, "commutation.other_pairs"),
+        ("124", "2", Verdict::Fault, "commutation.exchanged_pairs"),
+        ("4.1", "4", Verdict::Fault, "commutation.still"),
+        ("4", "4", Verdict::Fault, "commutation.still"),
+        // 3.4 of 8 periods would be 9.4 pole pairs.
+        ("7.4", "4", Verdict::Fault, "commutation.unclear"),
+        // More than an electrical turn.
+        ("60", "4", Verdict::Fault, "commutation.unclear"),
+    ] {
+        desk.edit(|form| form.pole_pairs = pairs.to_owned());
+        desk.type_in(Slot::Second, second);
+        assert_eq!(desk.second(), (verdict, id), "{second} {pairs}");
+        desk.assist(Assistant::Store);
+        let stored = !desk.edits().is_empty();
+        assert_eq!(stored, verdict == Verdict::Ok, "what does not fit is not stored");
+        assert_eq!(desk.why_not(), (!stored).then_some("commutation.second_refuses"));
+        desk.ask(Hiperface::RevertAll);
+    }
+    // With the other counting direction, exchanged is right.
+    desk.edit(|form| (form.pole_pairs, form.reversed) = ("4".to_owned(), true));
+    desk.type_in(Slot::Second, "124");
+    assert_eq!(desk.second(), (Verdict::Ok, "commutation.fits"));
+    desk.edit(|form| form.second_deg = "180".to_owned());
+    let second = desk.encoder().commutation.second(desk.encoder().geometry()).unwrap();
+    assert_eq!(second.unwrap_err().id(), "entry.number");
+}
+
+#[test]
+fn method_2_sets_a_position_in_phase_and_forgets_the_readings() {
+    let mut desk = Desk::begun(AT_REST);
+    desk.prepare();
+    desk.read(Slot::OneSide);
+    desk.read(Slot::OtherSide);
+    desk.edit(|form| form.period = "3".to_owned());
+    let setting = desk.encoder().commutation.setting(desk.encoder().geometry()).unwrap();
+    // 3 · 32 + ⌊32 · 0.7492⌋; what remains is 4 · 3.749 224 / 128 of a turn: 42.178 766°.
+    assert_eq!((setting.value, setting.exact, setting.verdict), (119, false, Verdict::Ok));
+    assert!((setting.remaining_deg - 42.178_766).abs() < 1e-5, "{setting:?}");
+    desk.assist(Assistant::Set);
+    desk.until_planned();
+    let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
+    assert_eq!(prepared.wanted_position, Some(119), "the nearest that keeps the encoder's own five bits");
+    desk.write_as_shown();
+    desk.until_written();
+    assert_eq!(desk.encoder().position_set, Some((3224, 120)));
+    assert_eq!(desk.encoder().commutation.reading(Slot::OneSide), None, "that was another zero");
+    assert_eq!(desk.offset(), Err("commutation.no_reading"));
+}
+
+/// Section 5: with 16 periods and 5 pole pairs a step is 112.5° electrical; with 4 of 128 periods 14°.
+#[test]
+fn method_2_is_refused_where_its_step_is_too_large() {
+    let mut desk = Desk::begun(AT_REST);
+    desk.prepare();
+    desk.type_in(Slot::OneSide, "3.47");
+    for (periods, pairs, result) in [
+        ("16", "5", Err("commutation.unusable")),
+        ("16", "4", Err("commutation.unusable")),
+        ("16", "3", Ok(Verdict::Warn)),
+        ("128", "10", Ok(Verdict::Ok)),
+        ("128", "11", Ok(Verdict::Warn)),
+    ] {
+        desk.edit(|form| (form.periods, form.pole_pairs) = (periods.to_owned(), pairs.to_owned()));
+        let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
+        assert_eq!(setting.as_ref().map(|own| own.verdict).map_err(|text| text.id()), result, "{periods} {pairs}");
+        // φ = 0.47: the last five bits are 15.
+        assert!(setting.is_err() || setting.unwrap().value == 0x0F);
+    }
+    desk.edit(|form| (form.periods, form.pole_pairs) = ("16".to_owned(), "5".to_owned()));
+    desk.assist(Assistant::Set);
+    assert_eq!((desk.why_not(), desk.encoder().review.is_none()), (Some("commutation.unusable"), true));
+    // SKM36: 128 periods and 4096 turns are 524 288 periods.
+    desk.edit(|form| {
+        (form.periods, form.pole_pairs, form.period) = (String::new(), "4".to_owned(), "524288".to_owned())
+    });
+    let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
+    assert_eq!(setting.unwrap_err().id(), "entry.whole");
+    // In the second vector the shaft is not where it was read.
+    desk.edit(|form| form.period = "0".to_owned());
+    desk.type_in(Slot::Second, "11.47");
+    let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
+    assert_eq!(setting.unwrap_err().id(), "commutation.not_there");
+}
+
+#[test]
+fn a_shaft_that_moves_is_refused_where_it_was_asked_for() {
+    let mut desk = Desk::begun("rpm=60");
+    desk.prepare();
+    desk.read(Slot::OneSide);
+    assert_eq!(desk.why_not(), Some("encoder.moving"));
+    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
+    assert!(desk.told(Severity::Error).contains(&"encoder.moving"), "and stands in the log");
+    desk.edit(|_| {});
+    assert_eq!(desk.why_not(), None);
+}
+
+#[test]
+fn a_position_out_of_phase_says_so() {
+    // The word is shifted by just half a period against the signals.
+    let mut desk = Desk::begun("position=8");
+    desk.prepare();
+    for (shift, expected) in [(16, Some("commutation.far_apart")), (4, None), (-20, None)] {
+        desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: shift }));
+        desk.until_planned();
+        desk.write_as_shown();
+        desk.until_written();
+        desk.ask(Hiperface::CloseReview);
+        desk.read(Slot::OneSide);
+        assert_eq!(desk.why_not(), expected, "{shift}");
+        desk.assist(Assistant::Clear);
+    }
+    // 12 steps of lag are worth a warning (beyond 8/32); by the position alone they would not be seen.
+    desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
+    desk.until_planned();
+    desk.write_as_shown();
+    desk.until_written();
+    desk.ask(Hiperface::CloseReview);
+    desk.read(Slot::OneSide);
+    let kind = desk.encoder().commutation.reading(Slot::OneSide).unwrap().kind;
+    assert!(matches!(kind, Kind::Fine { verdict: Verdict::Warn, .. }), "{kind:?}");
+    desk.edit(|form| form.source = Source::Absolute);
+    desk.read(Slot::OtherSide);
+    let reading = desk.encoder().commutation.reading(Slot::OtherSide).unwrap();
+    assert_eq!((reading.fine_periods, reading.kind), (20.5 / 32.0, Kind::Absolute));
+}
+
+#[test]
+fn readings_outlive_a_lost_cable_and_not_another_encoder() {
+    let mut desk = Desk::at_port(AT_REST);
+    desk.prepare();
+    desk.read(Slot::OneSide);
+    desk.wire().unplug();
+    desk.assist(Assistant::Read(Slot::OtherSide));
+    desk.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    assert_eq!(desk.encoder().commutation.asked(), None);
+    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_some());
+    desk.assist(Assistant::Read(Slot::OtherSide));
+    assert_eq!(desk.why_not(), Some("commutation.not_ready"));
+    desk.wire().plug();
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    desk.read(Slot::OtherSide);
+    assert_eq!(desk.offset(), Ok(0x25FE_68F7));
+    desk.wire().unplug();
+    desk.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    desk.wire().plug();
+    desk.wire().exchange("serial=ZZ1");
+    desk.ask(Hiperface::Reconnect);
+    desk.until_read();
+    assert_eq!(desk.encoder().commutation.form, Form::default(), "nothing of it is for this one");
+    assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
+}
+
+#[test]
+fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
+    let mut desk = Desk::begun("");
+    let path = desk.outside.path("mine.ron");
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    desk.until_ready();
+    desk.act(Action::Open(path.clone()));
+    desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.prepare();
+    desk.type_in(Slot::OneSide, "339.02");
+    desk.edit(|form| (form.periods, form.address) = ("1024".to_owned(), "8".to_owned()));
+    desk.assist(Assistant::Store);
+    assert_eq!(desk.why_not(), Some("commutation.block"));
+    desk.edit(|form| form.storage = Storage::Number);
+    desk.assist(Assistant::Store);
+    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[8..12], [0x53, 0x05, 0x1E, 0xB8]);
+    desk.ask(Hiperface::RevertAll);
+    desk.edit(|form| (form.storage, form.address, form.pole_pairs) = (Storage::Record, "0".into(), "256".into()));
+    desk.assist(Assistant::Store);
+    assert_eq!(desk.why_not(), Some("commutation.too_many_pairs"));
+    desk.edit(|form| form.pole_pairs = "4".to_owned());
+    desk.assist(Assistant::Store);
+    let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
+    assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[..16], record);
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is kept", |studio| !studio.encoder().unwrap().staged.is_dirty());
+    assert_eq!(desk.encoder().mounting(0), [(0..16, "commutation offset".to_owned())]);
+    desk.edit(|form| form.address = "128".to_owned());
+    desk.assist(Assistant::Store);
+    assert_eq!(desk.why_not(), Some("entry.whole"));
+    // The field has 32 bytes: the memory itself refuses, in the log.
+    desk.edit(|form| form.address = "112".to_owned());
+    desk.assist(Assistant::Store);
+    assert!(desk.edits().is_empty());
+}
+
+#[test]
+fn a_linear_encoder_has_no_pole_pairs() {
+    let mut desk = Desk::begun("type=0x90");
+    desk.prepare();
+    desk.type_in(Slot::OneSide, "3.5");
+    assert_eq!(desk.offset(), Err("commutation.linear"));
+}

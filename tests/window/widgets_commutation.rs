@@ -1,0 +1,69 @@
+//! The commutation page as a person uses it: ticked, typed and clicked.
+
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::hiperface::commutation::Slot;
+use encoder_studio::app::{Action, Language};
+
+use crate::screen::Screen;
+
+/// So tall that the whole page is drawn.
+const TALL: [f32; 2] = [1400.0, 1800.0];
+
+impl Screen {
+    fn tick(&mut self, id: &'static str) {
+        let label = self.say(id);
+        self.harness.get_by_label(&label).click();
+        self.steps();
+    }
+
+    fn fill_in(&mut self, label: &str, text: &str) {
+        // The label stands beside its entry under the same name.
+        let is_entry = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == egui::Role::TextInput;
+        self.harness.query_all_by_label(label).find(is_entry).unwrap().focus();
+        self.steps();
+        self.harness.query_all_by_label(label).find(is_entry).unwrap().type_text(text);
+        self.steps();
+    }
+
+    fn fill(&mut self, id: &'static str, text: &str) {
+        let label = self.say(id);
+        self.fill_in(&label, text);
+    }
+}
+
+#[test]
+fn the_page_is_gone_through_by_hand() {
+    let mut screen = Screen::begun(TALL);
+    screen.click("page.commutation");
+    assert!(!screen.is_enabled("commutation.read_one") && !screen.is_enabled("commutation.store"));
+    for id in ["commutation.disabled", "commutation.uncoupled", "commutation.released"] {
+        screen.tick(id);
+    }
+    screen.fill("commutation.current", "2.5");
+    assert!(!screen.is_enabled("commutation.read_one"), "the time is not written down");
+    screen.fill("commutation.time", "30");
+    screen.fill("commutation.pole_pairs", "4");
+    screen.click("commutation.read_one");
+    let read = |slot| {
+        move |studio: &encoder_studio::app::Studio| {
+            let encoder = studio.encoder().unwrap();
+            encoder.is_ready() && encoder.commutation.reading(slot).is_some()
+        }
+    };
+    screen.until("one side is read", read(Slot::OneSide));
+    assert!(!screen.is_enabled("commutation.store"), "one side is not enough");
+    screen.click("commutation.read_other");
+    screen.until("the other side is read", read(Slot::OtherSide));
+    let second = format!("{} · {}", screen.say("commutation.in_second"), screen.say("commutation.fine"));
+    let there = screen.encoder().commutation.reading(Slot::OneSide).unwrap().fine_periods + 8.0;
+    screen.fill_in(&second, &format!("{there:.5}"));
+    screen.click("commutation.use_second");
+    assert!(screen.encoder().commutation.is_confirmed(screen.encoder().geometry()));
+    screen.check_language();
+    screen.click("commutation.store");
+    assert!(screen.encoder().staged.is_edited(0, 0));
+    screen.click("commutation.review");
+    assert!(screen.encoder().review.is_some(), "the usual review writes it");
+    screen.act(Action::SetLanguage(Language::German));
+    screen.check_language();
+}
