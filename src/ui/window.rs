@@ -112,7 +112,7 @@ impl Window {
             .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
         writing_bar(ui, skin, studio);
         Panel::left("navigation")
-            .exact_size(if ui.available_width() < 1000.0 { 124.0 } else { 148.0 })
+            .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
                 navigation(ui, skin, studio, views, docks, actions);

@@ -28,8 +28,6 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             before(ui, skin, form);
             ui.add_space(skin.space.groups);
             motor(ui, skin, encoder, form);
-            ui.add_space(skin.space.groups);
-            result::report_ui(ui, skin, encoder);
         },
         |ui, (actions, form)| {
             rest(ui, skin, encoder, form, actions);
@@ -43,6 +41,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             result::position_ui(ui, skin, encoder, form, actions);
         },
     );
+    ui.add_space(skin.space.groups);
+    result::report_ui(ui, skin, encoder);
     if form != encoder.commutation.form {
         actions.push(ask(encoder, Assistant::Edit(Box::new(form))));
     }
