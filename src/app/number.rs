@@ -48,6 +48,62 @@ pub(super) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Re
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
+/// A quantity as it stands on a component: a number with a prefix from f to G, behind it or in place of its decimal point,
+/// with or without the unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`); or an exponent (`22e-12`). `None` where it is
+/// none.
+fn quantity(text: &str) -> Option<f64> {
+    const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
+    const PREFIXES: [(char, f64); 10] = [
+        ('f', 1e-15),
+        ('p', 1e-12),
+        ('n', 1e-9),
+        ('µ', 1e-6),
+        ('μ', 1e-6),
+        ('u', 1e-6),
+        ('m', 1e-3),
+        ('k', 1e3),
+        ('M', 1e6),
+        ('G', 1e9),
+    ];
+    let text = text.trim();
+    let text = UNITS.iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
+    let prefix = PREFIXES.iter().find_map(|(prefix, factor)| Some((text.split_once(*prefix)?, factor)));
+    match prefix {
+        Some(((before, ""), factor)) => number(before).map(|value| value * factor),
+        // 4k7; what has a point already has no second one.
+        Some(((before, behind), factor)) => {
+            let whole = |digits: &str| !digits.is_empty() && digits.bytes().all(|c| c.is_ascii_digit());
+            let value = number(&format!("{before}.{behind}")).filter(|_| whole(before) && whole(behind))?;
+            Some(value * factor)
+        }
+        None => match text.split_once(['e', 'E']) {
+            Some((before, power)) => {
+                let power = number(power).filter(|power| power.fract() == 0.0 && power.abs() <= 300.0)?;
+                number(before).map(|value| value * 10_f64.powi(power as i32))
+            }
+            None => number(text),
+        },
+    }
+}
+
+/// A quantity from `least` to `most`, which the refusal says as `range`.
+///
+/// # Errors
+/// In words.
+pub(super) fn quantity_within(
+    what: &'static str,
+    text: &str,
+    (least, most): (f64, f64),
+    range: (&'static str, &'static str),
+) -> Result<f64, Text> {
+    filled(what, text)?;
+    let refused = || {
+        let refusal = Text::new("entry.quantity").with_text("what", Text::new(what)).with("entry", text.trim());
+        refusal.with("least", range.0).with("most", range.1)
+    };
+    quantity(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
+}
+
 fn filled(what: &'static str, text: &str) -> Result<(), Text> {
     if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", Text::new(what))) } else { Ok(()) }
 }
@@ -74,6 +130,38 @@ mod tests {
             ["", " ", "-", ".", "1e3", "NaN", "nan", "inf", "-inf", "--1", "+-1", "1.2.3", "1 2", "0x10", "½", &endless]
         {
             assert_eq!(number(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn quantities_are_read_as_they_stand_on_components() {
+        for (text, value) in [
+            ("10k", 1e4),
+            ("10 kΩ", 1e4),
+            ("10 kOhm", 1e4),
+            ("4k7", 4.7e3),
+            ("4,7k", 4.7e3),
+            ("10000", 1e4),
+            ("330R", 330.0),
+            ("1M", 1e6),
+            ("22p", 22e-12),
+            ("22 pF", 22e-12),
+            ("22e-12", 22e-12),
+            ("22E-12 F", 22e-12),
+            ("0,1µ", 1e-7),
+            ("0.1 uF", 1e-7),
+            ("2n2", 2.2e-9),
+            ("5m", 5e-3),
+        ] {
+            let read = quantity(text).unwrap_or(f64::NAN);
+            assert!((read - value).abs() <= value * 1e-12, "{text}: {read}");
+        }
+        let none = [
+            "", "k", "kΩ", "k7", "4.7k5", "4k 7", "4k7k", "10kk", "10x", "NaN", "inf", "1e", "1e1.5", "1e999", "F",
+            "1pn",
+        ];
+        for text in none {
+            assert_eq!(quantity(text), None, "{text}");
         }
     }
 

@@ -15,9 +15,9 @@ use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
-use crate::device::hiperface::{Identity, Sample, Survey, profile_of};
+use crate::device::hiperface::{Identity, Sample, Survey};
 use crate::link::LinkUrl;
-use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item, Recorded};
+use crate::profile::hiperface::{FieldImage, Item};
 use crate::profile::{Body, Document};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::store::{Backup, DeviceKey, Entry, FileError};
@@ -248,29 +248,6 @@ impl Encoder {
     /// One of its data fields, as the encoder has it.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)
-    }
-
-    /// What in a field belongs to the mounting, with its meaning.
-    pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
-        let own = |profile: &HiperfaceProfile| {
-            let marks = profile.mounting.iter().filter(|mark| mark.range.field == field);
-            marks
-                .map(|mark| {
-                    let start = mark.range.start;
-                    (start..start.saturating_add(mark.range.count.unwrap_or(0)), mark.meaning.clone())
-                })
-                .collect()
-        };
-        match &self.source {
-            Source::File { document, .. } => {
-                let Body::Hiperface(profile) = &document.body;
-                own(profile)
-            }
-            Source::Link(_) => {
-                let Some(identity) = &self.identity else { return Vec::new() };
-                own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))
-            }
-        }
     }
 
     /// Ends what runs, and gives up a link that is being opened.

@@ -7,6 +7,7 @@ mod drafts;
 mod encoder;
 pub mod forms;
 mod meaning;
+mod mounting;
 mod news;
 mod record;
 pub mod review;

@@ -5,6 +5,7 @@ mod act;
 mod action;
 mod family;
 pub mod forms;
+pub mod input_circuit;
 pub mod interpolation;
 mod live;
 mod measurement;

@@ -2,6 +2,7 @@
 //! encoder and no session.
 
 mod error;
+mod input_circuit;
 mod numbers;
 mod octant;
 mod quality;
@@ -13,6 +14,7 @@ use egui::{ScrollArea, Ui};
 
 use super::{Skin, icons};
 use crate::app::signals::Signals;
+use crate::app::signals::input_circuit::Form as Circuit;
 use crate::app::{Action, Text};
 
 /// A page of the tab.
@@ -23,15 +25,18 @@ pub(in crate::ui) enum Page {
     Quality,
     /// The position error inside a period.
     Error,
+    /// The calculator of a drive's input.
+    InputCircuit,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 2] = [Page::Quality, Page::Error];
+    pub(super) const ALL: [Page; 3] = [Page::Quality, Page::Error, Page::InputCircuit];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
             Page::Quality => icons::TARGET,
             Page::Error => icons::CHART_LINE,
+            Page::InputCircuit => icons::SLIDERS,
         }
     }
 
@@ -39,6 +44,7 @@ impl Page {
         match self {
             Page::Quality => "page.quality",
             Page::Error => "page.error",
+            Page::InputCircuit => "page.input_circuit",
         }
     }
 
@@ -46,6 +52,7 @@ impl Page {
         match self {
             Page::Quality => "help.quality",
             Page::Error => "help.error",
+            Page::InputCircuit => "help.input_circuit",
         }
     }
 }
@@ -62,6 +69,7 @@ pub(in crate::ui) struct View {
     periods: Draft,
     corrected: bool,
     octant: octant::View,
+    input_circuit: Circuit,
 }
 
 /// Draws the open page.
@@ -81,6 +89,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
                     error::page_ui(ui, skin, signals, view, actions);
                 }
             }
+            Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
         });
     });
 }

@@ -1,0 +1,31 @@
+//! What in the memory belongs to the mounting: values that are right for one encoder on one motor and no other.
+
+use super::encoder::{Encoder, Source};
+use crate::device::hiperface::profile_of;
+use crate::profile::Body;
+use crate::profile::hiperface::{HiperfaceProfile, Recorded};
+
+impl Encoder {
+    /// What in a field belongs to the mounting, with its meaning.
+    pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
+        let own = |profile: &HiperfaceProfile| {
+            let marks = profile.mounting.iter().filter(|mark| mark.range.field == field);
+            marks
+                .map(|mark| {
+                    let start = mark.range.start;
+                    (start..start.saturating_add(mark.range.count.unwrap_or(0)), mark.meaning.clone())
+                })
+                .collect()
+        };
+        match &self.source {
+            Source::File { document, .. } => {
+                let Body::Hiperface(profile) = &document.body;
+                own(profile)
+            }
+            Source::Link(_) => {
+                let Some(identity) = &self.identity else { return Vec::new() };
+                own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))
+            }
+        }
+    }
+}

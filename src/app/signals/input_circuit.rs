@@ -1,0 +1,165 @@
+//! The calculator of a drive's input circuit: how fast the signals are at a speed, and what the filter does to them there
+//! and on the way to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
+
+use super::forms::MOST_PERIODS;
+use crate::app::Text;
+use crate::app::number::{quantity_within, whole, within};
+use crate::signal::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
+
+/// The entries, as typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// Signal periods a revolution.
+    pub periods: String,
+    /// Speed in revolutions a minute.
+    pub speed: String,
+    /// The resistor across the capacitor: `10k`.
+    pub resistance: String,
+    /// The capacitor: `22p`.
+    pub capacitance: String,
+}
+
+/// The signals and the filter at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Revolutions a minute.
+    pub speed_rpm: f64,
+    /// Frequency of the signals in hertz.
+    pub frequency_hz: f64,
+    /// What the filter does there.
+    pub response: Response,
+    /// The lag in degrees of the shaft.
+    pub shaft_deg: f64,
+}
+
+/// What the entries come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circuit {
+    /// At the speed that was typed.
+    pub here: Point,
+    /// The speed in revolutions a minute at which the signals reach the encoder's bandwidth.
+    pub most_rpm: f64,
+    /// The frequency in hertz at which the filter leaves 71 % of the amplitude.
+    pub corner_hz: f64,
+    periods: u32,
+    filter: InputFilter,
+}
+
+/// Fastest speed that can be typed, in revolutions a minute.
+const MOST_RPM: f64 = 1_000_000.0;
+
+impl Default for Form {
+    fn default() -> Self {
+        let typed = |text: &str| text.to_owned();
+        Form { periods: typed("1024"), speed: typed("6000"), resistance: typed("10k"), capacitance: typed("47p") }
+    }
+}
+
+impl Form {
+    /// Reckons.
+    ///
+    /// # Errors
+    /// The first entry that cannot be used, in words.
+    pub fn circuit(&self) -> Result<Circuit, Text> {
+        let periods = whole("input.periods", &self.periods, 1, MOST_PERIODS)?;
+        let speed_rpm = within("input.speed", &self.speed, 0.0, MOST_RPM)?;
+        let ohms = quantity_within("input.resistance", &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
+        let farads = quantity_within("input.capacitance", &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
+        let filter = InputFilter { resistance_ohm: ohms, capacitance_f: farads };
+        let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MOST_RPM);
+        let corner_hz = 1.0 / (std::f64::consts::TAU * ohms * farads);
+        Ok(Circuit { here: point(periods, filter, speed_rpm), most_rpm, corner_hz, periods, filter })
+    }
+}
+
+impl Circuit {
+    /// The signals are within the encoder's bandwidth at the speed that was typed.
+    pub fn is_within(&self) -> bool {
+        self.here.frequency_hz <= BANDWIDTH_HZ
+    }
+
+    /// So many evenly spaced speeds above zero, the last at the encoder's bandwidth.
+    pub fn course(&self, count: u32) -> Vec<Point> {
+        let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
+        (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
+    }
+
+    /// The error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
+    pub fn degrees_per_microsecond(&self) -> f64 {
+        360.0 * self.here.frequency_hz * 1e-6
+    }
+}
+
+fn point(periods: u32, filter: InputFilter, speed_rpm: f64) -> Point {
+    let frequency_hz = signal_frequency_hz(periods, speed_rpm);
+    let response = filter.at(frequency_hz);
+    Point { speed_rpm, frequency_hz, response, shaft_deg: response.phase_deg / f64::from(periods.max(1)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(periods: &str, speed: &str, resistance: &str, capacitance: &str) -> Form {
+        let typed = |text: &str| text.to_owned();
+        Form {
+            periods: typed(periods),
+            speed: typed(speed),
+            resistance: typed(resistance),
+            capacitance: typed(capacitance),
+        }
+    }
+
+    /// Section 1: 102.4 kHz behind 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
+    #[test]
+    fn the_rows_of_section_1() {
+        let rows = [
+            ("512", "12000", "47p", 102_400.0, 16.825, 1.496, 0.95719, 17_578.125),
+            ("1024", "5859,375", "22p", 100_000.0, 7.870, 0.700, 0.99058, 8_789.062_5),
+            ("1024", "5859.375", "47 pF", 100_000.0, 16.452, 1.462, 0.95906, 8_789.062_5),
+        ];
+        for (periods, speed, farads, frequency, phase, steps, gain, most) in rows {
+            let circuit = form(periods, speed, "10k", farads).circuit().unwrap();
+            let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
+            assert!((frequency_hz - frequency).abs() < 1e-6 && circuit.is_within(), "{circuit:?}");
+            assert!((response.phase_deg - phase).abs() < 6e-4 && (response.gain - gain).abs() < 6e-6, "{circuit:?}");
+            assert!((response.lag_in_steps() - steps).abs() < 6e-4, "{circuit:?}");
+            assert!((shaft_deg * periods.parse::<f64>().unwrap() - phase).abs() < 6e-4);
+            assert!((circuit.most_rpm - most).abs() < 1e-6, "{circuit:?}");
+        }
+        // 1/(2π · 10 kΩ · 47 pF) = 338.628 kHz; a microsecond at 102.4 kHz is 36.864°.
+        let circuit = form("1024", "6000", "10k", "47p").circuit().unwrap();
+        assert!((circuit.corner_hz - 338_627.5).abs() < 0.5, "{circuit:?}");
+        assert!((circuit.degrees_per_microsecond() - 36.864).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_course_ends_at_the_bandwidth() {
+        let circuit = form("1024", "9000", "10k", "47p").circuit().unwrap();
+        assert!(!circuit.is_within(), "153.6 kHz");
+        let course = circuit.course(10);
+        assert_eq!(course.len(), 10);
+        assert!((course[0].frequency_hz - 15e3).abs() < 1e-6 && (course[9].frequency_hz - 150e3).abs() < 1e-6);
+        // arctan(2π · 150 kHz · 10 kΩ · 47 pF) = 23.8916°
+        assert!((course[9].response.phase_deg - 23.8916).abs() < 6e-4, "{:?}", course[9]);
+    }
+
+    #[test]
+    fn what_cannot_be_reckoned_says_which_entry() {
+        for (form, id) in [
+            (form("0", "6000", "10k", "47p"), "entry.whole"),
+            (form("1000001", "6000", "10k", "47p"), "entry.whole"),
+            (form("1024", "-1", "10k", "47p"), "entry.number"),
+            (form("1024", "NaN", "10k", "47p"), "entry.number"),
+            (form("1024", "1000001", "10k", "47p"), "entry.number"),
+            (form("1024", "6000", "0", "47p"), "entry.quantity"),
+            (form("1024", "6000", "10x", "47p"), "entry.quantity"),
+            (form("1024", "6000", "10k", "47"), "entry.quantity"),
+            (form("1024", "6000", "10k", ""), "entry.missing"),
+        ] {
+            assert_eq!(form.circuit().unwrap_err().id(), id, "{form:?}");
+        }
+        let still = form("1024", "0", "10k", "47p").circuit().unwrap();
+        assert_eq!((still.here.frequency_hz, still.here.response.phase_deg, still.here.response.gain), (0.0, 0.0, 1.0));
+    }
+}

@@ -1,0 +1,160 @@
+//! The calculator of a drive's input circuit. Nothing is measured here.
+
+use egui::{RichText, Ui};
+
+use crate::app::Text;
+use crate::app::signals::Unit;
+use crate::app::signals::input_circuit::{Circuit, Form, Point};
+use crate::signal::input_circuit::BANDWIDTH_HZ;
+use crate::ui::controls::{card, entry, paragraph, problem, row, split, text_entry};
+use crate::ui::widgets::{Chart, Trace, chart};
+use crate::ui::{Skin, icons};
+
+/// Width of an entry.
+const ENTRY: f32 = 112.0;
+/// Rows of the table, and points of the curves.
+const ROWS: u32 = 10;
+const POINTS: u32 = 100;
+/// Height of the curves in points.
+const HEIGHT: f32 = 220.0;
+
+/// Draws the page.
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, form: &mut Form) {
+    // What is drawn beside the entries is what they come to now.
+    let circuit = form.circuit();
+    split(
+        ui,
+        skin,
+        (0.4, 560.0),
+        form,
+        |ui, form| {
+            entries(ui, skin, form, circuit.as_ref().err());
+            ui.add_space(skin.space.groups);
+            notes(ui, skin);
+        },
+        |ui, _| {
+            if let Ok(circuit) = &circuit {
+                here(ui, skin, circuit);
+                ui.add_space(skin.space.groups);
+                table(ui, skin, circuit);
+            }
+        },
+    );
+    if let Ok(circuit) = &circuit {
+        ui.add_space(skin.space.groups);
+        curves(ui, skin, circuit);
+    }
+}
+
+fn entries(ui: &mut Ui, skin: &Skin, form: &mut Form, refused: Option<&Text>) {
+    card(ui, skin, "input.entries", |ui| {
+        for (id, text, hint) in [
+            ("input.periods", &mut form.periods, "1024"),
+            ("input.speed", &mut form.speed, "6000"),
+            ("input.resistance", &mut form.resistance, "10k"),
+            ("input.capacitance", &mut form.capacitance, "47p"),
+        ] {
+            let word = skin.say(id);
+            entry(ui, skin, &word, |ui| text_entry(ui, text, ENTRY, &word, hint));
+        }
+        problem(ui, skin, refused);
+    });
+}
+
+fn notes(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "input.notes", |ui| {
+        for id in ["input.note_resistor", "input.note_adc", "input.note_lag"] {
+            paragraph(ui, skin.label(skin.say(id)));
+        }
+    });
+}
+
+fn here(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
+    let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
+    let limit_khz = BANDWIDTH_HZ / 1e3;
+    card(ui, skin, "input.here", |ui| {
+        ui.label(skin.value(format!("{} {}", skin.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
+        let (icon, colour, id) = match circuit.is_within() {
+            true => (icons::CHECK_CIRCLE, skin.palette.good, "input.within"),
+            false => (icons::WARNING, skin.palette.warn, "input.beyond"),
+        };
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icon).color(colour));
+            let text = Text::new(id).with_number("limit", limit_khz, 0);
+            paragraph(ui, RichText::new(skin.words(&text)).color(colour));
+        });
+        let number = |value, decimals, unit: &str| skin.mono(format!("{}{unit}", skin.number(value, decimals)));
+        let khz = |hertz: f64| skin.mono(format!("{} {}", skin.number(hertz / 1e3, 1), Unit::Kilohertz.sign()));
+        let rpm = format!("{} {}", skin.number(circuit.most_rpm, 1), skin.say("input.rpm"));
+        row(ui, skin, &skin.say("input.most"), skin.mono(rpm));
+        row(ui, skin, &skin.say("input.lag"), number(response.phase_deg, 3, "° el."));
+        row(ui, skin, &skin.say("input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
+        row(ui, skin, &skin.say("input.lag_shaft"), number(shaft_deg, 5, "°"));
+        let gain = format!("{}  ({} dB)", skin.number(response.gain, 5), skin.number(20.0 * response.gain.log10(), 2));
+        row(ui, skin, &skin.say("input.gain"), skin.mono(gain));
+        row(ui, skin, &skin.say("input.corner"), khz(circuit.corner_hz));
+        row(ui, skin, &skin.say("input.sampling"), khz(2.0 * frequency_hz));
+        row(ui, skin, &skin.say("input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
+    });
+}
+
+fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
+    card(ui, skin, "input.table", |ui| {
+        // Read, not touched.
+        ui.spacing_mut().interact_size.y = skin.space.groups;
+        egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
+            let grid = egui::Grid::new("input.table").spacing([skin.space.groups, skin.space.inside]);
+            grid.show(ui, |ui| {
+                for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
+                    ui.label(skin.caption(skin.say(id)));
+                }
+                ui.end_row();
+                for point in circuit.course(ROWS) {
+                    let response = point.response;
+                    for (value, decimals) in [
+                        (point.speed_rpm, 1),
+                        (point.frequency_hz / 1e3, 1),
+                        (response.phase_deg, 3),
+                        (response.lag_in_steps(), 3),
+                        (response.gain, 5),
+                    ] {
+                        ui.label(skin.mono(format!("{:>7}", skin.number(value, decimals))));
+                    }
+                    ui.end_row();
+                }
+            });
+        });
+    });
+}
+
+fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
+    let course = circuit.course(POINTS);
+    let trace = |id, colour, dashed, value: fn(&Point) -> f64| Trace {
+        name: skin.say(id),
+        points: course.iter().map(|point| (point.speed_rpm, value(point))).collect(),
+        colour,
+        dashed,
+    };
+    let traces = [
+        trace("input.curve_lag", 0, false, |point| point.response.phase_deg),
+        trace("input.curve_gain", 1, true, |point| 100.0 * point.response.gain),
+    ];
+    card(ui, skin, "input.curves", |ui| {
+        let (label, rpm) = (skin.say("input.curves"), skin.say("input.rpm"));
+        let value = Text::new("input.curves_value")
+            .with_number("lag", course.last().map_or(0.0, |point| point.response.phase_deg), 2)
+            .with_number("rpm", circuit.most_rpm, 0);
+        let value = skin.words(&value);
+        let drawn = Chart {
+            traces: &traces,
+            label: &label,
+            value: &value,
+            height: HEIGHT,
+            x_unit: &rpm,
+            y_floor: Some(0.0),
+            x_range: Some((0.0, circuit.most_rpm)),
+            ..Chart::default()
+        };
+        chart(ui, skin, &drawn);
+    });
+}
