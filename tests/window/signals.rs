@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use encoder_studio::app::signals::{Action as Signals, Column, Example, Family, Origin, Place, SourceAction};
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio, Tab};
 use encoder_studio::signal::capture::{Delimiter, TimeUnit};
+use encoder_studio::signal::diagnosis::What;
 use encoder_studio::signal::quality::Finding;
 use encoder_studio::signal::wires::Wire;
 use encoder_studio::sim::sine_cosine::Quantity;
@@ -98,12 +99,12 @@ fn the_examples_are_as_good_as_their_names() {
         ("phase", |own| matches!(own, Finding::PhaseError(_))),
         ("amplitude", |own| matches!(own, Finding::Amplitude { .. })),
     ] {
-        assert!(found.iter().any(wanted), "{label}: {found:?}");
+        assert!(found.iter().any(|own| matches!(&own.what, What::Limit(limit) if wanted(limit))), "{label}: {found:?}");
     }
     // 0.8928 V is within 0.8 … 1.2 V.
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     let found = desk.studio.signals.findings();
-    assert!(!found.iter().any(|own| matches!(own, Finding::Amplitude { .. })), "{found:?}");
+    assert!(!found.iter().any(|own| matches!(own.what, What::Limit(Finding::Amplitude { .. }))), "{found:?}");
 }
 
 #[test]

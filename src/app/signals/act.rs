@@ -8,7 +8,7 @@ use crate::app::action::Done as StudioDone;
 use crate::app::services::Services;
 use crate::app::{Action as StudioAction, Severity, Text, explain};
 use crate::signal::capture::Wishes;
-use crate::signal::quality::Finding;
+use crate::signal::diagnosis::{self, Finding, What};
 use crate::store::ReadCaptureError;
 
 /// All that the Signals tab knows.
@@ -78,7 +78,10 @@ impl Signals {
     pub fn findings(&self) -> Vec<Finding> {
         let analysis = self.measurement.as_ref().and_then(|measurement| measurement.analysis.as_ref().ok());
         analysis.map_or_else(Vec::new, |analysis| {
-            self.family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms)
+            let out = self.family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms);
+            out.into_iter()
+                .map(|own| Finding { severity: diagnosis::Severity::Warning, what: What::Limit(own) })
+                .collect()
         })
     }
 
