@@ -23,6 +23,7 @@ mod texts;
 mod widgets_commutation;
 mod widgets_idle;
 mod widgets_pages;
+mod widgets_plot;
 mod widgets_writing;
 mod wire;
 mod writing;

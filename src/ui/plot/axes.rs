@@ -183,6 +183,23 @@ pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     format!("{sign}{} {unit}", decimal(length / per, 3, language))
 }
 
+/// A length of time with three digits, where there is little room.
+pub(super) fn about(nanoseconds: i64, language: Language) -> String {
+    let length = nanoseconds.unsigned_abs() as f64;
+    if length >= 60e9 {
+        return clock(nanoseconds / SECOND * SECOND, SECOND, language);
+    }
+    let (unit, per) = match length {
+        ..1e3 => ("ns", 1.0),
+        ..1e6 => ("µs", 1e3),
+        ..1e9 => ("ms", 1e6),
+        _ => ("s", 1e9),
+    };
+    let value = length / per;
+    let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{} {unit}", decimal(value, decimals, language))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -279,6 +296,15 @@ mod tests {
             (-61_500_000_000, "-1:01.5"),
         ] {
             assert_eq!(duration(nanoseconds, Language::English), expected);
+        }
+        for (nanoseconds, expected) in [
+            (700, "700 ns"),
+            (6_767_000, "6,77 ms"),
+            (15_629_000_000, "15,6 s"),
+            (123_456_789, "123 ms"),
+            (61_500_000_000, "1:01"),
+        ] {
+            assert_eq!(about(nanoseconds, Language::German), expected);
         }
     }
 }

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::{Context, View, chart, snapshot, trigger};
 use crate::app::Action as Studio;
 use crate::app::recorder::{Action, Cursor, TriggerState};
-use crate::ui::controls::{choice, icon_button, icon_menu};
+use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu};
 use crate::ui::icons;
 
 /// Seconds that can be chosen.
@@ -50,9 +50,6 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View
         trigger_menu(ui, context, &mut view.trigger);
         lines_menu(ui, context);
         export_menu(ui, context, &mut view.shot);
-        if tool(ui, some, icons::TRASH, "live.clear") {
-            context.act(Action::Clear);
-        }
         if let Some(large) = &mut view.large {
             let small = (icons::CORNERS_IN, "recorder.small");
             let (icon, id) = if *large { small } else { (icons::CORNERS_OUT, "recorder.large") };
@@ -81,7 +78,7 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
     let mut options: Vec<(i64, String)> =
         SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, skin.say(id))).collect();
     if options.iter().all(|(own, _)| *own != span) {
-        options.insert(0, (span, super::axes::duration(span, skin.language)));
+        options.insert(0, (span, super::axes::about(span, skin.language)));
     }
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 48.0;
@@ -150,6 +147,11 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot
         }
         if ui.button(skin.say("recorder.png")).clicked() {
             shot.wish(ui.ctx());
+            ui.close();
+        }
+        ui.separator();
+        if enabled_button(ui, some, icons::TRASH, &skin.say("live.clear")).clicked() {
+            chosen = Some(Studio::Recorder(desk, Action::Clear));
             ui.close();
         }
     });

@@ -1,0 +1,237 @@
+//! The plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
+
+use std::time::Duration;
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState};
+use encoder_studio::app::{Action, FileQuestion};
+use encoder_studio::app::{Desk as Of, Language, Text, recorder};
+
+use crate::screen::Screen;
+use crate::support::Outside;
+
+/// A window in which a turning encoder has been recorded for a while and stands still now.
+fn recorded() -> Screen {
+    let mut screen = Screen::opened(Outside::new("rpm=600"), None, [1280.0, 800.0]);
+    screen.until("it is read", |studio| {
+        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+    });
+    screen.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    screen.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 300);
+    screen.act(Action::Stop);
+    screen.steps();
+    screen
+}
+
+fn recorder(screen: &Screen) -> &Recorder {
+    &screen.encoder().record.recorder
+}
+
+fn chart(screen: &Screen) -> Rect {
+    let label = screen.say("recorder.chart");
+    let bounds = screen.harness.get_by_role_and_label(Role::Image, &label).rect();
+    Rect::from_min_max(bounds.min, bounds.max)
+}
+
+/// Where in the chart; the labels of the axes are left out.
+fn inside(screen: &Screen, x: f32, y: f32) -> Pos2 {
+    let chart = chart(screen);
+    let chart = Rect::from_min_max(chart.min + egui::vec2(80.0, 10.0), chart.max - egui::vec2(10.0, 30.0));
+    chart.lerp_inside([x, y])
+}
+
+fn drag(screen: &mut Screen, button: PointerButton, from: Pos2, to: Pos2) {
+    let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE };
+    screen.harness.event(Event::PointerMoved(from));
+    screen.harness.step();
+    screen.harness.event(press(from, true));
+    screen.harness.step();
+    for part in [0.3, 0.7, 1.0] {
+        screen.harness.event(Event::PointerMoved(from.lerp(to, part)));
+        screen.harness.step();
+    }
+    screen.harness.event(press(to, false));
+    screen.steps();
+}
+
+#[test]
+fn it_stands_still_and_goes_on() {
+    let mut screen = recorded();
+    assert!(recorder(&screen).follows());
+    screen.click("recorder.pause");
+    assert!(!recorder(&screen).follows());
+    screen.click("recorder.follow");
+    assert!(recorder(&screen).follows());
+    screen.click("recorder.fit");
+    let (first, last) = recorder(&screen).recorded().unwrap();
+    let (from, to) = recorder(&screen).window();
+    assert!(from <= first && to >= last && !recorder(&screen).follows());
+    screen.click("recorder.export");
+    screen.click("live.clear");
+    assert!(recorder(&screen).is_empty());
+}
+
+#[test]
+fn a_box_is_looked_into_and_a_double_click_shows_everything() {
+    let mut screen = recorded();
+    screen.click("recorder.fit");
+    let (whole_from, whole_to) = recorder(&screen).window();
+    let (from, to) = (inside(&screen, 0.25, 0.05), inside(&screen, 0.5, 0.06));
+    drag(&mut screen, PointerButton::Primary, from, to);
+    let (from, to) = recorder(&screen).window();
+    let share = to.seconds_since(from) / whole_to.seconds_since(whole_from);
+    assert!(from > whole_from && to < whole_to && (0.15..0.35).contains(&share), "{share}");
+    let first = recorder(&screen).lines().first().unwrap();
+    assert_eq!(first.range, None, "a flat box is about time alone");
+    let (a, b) = (inside(&screen, 0.2, 0.1), inside(&screen, 0.6, 0.35));
+    drag(&mut screen, PointerButton::Primary, a, b);
+    assert!(recorder(&screen).lines().first().unwrap().range.is_some());
+    // Moved by the right button: as long as before.
+    let span = recorder(&screen).span();
+    let before = recorder(&screen).window().0;
+    let (a, b) = (inside(&screen, 0.2, 0.5), inside(&screen, 0.5, 0.5));
+    drag(&mut screen, PointerButton::Secondary, a, b);
+    assert_eq!(recorder(&screen).span(), span);
+    assert!(recorder(&screen).window().0 < before, "what lay at the left came into sight");
+    let pos = inside(&screen, 0.5, 0.5);
+    // Each event is a picture of its own here, a quarter of a second after the one before.
+    screen.harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 2.0);
+    screen.harness.event(Event::PointerMoved(pos));
+    screen.harness.step();
+    for pressed in [true, false, true, false] {
+        let button = PointerButton::Primary;
+        screen.harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+    }
+    screen.steps();
+    assert_eq!(recorder(&screen).window(), (whole_from, whole_to));
+    assert_eq!(recorder(&screen).lines().first().unwrap().range, None);
+}
+
+fn switch_cursors(screen: &mut Screen) {
+    let label = screen.say("recorder.cursors");
+    screen.harness.get_by_role_and_label(Role::Switch, &label).click();
+    screen.steps();
+}
+
+#[test]
+fn cursors_are_shown_dragged_and_read() {
+    let mut screen = recorded();
+    screen.click("recorder.fit");
+    switch_cursors(&mut screen);
+    let a = recorder(&screen).cursor(Cursor::A).unwrap();
+    assert!(recorder(&screen).between_cursors().unwrap() > 0);
+    let (mut from, to) = (inside(&screen, 0.0, 0.5), inside(&screen, 0.9, 0.5));
+    // The first third of what is visible; the gutter's width is not known here, so it is looked for.
+    let mut moved = false;
+    for _ in 0..120 {
+        from.x += 2.0;
+        drag(&mut screen, PointerButton::Primary, from, to);
+        if recorder(&screen).cursor(Cursor::A) != Some(a) {
+            moved = true;
+            break;
+        }
+        screen.click("recorder.fit");
+    }
+    assert!(moved);
+    assert!(recorder(&screen).cursor(Cursor::A).unwrap() > a);
+    assert!(screen.shows("Δt"));
+    switch_cursors(&mut screen);
+    assert_eq!(recorder(&screen).between_cursors(), None);
+}
+
+#[test]
+fn lines_are_hidden_and_seen_in_other_units() {
+    let mut screen = recorded();
+    screen.click("recorder.lines");
+    let speed = screen.say("recorder.speed");
+    screen.harness.get_by_role_and_label(Role::CheckBox, &speed).click();
+    screen.steps();
+    assert_eq!(recorder(&screen).shown().count(), 1);
+    let one_axis = screen.say("recorder.one_axis");
+    screen.harness.get_by_role_and_label(Role::CheckBox, &one_axis).click();
+    screen.steps();
+    assert!(recorder(&screen).has_one_axis());
+}
+
+#[test]
+fn a_trigger_is_typed_armed_and_switched_off() {
+    let mut screen = recorded();
+    for (level, works) in [("high", false), ("", false), ("1e999", false), ("250,5", true)] {
+        screen.click("recorder.trigger");
+        let label = screen.say("trigger.level");
+        screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
+        screen.harness.step();
+        screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        screen.harness.step();
+        screen.harness.event(Event::Text(level.to_owned()));
+        if level.is_empty() {
+            screen.harness.key_press(Key::Backspace);
+        }
+        screen.steps();
+        screen.click("trigger.arm");
+        assert_eq!(recorder(&screen).trigger().is_some(), works, "{level:?}");
+        if !works {
+            assert!(screen.shows(&Text::new("trigger.no_level").words(Language::English)), "{level:?}");
+            screen.key(Key::Escape);
+        }
+    }
+    let (trigger, state) = recorder(&screen).trigger().unwrap();
+    assert_eq!((trigger.level, state), (250.5, TriggerState::Armed));
+    screen.click("recorder.disarm");
+    assert!(recorder(&screen).trigger().is_none());
+}
+
+#[test]
+fn the_plot_takes_the_place_of_the_page_and_goes_back() {
+    let mut screen = recorded();
+    let small = chart(&screen).width();
+    screen.click("recorder.large");
+    assert!(chart(&screen).width() > small * 1.5);
+    screen.key(Key::Escape);
+    assert_eq!(chart(&screen).width(), small);
+    screen.click("recorder.large");
+    screen.click("page.memory");
+    assert_eq!(chart(&screen).width(), small, "whoever wants to see a page sees it");
+}
+
+#[test]
+fn the_keyboard_moves_and_zooms() {
+    let mut screen = recorded();
+    screen.click("recorder.fit");
+    let whole = recorder(&screen).span();
+    let label = screen.say("recorder.chart");
+    screen.harness.get_by_role_and_label(Role::Image, &label).focus();
+    screen.steps();
+    screen.key(Key::Plus);
+    assert!((recorder(&screen).span() - whole / 2).abs() <= 1);
+    let before = recorder(&screen).window().0;
+    screen.key(Key::ArrowRight);
+    assert!(recorder(&screen).window().0 > before);
+    screen.key(Key::A);
+    assert!(recorder(&screen).cursor(Cursor::A).is_some());
+    screen.key(Key::Home);
+    assert_eq!(recorder(&screen).span(), whole);
+    screen.key(Key::End);
+    assert!(recorder(&screen).follows());
+}
+
+#[test]
+fn a_table_is_asked_for_from_the_menu() {
+    let mut screen = recorded();
+    let of = Of::Encoder(screen.encoder().id);
+    screen.click("recorder.export");
+    screen.click("recorder.csv_visible");
+    // Without a portal the window asks for a path itself, and the question is on its way there.
+    screen.until("it asks for a path", |_| true);
+    let question = FileQuestion::Table { desk: of, visible: true, suggested: "x".into() };
+    let path = screen.outside.path("samples.csv");
+    screen.act(Action::Chosen(question, path.clone()));
+    screen.until("it is written", |studio| {
+        studio.services.log.notices().any(|notice| notice.texts[0].id() == "recorder.written")
+    });
+    assert!(path.exists());
+    screen.act(Action::Recorder(of, recorder::Action::Clear));
+    assert!(recorder(&screen).is_empty());
+}
