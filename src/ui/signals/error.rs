@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{View, numbers, octant, quality};
+use super::{View, numbers, octant, quality, source};
 use crate::app::signals::{Measurement, Signals, error_quantities};
 use crate::app::{Action, Text};
 use crate::signal::position_error::{Basis, PositionError, harmonics};
@@ -12,6 +12,7 @@ use crate::ui::widgets::{Chart, Trace, chart};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
     let Some(measurement) = signals.measurement() else { return };
+    source::settings_ui(ui, skin, signals, &view.source, actions);
     let Ok(analysis) = &measurement.analysis else {
         quality::refused_ui(ui, skin, measurement);
         ui.add_space(skin.space.groups);

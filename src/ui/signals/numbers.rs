@@ -75,16 +75,20 @@ fn comparison(ui: &mut Ui, skin: &Skin, quantity: &Quantity, other: Option<&Quan
     };
     let number = |value: f64| skin.mono(skin.number(value, quantity.decimals));
     ui.label(number(other.value).color(skin.palette.muted));
-    // What is shown as zero has no sign.
-    let scale = 10_f64.powi(quantity.decimals as i32);
-    let difference = ((quantity.value - other.value) * scale).round() / scale + 0.0;
+    let difference = rounded(quantity.value - other.value, quantity.decimals);
     let sign = if difference > 0.0 { "+" } else { "" };
     ui.label(skin.mono(format!("{sign}{}", skin.number(difference, quantity.decimals))));
 }
 
 /// A number with its unit.
 pub(super) fn with_unit(skin: &Skin, value: f64, decimals: usize, unit: Unit) -> String {
-    unit_behind(skin.number(value, decimals), unit)
+    unit_behind(skin.number(rounded(value, decimals), decimals), unit)
+}
+
+/// As it is shown: what is shown as zero has no sign.
+fn rounded(value: f64, decimals: usize) -> f64 {
+    let scale = 10_f64.powi(decimals as i32);
+    if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
 /// Where a number should be.

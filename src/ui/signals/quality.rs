@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{View, numbers};
+use super::{View, numbers, source};
 use crate::app::signals::{Action as Signals_, Family, Measurement, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
@@ -28,6 +28,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
             verdict(ui, skin, signals, measurement);
         },
         |ui, (view, actions)| {
+            source::settings_ui(ui, skin, signals, &view.source, actions);
             values(ui, skin, signals, measurement, view, actions);
         },
     );

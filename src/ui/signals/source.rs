@@ -40,14 +40,18 @@ pub(super) fn source_ui(
         table::card_ui(ui, skin, own, &mut view.table, actions);
         ui.add_space(skin.space.between);
     }
-    if view.settings && is_virtual(signals) {
-        virtual_encoder::card_ui(ui, skin, signals.source(), actions);
-        ui.add_space(skin.space.between);
-    }
     if !shown && !running {
         nothing(ui, skin, signals, actions);
     }
     shown
+}
+
+/// The virtual encoder's settings, where they are wanted. A page draws them where what they change can be seen.
+pub(super) fn settings_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &View, actions: &mut Vec<Action>) {
+    if view.settings && is_virtual(signals) {
+        virtual_encoder::card_ui(ui, skin, signals.source(), actions);
+        ui.add_space(skin.space.between);
+    }
 }
 
 /// The virtual encoder is what is shown, or will be.

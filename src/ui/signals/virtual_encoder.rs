@@ -57,7 +57,11 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
     let aside = |ui: &mut Ui| {
         reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("virtual.reset")).clicked();
     };
-    card_with(ui, skin, "virtual.title", aside, |ui| {
+    card_with(ui, skin, "virtual.settings", aside, |ui| {
+        // There are many, and what they do is to be seen beside them.
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        ui.visuals_mut().widgets.inactive.bg_fill = skin.palette.line.into();
         problem(ui, skin, source.problem());
         two_columns(
             ui,

@@ -9,7 +9,7 @@
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, Sense, Stroke, Ui, Vec2, WidgetInfo};
-use egui_plot::{Bar, BarChart, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints};
+use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::ui::Skin;
 use crate::ui::widgets::series;
@@ -85,8 +85,8 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
             .grid_color(skin.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, 0.08))
             .label_formatter(told)
-            .x_axis_formatter(move |mark, _| tick(&own, mark))
-            .y_axis_formatter(move |mark, _| tick(&own, mark))
+            .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
+            .custom_y_axes(vec![axis(AxisHints::new_y(), own, 12.0)])
             .auto_bounds(true);
         if let Some((least, most)) = chart.x_range {
             plot = plot.include_x(least).include_x(most);
@@ -162,6 +162,11 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
         plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
     }
+}
+
+/// An axis whose ticks are all labelled, down to this distance in points.
+fn axis(hints: AxisHints<'static>, skin: Skin, least: f32) -> AxisHints<'static> {
+    hints.formatter(move |mark, _| tick(&skin, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
 /// A step of 1, 2 or 5 times a power of ten, of which about five fit.
