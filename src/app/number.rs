@@ -48,6 +48,26 @@ pub(super) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Re
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
+/// A number from 0 to `last`, decimal or hexadecimal with `0x` in front or `h` behind.
+///
+/// # Errors
+/// In words.
+pub(super) fn number_or_hex(what: &'static str, text: &str, last: u64) -> Result<u64, Text> {
+    filled(what, text)?;
+    let digits = text.trim();
+    let hex = digits.strip_prefix("0x").or_else(|| digits.strip_suffix(['h', 'H']));
+    let value = match hex {
+        Some(hex) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => u64::from_str_radix(hex, 16).ok(),
+        None if digits.bytes().all(|c| c.is_ascii_digit()) => digits.parse().ok(),
+        _ => None,
+    };
+    let refused = || {
+        let refusal = Text::new("entry.position_range").with_text("what", Text::new(what));
+        refusal.with("entry", digits).with("last", last)
+    };
+    value.filter(|value| *value <= last).ok_or_else(refused)
+}
+
 /// A quantity as it stands on a component: a number with a prefix from f to G, behind it or in place of its decimal point,
 /// with or without the unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`); or an exponent (`22e-12`). `None` where it is
 /// none.

@@ -20,7 +20,9 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
     }
     match studio.settings.tab {
         Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
-        Tab::Signals => signals::page_ui(ui, skin, &studio.signals, &mut views.signals, actions),
+        Tab::Signals => {
+            signals::page_ui(ui, skin, &studio.signals, studio.encoder(), &mut views.signals, actions);
+        }
     }
 }
 

@@ -1,11 +1,12 @@
 //! The calculators of the Signals tab as a person uses them: typed and read.
 
 use egui::Key;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::{Action, Language, Tab};
 
 use crate::screen::Screen;
-use crate::support::{HANGING, Outside};
+use crate::support::{Desk, HANGING, Outside};
 
 /// So tall that a whole page is drawn.
 const TALL: [f32; 2] = [1400.0, 1600.0];
@@ -51,4 +52,69 @@ fn the_input_circuit_is_reckoned_while_it_is_typed() {
     screen.check_language();
     screen.retype("input.capacitance", "0,047n");
     assert!(screen.shows("338,6 kHz"));
+}
+
+/// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods; a fifth of a period further φ is half a period off.
+#[test]
+fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
+    let mut screen = Screen::calculator("page.synchronise");
+    let value = |screen: &Screen| {
+        let label = screen.say("synchronise.ring");
+        let images = screen.harness.query_all_by_role_and_label(egui::Role::Image, &label);
+        images.last().and_then(|node| node.accesskit_node().value().map(|value| value.to_owned())).unwrap_or_default()
+    };
+    for words in ["339.02000", "30.36/32", "+1", "153051Eh", "119.186719°", "29.3 rpm"] {
+        assert!(screen.shows(words), "{words}");
+    }
+    assert_eq!(value(&screen), "They agree: -1.64/32 period apart.");
+    screen.retype("synchronise.absolute", "10831");
+    screen.retype("synchronise.phase", "0.47");
+    assert!(screen.shows("338.47000"));
+    screen.retype("synchronise.absolute", "10816");
+    screen.retype("synchronise.phase", "0.5");
+    assert!(value(&screen).starts_with("Half a period apart"), "{}", value(&screen));
+    screen.retype("synchronise.quarters", "44");
+    screen.retype("synchronise.phase", "0.98");
+    assert!(screen.shows("10.98000"));
+    screen.retype("synchronise.absolute", "32768");
+    assert!(screen.shows("\"32768\" is no position from 0 to 32767"));
+    screen.act(Action::SetLanguage(Language::German));
+    screen.check_language();
+    assert!(!screen.is_enabled("synchronise.read"), "no encoder is connected");
+    screen.key(Key::F1);
+    assert!(screen.shows(&screen.say("help.synchronise")));
+}
+
+/// The virtual SKM36 at step 24: counts 409 and 511, as its own signals have them.
+#[test]
+fn both_positions_are_read_from_the_encoder_that_is_shown() {
+    let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);
+    screen.until("the encoder is read", |studio| {
+        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+    });
+    screen.act(Action::ShowTab(Tab::Signals));
+    screen.click("page.synchronise");
+    for count in [1, 2] {
+        screen.click("synchronise.read");
+        screen.until("it is read", |studio| studio.signals.synchronise.readings() == count);
+    }
+    let form = &screen.studio().signals.synchronise.form;
+    assert_eq!((form.absolute.as_str(), form.periods.as_str(), form.turns.as_str()), ("0xC98", "128", "4096"));
+    assert_eq!((form.sine_v.as_str(), form.cosine_v.as_str()), ("-0.5010", "-0.0024"));
+    // 24 − 32 · 0.749 224 = 0.0248
+    assert!(screen.shows("100.74924") && screen.shows("0.02/32"));
+    screen.click("synchronise.use");
+    assert_eq!(screen.studio().signals.synchronise.form.offset, "0.02");
+    screen.click("synchronise.forget");
+    assert_eq!(screen.studio().signals.synchronise.readings(), 0);
+}
+
+#[test]
+fn a_shaft_that_turns_is_no_reading() {
+    let mut desk = Desk::begun("rpm=60");
+    desk.ask(Hiperface::ReadRest);
+    desk.until("it is told", |studio| studio.signals.synchronise.problem.is_some());
+    let state = &desk.studio.signals.synchronise;
+    assert_eq!((state.problem.as_ref().unwrap().id(), state.readings()), ("encoder.moving", 0));
+    assert!(desk.encoder().commutation.problem.is_none(), "it was not asked there");
 }

@@ -45,6 +45,7 @@ impl Encoder {
             }
             Action::Watch(what, on) => self.watch(what, on),
             Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
+            Action::ReadRest => self.read_rest(services),
             Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             Action::Check { restart } => {
                 let then = self.stored_settings().filter(|_| restart);
@@ -346,7 +347,7 @@ impl Encoder {
     /// itself, and tells how.
     pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         (self.asked, self.save_to) = (None, None);
-        self.commutation.give_up();
+        self.give_up_rest();
         let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
         if self.review.as_ref().is_some_and(is_plan) {
             self.review = None;

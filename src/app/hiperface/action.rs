@@ -28,6 +28,8 @@ pub enum Action {
     Watch(Watch, bool),
     /// Read an analogue channel.
     ReadAnalogue(u8),
+    /// Read the shaft at rest: position, sine and cosine.
+    ReadRest,
     /// Read the counter.
     ReadCounter,
     /// The device check; with a restart first.

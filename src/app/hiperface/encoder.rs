@@ -7,6 +7,7 @@ use super::commutation::Commutation;
 use super::drafts::Drafting;
 use super::meaning::Meaning;
 use super::record::Record;
+use super::rest::RestAsked;
 use super::review::Review;
 use super::{Done, Staged};
 use crate::app::line::Line;
@@ -98,6 +99,7 @@ pub struct Encoder {
     pub record: Record,
     /// The commutation assistant.
     pub commutation: Commutation,
+    pub(super) rest: RestAsked,
     /// A write on its way.
     pub review: Option<Review>,
     /// Backups, or why there are none.
@@ -142,6 +144,7 @@ impl Encoder {
             analogue: BTreeMap::new(),
             record: Record::default(),
             commutation: Commutation::default(),
+            rest: RestAsked::default(),
             review: None,
             backups: None,
             writes: None,

@@ -10,6 +10,7 @@ mod meaning;
 mod mounting;
 mod news;
 mod record;
+mod rest;
 pub mod review;
 pub mod rules;
 mod staged;

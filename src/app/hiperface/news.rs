@@ -260,7 +260,7 @@ impl Encoder {
         let texts = explain::hiperface::job(error);
         let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
         services.job_ends(self.id, id, JobEnd::Failed(first.clone()));
-        let stands_there = self.commutation.failed(&first);
+        let stands_there = self.rest_failed(&first);
         if let (Some(crate::profile::hiperface::Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) =
             (self.asked.take(), error)
         {
@@ -323,7 +323,7 @@ impl Encoder {
         services.job_ends(self.id, id, JobEnd::Cancelled);
         self.follow_what_was_done(error, services);
         self.asked = None;
-        self.commutation.give_up();
+        self.give_up_rest();
         self.save_to = None;
         let texts = explain::hiperface::job(error);
         let begun = matches!(error, JobError::Interrupted { .. });

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::reading::{self, Reading};
+use super::synchronise::Synchronise;
 use super::{Action, Done, Family, Measurement, Place, Read, Source, Table, forms};
 use crate::app::action::Done as StudioDone;
 use crate::app::services::Services;
@@ -19,6 +20,8 @@ pub struct Signals {
     pub periods: u32,
     /// The virtual encoder.
     pub(super) source: Source,
+    /// Absolute and analogue position brought together.
+    pub synchronise: Synchronise,
     measurement: Option<Arc<Measurement>>,
     comparison: Option<Arc<Measurement>>,
     table: Option<Table>,
@@ -33,6 +36,7 @@ impl Default for Signals {
             family: Family::default(),
             periods: 1024,
             source: Source::default(),
+            synchronise: Synchronise::default(),
             measurement: None,
             comparison: None,
             table: None,
@@ -126,6 +130,7 @@ impl Signals {
             Action::SetFamily(family) => self.family = family,
             Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
             Action::DropComparison => self.comparison = None,
+            Action::Synchronise(action) => self.synchronise.act(action),
             Action::SetPeriods(periods) => self.periods = periods.clamp(1, forms::MOST_PERIODS),
         }
     }

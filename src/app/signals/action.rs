@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Column, Example, Family, Measurement, SourceAction, Table};
+use super::{Column, Example, Family, Measurement, SourceAction, Table, synchronise};
 use crate::signal::capture::{Delimiter, TimeUnit};
 use crate::store::ReadCaptureError;
 
@@ -37,6 +37,8 @@ pub enum Action {
     DropComparison,
     /// About the virtual encoder.
     Source(SourceAction),
+    /// Absolute and analogue position brought together.
+    Synchronise(synchronise::Action),
 }
 
 /// What tasks come back with.

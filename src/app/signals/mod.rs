@@ -11,6 +11,7 @@ mod live;
 mod measurement;
 mod quantities;
 mod reading;
+pub mod synchronise;
 mod table;
 
 pub use act::Signals;

@@ -7,12 +7,14 @@ mod numbers;
 mod octant;
 mod quality;
 mod source;
+mod synchronise;
 mod table;
 mod virtual_encoder;
 
 use egui::{ScrollArea, Ui};
 
 use super::{Skin, icons};
+use crate::app::hiperface::Encoder;
 use crate::app::signals::Signals;
 use crate::app::signals::input_circuit::Form as Circuit;
 use crate::app::{Action, Text};
@@ -25,17 +27,20 @@ pub(in crate::ui) enum Page {
     Quality,
     /// The position error inside a period.
     Error,
+    /// Absolute and analogue position brought together.
+    Synchronise,
     /// The calculator of a drive's input.
     InputCircuit,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 3] = [Page::Quality, Page::Error, Page::InputCircuit];
+    pub(super) const ALL: [Page; 4] = [Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
             Page::Quality => icons::TARGET,
             Page::Error => icons::CHART_LINE,
+            Page::Synchronise => icons::CROSSHAIR,
             Page::InputCircuit => icons::SLIDERS,
         }
     }
@@ -44,6 +49,7 @@ impl Page {
         match self {
             Page::Quality => "page.quality",
             Page::Error => "page.error",
+            Page::Synchronise => "page.synchronise",
             Page::InputCircuit => "page.input_circuit",
         }
     }
@@ -52,6 +58,7 @@ impl Page {
         match self {
             Page::Quality => "help.quality",
             Page::Error => "help.error",
+            Page::Synchronise => "help.synchronise",
             Page::InputCircuit => "help.input_circuit",
         }
     }
@@ -72,8 +79,15 @@ pub(in crate::ui) struct View {
     input_circuit: Circuit,
 }
 
-/// Draws the open page.
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+/// Draws the open page; `encoder` is the one that is shown in its own tab, and can be read.
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    signals: &Signals,
+    encoder: Option<&Encoder>,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
     let narrow = ui.available_width() < 720.0;
     let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
     let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
@@ -89,6 +103,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
                     error::page_ui(ui, skin, signals, view, actions);
                 }
             }
+            Page::Synchronise => synchronise::page_ui(ui, skin, &signals.synchronise, encoder, actions),
             Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
         });
     });

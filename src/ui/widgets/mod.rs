@@ -5,6 +5,7 @@ mod chart;
 mod field_map;
 mod hex_editor;
 mod lissajous;
+mod step_ring;
 mod typed_view;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
@@ -15,6 +16,7 @@ pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use lissajous::{Figure, Lissajous, lissajous};
+pub use step_ring::{StepRing, step_ring};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.

@@ -5,16 +5,9 @@ use super::{Action, Slot};
 use crate::app::hiperface::Encoder;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
-use crate::device::hiperface::Rest;
-use crate::protocol::hiperface::Geometry;
 use crate::worker::hiperface::{Change, HiperfaceJob};
 
 impl Encoder {
-    /// Periods and turns, where the type tells them.
-    pub fn geometry(&self) -> Option<Geometry> {
-        self.identity.as_ref().and_then(|identity| identity.geometry)
-    }
-
     pub(in crate::app::hiperface) fn act_commutation(&mut self, action: Action, services: &mut Services) {
         match action {
             Action::Edit(form) => {
@@ -55,11 +48,5 @@ impl Encoder {
         if self.try_submit(HiperfaceJob::Rest, services) {
             self.commutation.asked = Some(slot);
         }
-    }
-
-    /// The shaft was read at rest.
-    pub(in crate::app::hiperface) fn take_rest(&mut self, rest: Rest) {
-        let geometry = self.geometry();
-        self.commutation.take(rest, geometry);
     }
 }

@@ -1,0 +1,57 @@
+//! Reading the shaft at rest, and for whom it was: a place of the commutation assistant, or whoever asked for the reading
+//! itself.
+
+use super::Encoder;
+use crate::app::Text;
+use crate::app::services::Services;
+use crate::device::hiperface::Rest;
+use crate::protocol::hiperface::Geometry;
+use crate::worker::hiperface::HiperfaceJob;
+
+/// A reading that was asked for itself.
+#[derive(Debug, Default)]
+pub(super) struct RestAsked {
+    is_under_way: bool,
+    told: Option<Result<Rest, Text>>,
+}
+
+impl Encoder {
+    /// Periods and turns, where the type tells them.
+    pub fn geometry(&self) -> Option<Geometry> {
+        self.identity.as_ref().and_then(|identity| identity.geometry)
+    }
+
+    pub(super) fn read_rest(&mut self, services: &mut Services) {
+        self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
+    }
+
+    /// What was read for whoever asked for it, once; or why there is nothing.
+    pub(in crate::app) fn take_rest_asked(&mut self) -> Option<Result<Rest, Text>> {
+        self.rest.told.take()
+    }
+
+    /// The shaft was read at rest.
+    pub(super) fn take_rest(&mut self, rest: Rest) {
+        if std::mem::take(&mut self.rest.is_under_way) {
+            self.rest.told = Some(Ok(rest));
+            return;
+        }
+        let geometry = self.geometry();
+        self.commutation.take(rest, geometry);
+    }
+
+    /// A job has failed; true where it is such a reading, and the reason stands where it was asked for.
+    pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
+        if std::mem::take(&mut self.rest.is_under_way) {
+            self.rest.told = Some(Err(why.clone()));
+            return true;
+        }
+        self.commutation.failed(why)
+    }
+
+    /// What was asked for does not come any more.
+    pub(super) fn give_up_rest(&mut self) {
+        self.rest.is_under_way = false;
+        self.commutation.give_up();
+    }
+}

@@ -1,0 +1,397 @@
+//! Absolute and analogue position brought together by hand or as an encoder at rest gives them, and by how much one is
+//! ahead of the other over many readings. SICK 8010701, forming the absolute position; section 4 of the project's
+//! sine/cosine reference.
+
+use super::forms::MOST_PERIODS;
+use crate::app::Text;
+use crate::app::hiperface::Encoder;
+use crate::app::number::{number_or_hex, whole, within};
+use crate::device::hiperface::{Rest, Signals as Volts};
+use crate::protocol::hiperface::Geometry;
+use crate::signal::arctan::{Phase, exact};
+use crate::signal::quality::{Limits, Verdict};
+use crate::signal::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
+
+/// What can be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// An entry was edited.
+    Edit(Box<Form>),
+    /// Take the measured offset over.
+    UseOffset,
+    /// Forget the readings that the offset is measured from.
+    Forget,
+}
+
+/// The entries, as typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
+    pub absolute: String,
+    /// How the analogue position is told.
+    pub told_as: ToldAs,
+    /// The phase, in periods or degrees.
+    pub phase: String,
+    /// Sine in volts.
+    pub sine_v: String,
+    /// Cosine in volts.
+    pub cosine_v: String,
+    /// Signal periods a revolution.
+    pub periods: String,
+    /// Revolutions.
+    pub turns: String,
+    /// How much the absolute position is ahead when both are right, in 1/32 period.
+    pub offset: String,
+    /// The absolute position means the middle of its step.
+    pub half_step: bool,
+    /// A quadrature counter, in quarters of a period; empty: none.
+    pub quarters: String,
+    /// How uncertain the moment of a check without latch is, in milliseconds.
+    pub jitter_ms: String,
+}
+
+/// How the analogue position is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToldAs {
+    /// A part of a period, 0 to 1.
+    Periods,
+    /// Electrical degrees, 0 to 360.
+    Degrees,
+    /// Sine and cosine in volts, free of their mean.
+    Volts,
+}
+
+/// The page's state.
+#[derive(Debug, Default)]
+pub struct Synchronise {
+    /// The entries.
+    pub form: Form,
+    /// Why the last reading of an encoder gave nothing.
+    pub problem: Option<Text>,
+    /// Readings of one encoder: absolute positions and phases.
+    readings: Vec<(u64, Phase)>,
+}
+
+/// What the entries come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// The absolute position.
+    pub absolute: u64,
+    /// The analogue one.
+    pub phase: Phase,
+    /// The period of the absolute position.
+    pub period: u64,
+    /// Its place in the period, 0 to 31.
+    pub step: u64,
+    /// How far it is ahead of the analogue position inside the period, in 1/32 period, offset and half step included.
+    pub difference_steps: f64,
+    /// The fine position, or that there is none.
+    pub result: Result<Synchronised, Unsynchronisable>,
+    /// Signal periods a revolution.
+    pub periods: u32,
+}
+
+/// The least readings that an offset is told from.
+const LEAST_READINGS: usize = 2;
+const MOST_TURNS: u32 = 65_536;
+
+impl Default for Form {
+    /// The second row of the reference's table.
+    fn default() -> Self {
+        let typed = |text: &str| text.to_owned();
+        Form {
+            absolute: typed("0x2A5F"),
+            told_as: ToldAs::Periods,
+            phase: typed("0.02"),
+            sine_v: String::new(),
+            cosine_v: String::new(),
+            periods: typed("1024"),
+            turns: typed("1"),
+            offset: typed("0"),
+            half_step: false,
+            quarters: String::new(),
+            jitter_ms: typed("1"),
+        }
+    }
+}
+
+impl Form {
+    /// Brings both together.
+    ///
+    /// # Errors
+    /// The first entry that cannot be used, in words.
+    pub fn told(&self) -> Result<Told, Text> {
+        let (periods, synchroniser) = self.synchroniser()?;
+        let last = synchroniser.periods * STEPS - 1;
+        let absolute = number_or_hex("synchronise.absolute", &self.absolute, last)?;
+        let phase = self.phase()?;
+        let half = if self.half_step { 0.5 } else { 0.0 };
+        let step = absolute % STEPS;
+        let ahead = step as f64 + half - synchroniser.offset_steps;
+        Ok(Told {
+            absolute,
+            phase,
+            period: absolute / STEPS,
+            step,
+            difference_steps: ahead - STEPS as f64 * phase.periods(),
+            result: synchroniser.synchronise(absolute, phase),
+            periods,
+        })
+    }
+
+    /// The fine position from the quadrature counter; `None` without one.
+    ///
+    /// # Errors
+    /// The first entry that cannot be used, in words.
+    pub fn quadrature(&self) -> Result<Option<f64>, Text> {
+        if self.quarters.trim().is_empty() {
+            return Ok(None);
+        }
+        let (_, synchroniser) = self.synchroniser()?;
+        let last = synchroniser.periods * 4 - 1;
+        let quarters = number_or_hex("synchronise.quarters", &self.quarters, last)?;
+        let (period, phase) = synchroniser.with_quadrature(quarters, self.phase()?);
+        Ok(Some(period as f64 + phase.periods()))
+    }
+
+    /// The speed in revolutions a minute below which a check without latch is sure: the shaft moves by less than half a
+    /// period while the moment is uncertain.
+    ///
+    /// # Errors
+    /// The first entry that cannot be used, in words.
+    pub fn unlatched_rpm(&self) -> Result<f64, Text> {
+        let (periods, _) = self.synchroniser()?;
+        let jitter_ms = within("synchronise.jitter", &self.jitter_ms, 0.001, 10_000.0)?;
+        Ok(0.5 * 60.0 / (f64::from(periods) * jitter_ms / 1e3))
+    }
+
+    fn synchroniser(&self) -> Result<(u32, Synchroniser), Text> {
+        let periods = whole("synchronise.periods", &self.periods, 1, MOST_PERIODS)?;
+        let turns = whole("synchronise.turns", &self.turns, 1, MOST_TURNS)?;
+        let offset_steps = within("synchronise.offset", &self.offset, -32.0, 32.0)?;
+        let half_step = self.half_step;
+        let whole = Synchroniser::new(u64::from(periods) * u64::from(turns));
+        Ok((periods, Synchroniser { offset_steps, half_step, ..whole }))
+    }
+
+    fn phase(&self) -> Result<Phase, Text> {
+        let no_signal = || Text::new("synchronise.no_signal");
+        match self.told_as {
+            ToldAs::Periods => Phase::of_periods(within("synchronise.in_periods", &self.phase, 0.0, 1.0)?),
+            ToldAs::Degrees => Phase::of_periods(within("synchronise.in_degrees", &self.phase, 0.0, 360.0)? / 360.0),
+            ToldAs::Volts => exact(
+                within("synchronise.sine", &self.sine_v, -10.0, 10.0)?,
+                within("synchronise.cosine", &self.cosine_v, -10.0, 10.0)?,
+            ),
+        }
+        .ok_or_else(no_signal)
+    }
+}
+
+impl Told {
+    /// The fine position in degrees of the shaft within a revolution, where there is one.
+    pub fn degrees(&self) -> Option<f64> {
+        let fine = self.result.ok()?;
+        Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
+    }
+
+    /// The verdict in words.
+    pub fn words(&self) -> (Verdict, Text) {
+        match self.result {
+            Err(Unsynchronisable) => (Verdict::Fault, Text::new("synchronise.impossible")),
+            Ok(fine) => {
+                let id = match fine.verdict {
+                    Verdict::Ok => "synchronise.good",
+                    Verdict::Warn => "synchronise.doubtful",
+                    Verdict::Fault => "synchronise.unsure",
+                };
+                let steps = fine.residual_periods * STEPS as f64;
+                (fine.verdict, Text::new(id).with_number("steps", steps, 2))
+            }
+        }
+    }
+}
+
+impl Synchronise {
+    pub(super) fn act(&mut self, action: Action) {
+        match action {
+            Action::Edit(form) => {
+                self.form = *form;
+                self.problem = None;
+            }
+            Action::UseOffset => {
+                if let Some(offset) = self.measured() {
+                    // The entry takes a point in both languages.
+                    self.form.offset = format!("{offset:.2}");
+                }
+            }
+            Action::Forget => self.readings.clear(),
+        }
+    }
+
+    /// Takes what an encoder has read at rest since the last time.
+    pub(in crate::app) fn follow(&mut self, encoder: &mut Encoder) {
+        match encoder.take_rest_asked() {
+            Some(Ok(rest)) => self.take(rest, encoder.geometry()),
+            Some(Err(why)) => self.problem = Some(why),
+            None => {}
+        }
+    }
+
+    fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
+        self.problem = None;
+        let Some(Volts { sine_v, cosine_v }) = rest.signals else {
+            self.form.absolute = rest.raw.to_string();
+            self.problem = Some(Text::new("synchronise.no_channels"));
+            return;
+        };
+        let Some(Geometry::Rotary { periods, turns }) = geometry else {
+            self.problem = Some(Text::new("synchronise.no_geometry"));
+            return;
+        };
+        let form = &mut self.form;
+        let before = (form.periods.clone(), form.turns.clone());
+        form.absolute = format!("0x{:X}", rest.raw);
+        form.told_as = ToldAs::Volts;
+        (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
+        (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
+        if before != (form.periods.clone(), form.turns.clone()) {
+            // Those were another encoder's.
+            self.readings.clear();
+        }
+        let length = sine_v.hypot(cosine_v);
+        match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude(length) != Verdict::Fault) {
+            Some(phase) if rest.valid => self.readings.push((rest.raw.into(), phase)),
+            Some(_) => self.problem = Some(Text::new("commutation.invalid")),
+            None => self.problem = Some(Text::new("synchronise.no_signal")),
+        }
+    }
+
+    /// Readings that the offset is measured from.
+    pub fn readings(&self) -> usize {
+        self.readings.len()
+    }
+
+    /// By how much the absolute position is ahead in the readings, in 1/32 period, as it has to be entered: the half step
+    /// comes on top, where it is ticked.
+    pub fn measured(&self) -> Option<f64> {
+        if self.readings.len() < LEAST_READINGS {
+            return None;
+        }
+        let half = if self.form.half_step { 0.5 } else { 0.0 };
+        measure_offset(self.readings.iter().copied()).map(|offset| offset + half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(absolute: &str, phase: &str, periods: &str, turns: &str) -> Form {
+        let typed = |text: &str| text.to_owned();
+        let (absolute, phase) = (typed(absolute), typed(phase));
+        Form { absolute, phase, periods: typed(periods), turns: typed(turns), ..Form::default() }
+    }
+
+    /// Rows of section 4: P, a5, d, k, fine position, residual.
+    #[test]
+    fn typed_rows_of_section_4() {
+        let rows = [
+            (form("0x000E0531", "0,5375", "128", "4096"), 28_713, 17, -0.20, 0, 28_713.537_5, -0.0062, "good"),
+            (form("2A5Fh", "0.02", "1024", "1"), 338, 31, 30.36, 1, 339.02, -0.0512, "good"),
+            (form("10816", "0.97", "1024", "1"), 338, 0, -31.04, -1, 337.97, 0.03, "good"),
+            (form("0x2A47", "0.47", "1024", "1"), 338, 7, -8.04, 0, 338.47, -0.2513, "doubtful"),
+            (form("0", "0.51", "16", "1"), 0, 0, -16.32, -1, 15.51, 0.49, "unsure"),
+        ];
+        for (form, period, step, difference, k, fine, residual, verdict) in rows {
+            let told = form.told().unwrap();
+            assert_eq!((told.period, told.step), (period, step), "{form:?}");
+            assert!((told.difference_steps - difference).abs() < 1e-9, "{told:?}");
+            let result = told.result.unwrap();
+            assert_eq!(result.correction, k, "{told:?}");
+            assert!((result.periods() - fine).abs() < 1e-9, "{told:?}");
+            assert!((result.residual_periods - residual).abs() < 6e-5, "{told:?}");
+            assert_eq!(told.words().1.id().strip_prefix("synchronise."), Some(verdict));
+        }
+        // 339.02 of 1024 periods, and no more of many turns.
+        for turns in ["1", "4096"] {
+            let degrees = form("0x2A5F", "0.02", "1024", turns).told().unwrap().degrees().unwrap();
+            assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
+        }
+        let told = form("0", "0.5", "16", "1").told().unwrap();
+        assert_eq!((told.result, told.degrees()), (Err(Unsynchronisable), None));
+        assert_eq!(told.words().1.id(), "synchronise.impossible");
+    }
+
+    #[test]
+    fn the_phase_is_told_in_three_ways() {
+        let degrees = Form { told_as: ToldAs::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
+        assert!((degrees.told().unwrap().phase.periods() - 0.02).abs() < 1e-12);
+        let typed = |text: &str| text.to_owned();
+        let (sine_v, cosine_v) = (typed("-0.5"), typed("0"));
+        let volts = Form { told_as: ToldAs::Volts, sine_v, cosine_v, ..Form::default() };
+        assert_eq!(volts.told().unwrap().phase.periods(), 0.75);
+        let nothing = Form { sine_v: typed("0"), ..volts };
+        assert_eq!(nothing.told().unwrap_err().id(), "synchronise.no_signal");
+    }
+
+    /// Section 4: counters of quarters beside a phase; and 29 rpm for a millisecond with 1024 periods.
+    #[test]
+    fn counters_and_the_speed_of_a_check() {
+        for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
+            let form = Form { quarters: quarters.to_owned(), ..form("0", phase, "1024", "1") };
+            assert!((form.quadrature().unwrap().unwrap() - fine).abs() < 1e-12, "{quarters}");
+        }
+        assert_eq!(Form::default().quadrature(), Ok(None));
+        let beyond = Form { quarters: "4096".to_owned(), ..Form::default() };
+        assert_eq!(beyond.quadrature().unwrap_err().id(), "entry.position_range");
+        assert!((Form::default().unlatched_rpm().unwrap() - 29.296_875).abs() < 1e-9);
+        let jitter = Form { jitter_ms: "0".to_owned(), ..Form::default() };
+        assert_eq!(jitter.unlatched_rpm().unwrap_err().id(), "entry.number");
+    }
+
+    #[test]
+    fn what_cannot_be_used_says_which_entry() {
+        for (form, id) in [
+            (form("", "0.02", "1024", "1"), "entry.missing"),
+            (form("x", "0.02", "1024", "1"), "entry.position_range"),
+            (form("-1", "0.02", "1024", "1"), "entry.position_range"),
+            (form("32768", "0.02", "1024", "1"), "entry.position_range"),
+            (form("99999999999999999999999", "0.02", "1024", "1"), "entry.position_range"),
+            (form("0", "NaN", "1024", "1"), "entry.number"),
+            (form("0", "1.01", "1024", "1"), "entry.number"),
+            (form("0", "0", "0", "1"), "entry.whole"),
+            (form("0", "0", "1024", "0"), "entry.whole"),
+            (Form { offset: "33".to_owned(), ..Form::default() }, "entry.number"),
+        ] {
+            assert_eq!(form.told().unwrap_err().id(), id, "{form:?}");
+        }
+    }
+
+    /// Two readings half a step apart in opposite directions: both 2.5 steps ahead in the mean.
+    #[test]
+    fn readings_measure_the_offset() {
+        let mut page = Synchronise::default();
+        let geometry = Some(Geometry::Rotary { periods: 128, turns: 4096 });
+        let at = |raw, degrees: f64| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            Rest { raw, valid: true, signals: Some(Volts { sine_v: 0.5 * sine, cosine_v: 0.5 * cosine }) }
+        };
+        assert_eq!(page.measured(), None);
+        // Step 10 at 8 steps (90°), and step 31 at 28 steps (315°).
+        page.take(at(10, 90.0), geometry);
+        assert_eq!((page.readings(), page.measured()), (1, None));
+        page.take(at(95, 315.0), geometry);
+        assert!((page.measured().unwrap() - 2.5).abs() < 1e-9);
+        page.act(Action::UseOffset);
+        assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
+        // d = 31 − 28 − 2.5
+        assert!((page.form.told().unwrap().difference_steps - 0.5).abs() < 0.01);
+        page.take(Rest { signals: None, ..at(10, 0.0) }, geometry);
+        assert_eq!(page.problem.as_ref().unwrap().id(), "synchronise.no_channels");
+        page.take(at(10, 90.0), Some(Geometry::Rotary { periods: 16, turns: 1 }));
+        assert_eq!(page.readings(), 1, "another encoder begins anew");
+        page.act(Action::Forget);
+        assert_eq!(page.readings(), 0);
+    }
+}

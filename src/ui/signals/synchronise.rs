@@ -1,0 +1,219 @@
+//! Absolute and analogue position brought together: typed, or as the encoder gives them.
+
+use egui::{RichText, Ui};
+
+use crate::app::hiperface::{Action as Hiperface, Encoder};
+use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
+use crate::app::signals::{Action as Signals, synchronise::Told};
+use crate::app::{Action, Text};
+use crate::signal::quality::Verdict;
+use crate::ui::controls::{
+    card, card_with, choice, enabled_button, entry, icon_button, paragraph, problem, row, split, text_entry,
+};
+use crate::ui::widgets::{StepRing, series, step_ring};
+use crate::ui::{Skin, icons};
+
+/// Width of an entry.
+const ENTRY: f32 = 112.0;
+/// Side of the ring.
+const RING: f32 = 220.0;
+
+/// Draws the page.
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    state: &Synchronise,
+    encoder: Option<&Encoder>,
+    actions: &mut Vec<Action>,
+) {
+    let mut form = state.form.clone();
+    // What is drawn beside the entries is what they come to now.
+    let told = form.told();
+    split(
+        ui,
+        skin,
+        (0.42, 560.0),
+        (&mut form, &mut *actions),
+        |ui, (form, actions)| {
+            positions(ui, skin, form, state, told.as_ref().err(), encoder, actions);
+            ui.add_space(skin.space.groups);
+            measured(ui, skin, state, actions);
+            ui.add_space(skin.space.groups);
+            counter(ui, skin, form);
+        },
+        |ui, _| {
+            if let Ok(told) = &told {
+                result(ui, skin, told);
+                ui.add_space(skin.space.groups);
+            }
+            order(ui, skin);
+        },
+    );
+    if form != state.form {
+        actions.push(ask(Page::Edit(Box::new(form))));
+    }
+}
+
+fn ask(action: Page) -> Action {
+    Action::Signals(Signals::Synchronise(action))
+}
+
+fn typed(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) {
+    let word = skin.say(id);
+    entry(ui, skin, &word, |ui| text_entry(ui, text, ENTRY, &word, hint));
+}
+
+fn positions(
+    ui: &mut Ui,
+    skin: &Skin,
+    form: &mut Form,
+    state: &Synchronise,
+    refused: Option<&Text>,
+    encoder: Option<&Encoder>,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, skin, "synchronise.positions", |ui| {
+        typed(ui, skin, "synchronise.absolute", &mut form.absolute, "0x2A5F");
+        entry(ui, skin, &skin.say("synchronise.analogue"), |ui| {
+            let ways = [
+                (ToldAs::Periods, "synchronise.in_periods"),
+                (ToldAs::Degrees, "synchronise.in_degrees"),
+                (ToldAs::Volts, "synchronise.in_volts"),
+            ];
+            let ways = ways.map(|(way, id)| (way, skin.say(id)));
+            choice(ui, &skin.say("synchronise.analogue"), &mut form.told_as, ways);
+        });
+        match form.told_as {
+            ToldAs::Periods | ToldAs::Degrees => typed(ui, skin, "synchronise.phase", &mut form.phase, "0"),
+            ToldAs::Volts => {
+                typed(ui, skin, "synchronise.sine", &mut form.sine_v, "0");
+                typed(ui, skin, "synchronise.cosine", &mut form.cosine_v, "0");
+            }
+        }
+        typed(ui, skin, "synchronise.periods", &mut form.periods, "1024");
+        typed(ui, skin, "synchronise.turns", &mut form.turns, "1");
+        typed(ui, skin, "synchronise.offset", &mut form.offset, "0");
+        ui.checkbox(&mut form.half_step, skin.say("synchronise.half_step"))
+            .on_hover_text(skin.say("synchronise.half_step_hint"));
+        problem(ui, skin, refused);
+        let ready = encoder.is_some_and(Encoder::is_ready);
+        let read = enabled_button(ui, ready, icons::CROSSHAIR, &skin.say("synchronise.read"));
+        if read.on_disabled_hover_text(skin.say("synchronise.read_hint")).clicked() {
+            actions.extend(encoder.map(|encoder| Action::Hiperface(encoder.id, Hiperface::ReadRest)));
+        }
+        problem(ui, skin, state.problem.as_ref());
+    });
+}
+
+fn measured(ui: &mut Ui, skin: &Skin, state: &Synchronise, actions: &mut Vec<Action>) {
+    let count = state.readings();
+    let mut forget = false;
+    let aside = |ui: &mut Ui| {
+        forget = icon_button(ui, count > 0, icons::TRASH, &skin.say("synchronise.forget")).clicked();
+    };
+    card_with(ui, skin, "synchronise.measured", aside, |ui| {
+        paragraph(ui, skin.label(skin.say("synchronise.measured_words")));
+        row(ui, skin, &skin.say("synchronise.readings"), skin.mono(count.to_string()));
+        let offset = state.measured();
+        let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", skin.number(offset, 2)));
+        row(ui, skin, &skin.say("synchronise.mean"), skin.mono(words));
+        if enabled_button(ui, offset.is_some(), icons::CHECK, &skin.say("synchronise.use")).clicked() {
+            actions.push(ask(Page::UseOffset));
+        }
+    });
+    if forget {
+        actions.push(ask(Page::Forget));
+    }
+}
+
+fn result(ui: &mut Ui, skin: &Skin, told: &Told) {
+    let (verdict, words) = told.words();
+    let (icon, colour) = match verdict {
+        Verdict::Ok => (icons::CHECK_CIRCLE, skin.palette.good),
+        Verdict::Warn => (icons::WARNING, skin.palette.warn),
+        Verdict::Fault => (icons::X_CIRCLE, skin.palette.bad),
+    };
+    card(ui, skin, "synchronise.result", |ui| {
+        let fine = told.result.ok();
+        let (label, value) = (skin.say("synchronise.ring"), skin.words(&words));
+        let ring = StepRing {
+            step: told.step,
+            phase: told.phase.periods(),
+            apart: fine.map(|fine| fine.residual_periods),
+            colour: colour.into(),
+            label: &label,
+            value: &value,
+        };
+        let shown = fine.map_or_else(|| "–".to_owned(), |fine| skin.number(fine.periods(), 5));
+        ui.label(skin.value(shown));
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icon).color(colour));
+            paragraph(ui, RichText::new(&value).color(colour));
+        });
+        ui.add_space(skin.space.inside);
+        split(
+            ui,
+            skin,
+            (0.5, 2.0 * RING),
+            (),
+            |ui, ()| {
+                ui.vertical_centered(|ui| step_ring(ui, skin, &ring, RING.min(ui.available_width())));
+            },
+            |ui, ()| numbers(ui, skin, told),
+        );
+    });
+}
+
+fn numbers(ui: &mut Ui, skin: &Skin, told: &Told) {
+    let number = |value, decimals, unit: &str| skin.mono(format!("{}{unit}", skin.number(value, decimals)));
+    row(ui, skin, &skin.say("synchronise.period"), skin.mono(told.period.to_string()));
+    // In the colours that they have in the ring.
+    row(ui, skin, &skin.say("synchronise.step"), skin.mono(format!("{}/32", told.step)).color(series(skin, 0)));
+    row(ui, skin, &skin.say("synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(skin, 1)));
+    row(ui, skin, &skin.say("synchronise.difference"), number(told.difference_steps, 2, "/32"));
+    if let Ok(fine) = told.result {
+        row(ui, skin, &skin.say("synchronise.correction"), skin.mono(format!("{:+}", fine.correction)));
+        row(ui, skin, &skin.say("synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
+        row(ui, skin, &skin.say("synchronise.steps"), skin.mono(format!("{:X}h", fine.steps(16))));
+    }
+    if let Some(degrees) = told.degrees() {
+        row(ui, skin, &skin.say("synchronise.shaft"), number(degrees, 6, "°"));
+    }
+}
+
+fn counter(ui: &mut Ui, skin: &Skin, form: &mut Form) {
+    card(ui, skin, "synchronise.counter", |ui| {
+        paragraph(ui, skin.label(skin.say("synchronise.counter_words")));
+        typed(ui, skin, "synchronise.quarters", &mut form.quarters, "1356");
+        match form.quadrature() {
+            Ok(Some(fine)) => row(ui, skin, &skin.say("synchronise.fine"), skin.mono(skin.number(fine, 5))),
+            Ok(None) => {}
+            Err(why) => problem(ui, skin, Some(&why)),
+        }
+        ui.add_space(skin.space.inside);
+        paragraph(ui, skin.label(skin.say("synchronise.check_words")));
+        typed(ui, skin, "synchronise.jitter", &mut form.jitter_ms, "1");
+        match form.unlatched_rpm() {
+            Ok(rpm) => {
+                let words = format!("{} {}", skin.number(rpm, 1), skin.say("input.rpm"));
+                row(ui, skin, &skin.say("synchronise.below"), skin.mono(words));
+            }
+            Err(why) => problem(ui, skin, Some(&why)),
+        }
+    });
+}
+
+fn order(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "synchronise.order", |ui| {
+        for id in [
+            "synchronise.order_read",
+            "synchronise.order_sample",
+            "synchronise.order_join",
+            "synchronise.order_load",
+            "synchronise.order_run",
+            "synchronise.order_check",
+        ] {
+            paragraph(ui, skin.label(skin.say(id)));
+        }
+    });
+}

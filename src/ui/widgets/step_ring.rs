@@ -1,0 +1,104 @@
+//! One period as a ring of 32 steps: where the absolute position stands in it, and where the analogue one does.
+//!
+//! * **Size**: a square, as wide as is given.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: nothing to operate.
+//! * **Accessible**: an image with the label and the value given.
+//! * **Painting**: a segment a step, zero at the top and clockwise, that of the absolute position filled; the analogue
+//!   position as a hand; between the two an arc in the colour given, which is how far they are apart.
+
+use egui::accesskit::Role;
+use egui::epaint::PathStroke;
+use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+
+use crate::ui::Skin;
+use crate::ui::widgets::series;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct StepRing<'a> {
+    /// The step of the absolute position, 0 to 31.
+    pub step: u64,
+    /// The analogue position in periods, 0 to 1.
+    pub phase: f64,
+    /// From the analogue to the absolute position, in periods; `None`: either way round.
+    pub apart: Option<f64>,
+    /// Colour of the arc between them.
+    pub colour: Color32,
+    /// Accessible name.
+    pub label: &'a str,
+    /// Accessible value.
+    pub value: &'a str,
+}
+
+const STEPS: u8 = 32;
+/// Width of the ring, as a share of its radius.
+const WIDTH: f32 = 0.14;
+/// The part of a step that its segment leaves free at both ends.
+const GAP: f64 = 0.08;
+
+/// A circle around a middle.
+#[derive(Clone, Copy)]
+struct Dial {
+    middle: Pos2,
+    radius: f32,
+}
+
+impl Dial {
+    fn at(self, periods: f64, radius: f32) -> Pos2 {
+        let angle = (periods * std::f64::consts::TAU) as f32;
+        self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius * self.radius
+    }
+
+    fn arc(self, from: f64, to: f64, radius: f32) -> Vec<Pos2> {
+        let points = (((to - from).abs() * 96.0).ceil() as usize).clamp(2, 128);
+        let place = |at: usize| from + (to - from) * at as f64 / points as f64;
+        (0..=points).map(|at| self.at(place(at), radius)).collect()
+    }
+}
+
+/// Draws it.
+pub fn step_ring(ui: &mut Ui, skin: &Skin, ring: &StepRing<'_>, side: f32) {
+    let side = side.max(80.0);
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, ring.label);
+        info.current_text_value = Some(ring.value.to_owned());
+        info
+    });
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let dial = Dial { middle: rect.center(), radius: side / 2.0 - skin.space.groups };
+    let painter = ui.painter();
+    segments(painter, skin, dial, ring.step);
+    quarters(painter, skin, dial);
+    if let Some(apart) = ring.apart {
+        let arc = dial.arc(ring.phase, ring.phase + apart, 1.0 - 1.7 * WIDTH);
+        painter.add(Shape::line(arc, PathStroke::new(3.0, ring.colour)));
+    }
+    let hand = Stroke::new(2.0, series(skin, 1));
+    painter.line_segment([dial.at(ring.phase, 0.18), dial.at(ring.phase, 1.0 - WIDTH)], hand);
+    painter.circle_filled(dial.at(ring.phase, 1.0 - WIDTH), 3.5, hand.color);
+}
+
+fn segments(painter: &Painter, skin: &Skin, dial: Dial, own: u64) {
+    let width = WIDTH * dial.radius;
+    for step in 0..STEPS {
+        let (from, to) = (f64::from(step) + GAP, f64::from(step) + 1.0 - GAP);
+        let arc = dial.arc(from / f64::from(STEPS), to / f64::from(STEPS), 1.0 - WIDTH / 2.0);
+        let colour = if u64::from(step) == own { series(skin, 0) } else { skin.palette.line.into() };
+        painter.add(Shape::line(arc, PathStroke::new(width, colour)));
+    }
+}
+
+/// The numbers of every eighth step.
+fn quarters(painter: &Painter, skin: &Skin, dial: Dial) {
+    let font = FontId::monospace(skin.sizes.caption);
+    for (step, align) in
+        [(0, Align2::CENTER_BOTTOM), (8, Align2::LEFT_CENTER), (16, Align2::CENTER_TOP), (24, Align2::RIGHT_CENTER)]
+    {
+        let place = dial.at(f64::from(step) / f64::from(STEPS), 1.02);
+        painter.text(place, align, step.to_string(), font.clone(), skin.palette.muted.into());
+    }
+}
