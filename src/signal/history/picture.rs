@@ -7,7 +7,7 @@ use super::block::Extent;
 use super::flags::Flags;
 use super::number::Number;
 use super::series::Series;
-use super::{Column, History};
+use super::{Column, FAN, History};
 use crate::signal::Time;
 
 /// Equal steps of time, one a pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
@@ -111,15 +111,30 @@ pub struct Picture {
 /// Up to so many samples a pixel column are given as they are, which is no more to draw than first, min, max and last.
 const FEW: u64 = 4;
 
+/// By no more than this part of its width a pixel column reaches over its edge, to begin where a bucket of the pyramid does.
+const REACH: i64 = 16;
+/// Where buckets begin, in samples, the largest first.
+const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
+
 impl History {
-    /// Finds the samples of each pixel column.
+    /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up to a
+    /// sixteenth of its width before its edge; which samples it has depends on nothing but them and the edge.
     pub fn cut(&self, grid: &Grid) -> Cut {
         let edge = |pixel: usize| {
-            let index = self.times.search(grid.edge(pixel));
+            let exact = self.times.search(grid.edge(pixel));
+            // The first and the last one are the picture's own.
+            let index = if pixel == 0 || pixel == grid.pixels() { exact } else { self.rounded(exact, grid, pixel) };
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
             Edge { index, before, after: self.times.get(index) }
         };
         Cut { edges: (0..=grid.pixels()).map(edge).collect() }
+    }
+
+    /// The beginning of a bucket in place of the first sample behind an edge, where it is hardly earlier.
+    fn rounded(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
+        let earliest = grid.edge(pixel).plus(-(grid.width() / REACH));
+        let is_near = |start: &u64| *start == exact || self.times.get(*start).is_some_and(|time| time >= earliest);
+        BUCKETS.iter().map(|size| exact - exact % size).find(is_near).unwrap_or(exact)
     }
 
     /// What there is to draw of a column, into `picture`, whose memory is used again.

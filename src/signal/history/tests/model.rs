@@ -47,8 +47,7 @@ impl Model {
 
     /// What a picture has to have, without any rounding, and whether it consists of samples.
     pub(super) fn picture(&self, first: usize, grid: &Grid) -> (Vec<Pixel>, bool) {
-        let mut edges: Vec<usize> =
-            (0..=grid.pixels()).map(|pixel| self.between(first, grid.edge(pixel), grid.edge(pixel)).start).collect();
+        let mut edges: Vec<usize> = (0..=grid.pixels()).map(|pixel| self.edge(first, grid, pixel)).collect();
         let (from, to) = (edges[0], edges[grid.pixels()]);
         let raw = to - from <= 4 * grid.pixels();
         if raw {
@@ -83,6 +82,18 @@ impl Model {
             }
         };
         (ranges.into_iter().map(pixel).collect(), raw)
+    }
+
+    /// The first sample of a pixel column: the first behind its edge, or the beginning of 512, 64 or 8 samples that is no
+    /// earlier than a sixteenth of a column before the edge.
+    fn edge(&self, first: usize, grid: &Grid, pixel: usize) -> usize {
+        let edge = grid.edge(pixel);
+        let exact = self.between(first, edge, edge).start;
+        let earliest = edge.nanoseconds() - grid.width() / 16;
+        let starts = [512, 64, 8].map(|size| exact / size * size);
+        let near = |start: &usize| *start >= first && (*start == exact || self.times[*start] >= earliest);
+        let inner = pixel > 0 && pixel < grid.pixels();
+        starts.into_iter().find(near).filter(|_| inner).unwrap_or(exact)
     }
 
     /// The range of the values in the blocks that lie between two times: what the rounding is measured by.
