@@ -11,8 +11,11 @@ use std::time::Instant;
 
 use encoder_studio::signal::analysis::Analysis;
 use encoder_studio::signal::capture::Wishes;
+use encoder_studio::signal::diagnosis::{Record, diagnose};
 use encoder_studio::signal::ellipse::Ellipse;
+use encoder_studio::signal::lissajous::{Density, Square};
 use encoder_studio::signal::position_error::Samples;
+use encoder_studio::signal::quality::Limits;
 use encoder_studio::store::read_capture;
 use nalgebra::{DMatrix, DVector};
 
@@ -72,6 +75,20 @@ fn main() {
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
     println!("{:<28} {:>8.3}", "ellipse", median(|| Ellipse::fit(&sine, &cosine).unwrap()));
     println!("{:<28} {:>8.3}", "ellipse and all the rest", median(|| Analysis::of(samples).unwrap()));
+    let mut sparks = sine.clone();
+    sparks.iter_mut().step_by(99_991).for_each(|value| *value += 3.0);
+    let samples = Samples { time_s: &time, sine_v: &sparks, cosine_v: &cosine };
+    println!("{:<28} {:>8.3}", "the same with 101 spikes", median(|| Analysis::of(samples).unwrap()));
+    let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
+    let analysis = Analysis::of(samples).unwrap();
+    let record = Record { samples, references_v: None, periods: Some(1000) };
+    println!("{:<28} {:>8.3}", "diagnosis", median(|| diagnose(&record, Ok(&analysis), &Limits::HIPERFACE)));
+    let density = || {
+        let mut density = Density::new(Square::around(&sine, &cosine).unwrap(), 256).unwrap();
+        density.add(&sine, &cosine);
+        density
+    };
+    println!("{:<28} {:>8.3}", "density of the Lissajous", median(density));
     // A tenth of the samples: all of them would need gigabytes.
     let tenth = SAMPLES / 10;
     let naive = median(|| naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;

@@ -13,6 +13,7 @@ pub mod diagnosis;
 pub mod ellipse;
 pub mod history;
 pub mod input_circuit;
+pub mod lissajous;
 pub mod moments;
 mod motion;
 pub mod nonlinearity;

@@ -1,0 +1,285 @@
+//! The Lissajous figure of sine over cosine as a density, as the phosphor of an oscilloscope shows it: how many samples
+//! fell into each cell of a square, and how short and how long the vector is in each direction. Every sample counts
+//! somewhere: in a cell, as outside, or as no number. Knows nothing of colours.
+
+use std::f64::consts::TAU;
+
+/// A square in the plane of the cosine (to the right) and the sine (upwards).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Square {
+    /// Middle, of the cosine in volts.
+    pub cosine_v: f64,
+    /// Middle, of the sine in volts.
+    pub sine_v: f64,
+    /// From the middle to an edge in volts.
+    pub half_v: f64,
+}
+
+/// The samples so far.
+#[derive(Clone, Debug)]
+pub struct Density {
+    square: Square,
+    side: usize,
+    counts: Vec<u32>,
+    /// The direction of each cell.
+    directions: Vec<u8>,
+    /// Squares of the lengths in each direction.
+    lengths: [Lengths; SECTORS],
+    outside: u64,
+    bad: u64,
+}
+
+/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lengths {
+    /// The shortest.
+    pub least_v: f64,
+    /// The longest.
+    pub most_v: f64,
+}
+
+/// Directions that are told apart: 5° each, from the cosine's axis towards the sine's.
+pub const SECTORS: usize = 72;
+/// Most cells of a side.
+pub const MOST_CELLS: usize = 2048;
+
+/// Room around the samples, as a share of their range.
+const MARGIN: f64 = 0.05;
+/// A square for samples that are all the same.
+const LEAST_HALF_V: f64 = 1e-3;
+
+impl Square {
+    /// Around zero, as the vector's length is counted from there.
+    pub const fn centred(half_v: f64) -> Self {
+        Square { cosine_v: 0.0, sine_v: 0.0, half_v }
+    }
+
+    /// Around all samples that are numbers, with a little room; `None` where there are none.
+    pub fn around(sine: &[f64], cosine: &[f64]) -> Option<Self> {
+        let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
+        let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
+        let middle = |low: f64, high: f64| low + (high - low) / 2.0;
+        Some(Square { cosine_v: middle(left, right), sine_v: middle(bottom, top), half_v: half * (1.0 + MARGIN) })
+    }
+}
+
+impl Density {
+    /// No samples yet, in `side` × `side` cells, at least one and at most [`MOST_CELLS`] a side. `None` where the square is
+    /// none.
+    pub fn new(square: Square, side: usize) -> Option<Self> {
+        let Square { cosine_v, sine_v, half_v } = square;
+        if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
+            return None;
+        }
+        let side = side.clamp(1, MOST_CELLS);
+        let mut density = Density {
+            square,
+            side,
+            counts: vec![0; side * side],
+            directions: vec![0; side * side],
+            lengths: [Lengths::NONE; SECTORS],
+            outside: 0,
+            bad: 0,
+        };
+        let cell_v = 2.0 * half_v / side as f64;
+        for (at, direction) in density.directions.iter_mut().enumerate() {
+            let middle = |place: usize, of: f64| of - half_v + (place as f64 + 0.5) * cell_v;
+            *direction = sector(middle(at / side, sine_v), middle(at % side, cosine_v)) as u8;
+        }
+        Some(density)
+    }
+
+    /// Adds samples in volts; what one channel has over is left out.
+    pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
+        let Square { cosine_v, sine_v, half_v } = self.square;
+        let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
+        let side = self.side as f64;
+        let scale = side / (2.0 * half_v);
+        for (y, x) in sine.iter().zip(cosine) {
+            let (column, row) = ((x - left) * scale, (y - bottom) * scale);
+            // False as well for what is no number.
+            let inside = column >= 0.0 && column < side && row >= 0.0 && row < side;
+            let length = y * y + x * x;
+            let direction = if inside {
+                let cell = row as usize * self.side + column as usize;
+                if let Some(count) = self.counts.get_mut(cell) {
+                    *count = count.saturating_add(1);
+                }
+                self.directions.get(cell).copied().map_or(0, usize::from)
+            } else if y.is_finite() && x.is_finite() {
+                self.outside += 1;
+                sector(*y, *x)
+            } else {
+                self.bad += 1;
+                continue;
+            };
+            if let Some(lengths) = self.lengths.get_mut(direction) {
+                lengths.least_v = if length < lengths.least_v { length } else { lengths.least_v };
+                lengths.most_v = if length > lengths.most_v { length } else { lengths.most_v };
+            }
+        }
+    }
+
+    /// Forgets all samples.
+    pub fn clear(&mut self) {
+        self.counts.fill(0);
+        self.lengths = [Lengths::NONE; SECTORS];
+        (self.outside, self.bad) = (0, 0);
+    }
+
+    /// Where the cells lie.
+    pub fn square(&self) -> Square {
+        self.square
+    }
+
+    /// Cells of a side.
+    pub fn side(&self) -> usize {
+        self.side
+    }
+
+    /// Samples in each cell: rows from the least sine upwards, in each from the least cosine on.
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
+    /// Samples in the fullest cell.
+    pub fn most(&self) -> u32 {
+        self.counts.iter().copied().max().unwrap_or(0)
+    }
+
+    /// Samples beside the square.
+    pub fn outside(&self) -> u64 {
+        self.outside
+    }
+
+    /// Samples that are no numbers.
+    pub fn bad(&self) -> u64 {
+        self.bad
+    }
+
+    /// The shortest and the longest vector in each of [`SECTORS`] directions. The lengths are those of the samples; near a
+    /// border of two directions the cell decides to which it belongs.
+    pub fn lengths(&self) -> [Lengths; SECTORS] {
+        self.lengths.map(|squares| Lengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
+    }
+}
+
+impl Lengths {
+    const NONE: Lengths = Lengths { least_v: f64::INFINITY, most_v: 0.0 };
+}
+
+/// The direction of a vector; `SECTORS` − 1 at most.
+fn sector(sine: f64, cosine: f64) -> usize {
+    let share = (sine.atan2(cosine) / TAU).rem_euclid(1.0);
+    ((share * SECTORS as f64) as usize).min(SECTORS - 1)
+}
+
+/// Least and greatest of the values that are numbers.
+fn range(values: &[f64]) -> Option<(f64, f64)> {
+    let finite = |value: f64| value.abs() < f64::INFINITY;
+    let (groups, rest) = values.as_chunks::<4>();
+    let mut ends = [(f64::INFINITY, f64::NEG_INFINITY); 4];
+    let widen = |(least, most): &mut (f64, f64), value: f64| {
+        *least = if finite(value) && value < *least { value } else { *least };
+        *most = if finite(value) && value > *most { value } else { *most };
+    };
+    for group in groups {
+        ends.iter_mut().zip(group).for_each(|(ends, value)| widen(ends, *value));
+    }
+    let [mut all, ..] = ends;
+    rest.iter().for_each(|value| widen(&mut all, *value));
+    for (least, most) in ends {
+        all = (all.0.min(least), all.1.max(most));
+    }
+    (all.0 <= all.1).then_some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_sample_lies_in_the_cell_of_its_voltages() {
+        // Cells of 0.25 V from −0.5 to 0.5 V.
+        let mut density = Density::new(Square::centred(0.5), 4).unwrap();
+        let samples = [
+            (-0.5, -0.5, Some(0)),
+            (-0.49, 0.49, Some(3)),
+            (0.0, 0.0, Some(10)),
+            (0.3, -0.1, Some(13)),
+            (0.499, 0.499, Some(15)),
+            (0.5, 0.0, None),
+            (0.0, -0.51, None),
+        ];
+        for (sine, cosine, cell) in samples {
+            density.clear();
+            density.add(&[sine], &[cosine]);
+            let found = density.counts().iter().position(|count| *count == 1);
+            assert_eq!((found, density.outside()), (cell, u64::from(cell.is_none())), "{sine} {cosine}");
+        }
+        density.add(&[f64::NAN, 0.1, f64::INFINITY], &[0.1, f64::NAN, 0.1]);
+        assert_eq!((density.bad(), density.most()), (3, 0));
+    }
+
+    #[test]
+    fn lengths_are_those_of_the_samples_in_their_direction() {
+        let mut density = Density::new(Square::centred(0.7), 256).unwrap();
+        for degree in 0..3_600 {
+            let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
+            // 0.5 V all around, 0.4 V at 90° and 0.65 V at 200°, 2 V at 300°: outside.
+            let length = match degree {
+                920 => 0.4,
+                2_020 => 0.65,
+                3_020 => 2.0,
+                _ => 0.5,
+            };
+            density.add(&[length * y], &[length * x]);
+        }
+        let lengths = density.lengths();
+        let near = |found: Lengths, least: f64, most: f64| {
+            assert!((found.least_v - least).abs() < 1e-12 && (found.most_v - most).abs() < 1e-12, "{found:?}");
+        };
+        near(lengths[10], 0.5, 0.5);
+        near(lengths[18], 0.4, 0.5);
+        near(lengths[40], 0.5, 0.65);
+        near(lengths[60], 0.5, 2.0);
+        assert_eq!((density.outside(), density.most() > 1), (1, true));
+        density.clear();
+        assert_eq!(density.lengths()[0], Lengths { least_v: f64::INFINITY, most_v: 0.0 });
+    }
+
+    #[test]
+    fn a_square_is_laid_around_the_samples() {
+        let square = Square::around(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
+        assert!((square.sine_v - 2.5).abs() < 1e-12 && square.cosine_v.abs() < 1e-12);
+        assert!((square.half_v - 0.525).abs() < 1e-12);
+        assert!((Square::around(&[2.5], &[2.5]).unwrap().half_v - 1.05e-3).abs() < 1e-9);
+        assert_eq!(Square::around(&[], &[]), None);
+        assert_eq!(Square::around(&[f64::NAN], &[1.0]), None);
+        for half_v in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Density::new(Square::centred(half_v), 4).is_none());
+        }
+        assert_eq!(Density::new(Square::centred(1.0), 0).unwrap().side(), 1);
+    }
+
+    proptest! {
+        /// However they come, none is missing, and with a square around them none is outside.
+        #[test]
+        fn no_sample_is_missing(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
+            let (sine, cosine): (Vec<f64>, Vec<f64>) =
+                samples.iter().map(|(sine, cosine)| (f64::from(*sine), f64::from(*cosine))).unzip();
+            let cut = cut.min(sine.len());
+            for square in [Square::around(&sine, &cosine), Some(Square::centred(0.6))].into_iter().flatten() {
+                let mut density = Density::new(square, 16).unwrap();
+                density.add(&sine[..cut], &cosine[..cut]);
+                density.add(&sine[cut..], &cosine[cut..]);
+                let inside: u64 = density.counts().iter().map(|count| u64::from(*count)).sum();
+                prop_assert_eq!(inside + density.outside() + density.bad(), sine.len() as u64);
+                if square.half_v != 0.6 {
+                    prop_assert_eq!(density.outside(), 0);
+                }
+            }
+        }
+    }
+}
