@@ -203,6 +203,8 @@ pub enum ReadError {
 pub enum Desk {
     /// An encoder's.
     Encoder(SessionId),
+    /// The Signals tab's.
+    Signals,
 }
 
 /// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.

@@ -42,12 +42,14 @@ impl Studio {
             Desk::Encoder(id) => {
                 self.encoders.iter().find(|encoder| encoder.id == id).map(|encoder| &encoder.record.recorder)
             }
+            Desk::Signals => Some(&self.signals.scope().recorder),
         }
     }
 
     fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
         match desk {
             Desk::Encoder(id) => self.encoder_mut(id).map(|encoder| &mut encoder.record.recorder),
+            Desk::Signals => Some(&mut self.signals.scope_mut().recorder),
         }
     }
 
@@ -120,5 +122,6 @@ impl Studio {
         for encoder in &mut self.encoders {
             encoder.record.recorder.feed_export();
         }
+        self.signals.scope_mut().recorder.feed_export();
     }
 }

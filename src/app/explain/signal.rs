@@ -9,6 +9,7 @@ use crate::signal::capture::CaptureError;
 use crate::signal::diagnosis::{Finding, Stuck, What};
 use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::signal::quality::{Finding as Parameter, Verdict};
+use crate::signal::spectrum::SpectrumError;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
@@ -63,6 +64,16 @@ fn fit(path: &Path, error: &FitError) -> Text {
         FitError::Line => text("signal.line"),
         FitError::Ambiguous => text("signal.ambiguous"),
         FitError::NotAnEllipse => text("signal.no_ellipse"),
+    }
+}
+
+/// Why there is no spectrum.
+pub fn spectrum(error: &SpectrumError) -> Text {
+    match error {
+        SpectrumError::TooFew { samples: 0 } => Text::new("spectrum.no_times"),
+        SpectrumError::TooFew { samples } => Text::new("spectrum.few").with("samples", samples),
+        SpectrumError::Uneven { index } => Text::new("spectrum.uneven").with("sample", index + 1),
+        SpectrumError::NotFinite => Text::new("spectrum.not_finite"),
     }
 }
 

@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
-use super::{Action, Done, Family, Measurement, Place, Read, Source, Table, forms};
+use super::{Action, Done, Judge, Measurement, Place, Read, Scope, Source, Table, forms};
 use crate::app::action::Done as StudioDone;
+use crate::app::recorder;
 use crate::app::services::Services;
 use crate::app::{Action as StudioAction, Severity, Text, explain};
 use crate::signal::capture::Wishes;
-use crate::signal::diagnosis::{self, Finding, What};
+use crate::signal::diagnosis::{Finding, compare};
+use crate::signal::quality::Family;
 use crate::store::ReadCaptureError;
 
 /// All that the Signals tab knows.
@@ -22,12 +24,15 @@ pub struct Signals {
     pub(super) source: Source,
     /// Absolute and analogue position brought together.
     pub synchronise: Synchronise,
+    /// The signals over time.
+    pub(super) scope: Scope,
     measurement: Option<Arc<Measurement>>,
     comparison: Option<Arc<Measurement>>,
     table: Option<Table>,
     problem: Option<Text>,
     reading: Option<Reading>,
     attempts: u32,
+    judgements: u32,
 }
 
 impl Default for Signals {
@@ -37,12 +42,14 @@ impl Default for Signals {
             periods: 1024,
             source: Source::default(),
             synchronise: Synchronise::default(),
+            scope: Scope::live(),
             measurement: None,
             comparison: None,
             table: None,
             problem: None,
             reading: None,
             attempts: 0,
+            judgements: 0,
         }
     }
 }
@@ -78,15 +85,24 @@ impl Signals {
         self.reading.as_ref()
     }
 
-    /// What is out of its limits.
-    pub fn findings(&self) -> Vec<Finding> {
-        let analysis = self.measurement.as_ref().and_then(|measurement| measurement.analysis.as_ref().ok());
-        analysis.map_or_else(Vec::new, |analysis| {
-            let out = self.family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms);
-            out.into_iter()
-                .map(|own| Finding { severity: diagnosis::Severity::Warning, what: What::Limit(own) })
-                .collect()
-        })
+    /// The signals over time.
+    pub fn scope(&self) -> &Scope {
+        &self.scope
+    }
+
+    pub(in crate::app) fn scope_mut(&mut self) -> &mut Scope {
+        &mut self.scope
+    }
+
+    /// What there is to look at, the worst first.
+    pub fn findings(&self) -> &[Finding] {
+        self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
+    }
+
+    /// What is worse than in the capture that it is compared with.
+    pub fn worse(&self) -> Vec<Finding> {
+        let both = self.comparison.as_ref().zip(self.measurement.as_ref());
+        both.map_or_else(Vec::new, |(kept, own)| compare(&kept.diagnosis, &own.diagnosis))
     }
 
     /// There is something to stop.
@@ -127,11 +143,17 @@ impl Signals {
             }
             Action::Cancel => self.give_up(),
             Action::Source(action) => self.act_source(action, services),
-            Action::SetFamily(family) => self.family = family,
+            Action::SetFamily(family) => {
+                self.family = family;
+                self.judge_again(services);
+            }
             Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
             Action::DropComparison => self.comparison = None,
             Action::Synchronise(action) => self.synchronise.act(action),
-            Action::SetPeriods(periods) => self.periods = periods.clamp(1, forms::MOST_PERIODS),
+            Action::SetPeriods(periods) => {
+                self.periods = periods.clamp(1, forms::MOST_PERIODS);
+                self.judge_again(services);
+            }
         }
     }
 
@@ -143,8 +165,20 @@ impl Signals {
                     self.take(*read, &reading, services);
                 }
             }
+            Done::Judged { number, measurement } => {
+                let same = |own: &Arc<Measurement>| Arc::ptr_eq(&own.capture, &measurement.capture);
+                if self.judgements == number && self.measurement.as_ref().is_some_and(same) {
+                    self.measurement = Some(Arc::new(*measurement));
+                }
+            }
             Done::Measured { number, measurement } => self.measured(number, *measurement),
         }
+    }
+
+    /// Other samples: a table of those before that is still being written cannot be ended.
+    pub(super) fn replace_scope(&mut self, scope: Scope) {
+        self.scope.recorder.act(recorder::Action::CancelExport);
+        self.scope = scope;
     }
 
     /// The newest samples of the virtual encoder take the place of what was shown.
@@ -158,9 +192,14 @@ impl Signals {
         let Read { table, result } = read;
         let path = table.place.path();
         match result {
-            Ok(measurement) => {
+            Ok((measurement, scope)) => {
                 self.source.stop();
+                self.replace_scope(scope);
+                let judge = measurement.judge;
                 self.measurement = Some(Arc::new(measurement));
+                if judge != self.judge() {
+                    self.judge_again(services);
+                }
                 self.problem = None;
                 self.table = Some(table);
             }
@@ -202,14 +241,30 @@ impl Signals {
         self.read(place, Wishes::default(), settled, services);
     }
 
+    pub(super) fn judge(&self) -> Judge {
+        Judge { family: self.family, periods: Some(self.periods) }
+    }
+
+    /// Judges what is shown by what is set now.
+    fn judge_again(&mut self, services: &mut Services) {
+        let Some(measurement) = self.measurement.clone() else { return };
+        self.judgements = self.judgements.wrapping_add(1);
+        let (number, judge) = (self.judgements, self.judge());
+        services.tasks.run("judge", move || {
+            let measurement = Box::new(measurement.judged(judge));
+            StudioAction::Done(StudioDone::Signals(Done::Judged { number, measurement }))
+        });
+    }
+
     /// Begins to read; what was being read is given up.
     fn read(&mut self, place: Place, wishes: Wishes, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;
         let (reading, progress) = Reading::new(number, place.clone(), settled);
         self.reading = Some(reading);
+        let judge = self.judge();
         services.tasks.run("capture", move || {
-            let read = Box::new(reading::read(place, wishes, &progress));
+            let read = Box::new(reading::read(place, wishes, judge, &progress));
             StudioAction::Done(StudioDone::Signals(Done::Read { number, read }))
         });
     }

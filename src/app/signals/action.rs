@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::{Column, Example, Family, Measurement, SourceAction, Table, synchronise};
+use super::{Column, Example, Measurement, Scope, SourceAction, Table, synchronise};
 use crate::signal::capture::{Delimiter, TimeUnit};
+use crate::signal::quality::Family;
 use crate::store::ReadCaptureError;
 
 /// Something to be done.
@@ -50,6 +51,13 @@ pub enum Done {
         /// What came of it.
         read: Box<Read>,
     },
+    /// The capture that is shown was judged by something else.
+    Judged {
+        /// Which attempt: only the latest counts.
+        number: u32,
+        /// What came of it.
+        measurement: Box<Measurement>,
+    },
     /// The newest samples of the virtual encoder were measured.
     Measured {
         /// Since which start: only the latest counts.
@@ -64,5 +72,5 @@ pub struct Read {
     /// Its first lines, and how they are understood.
     pub(super) table: Table,
     /// The capture with all that is known about it.
-    pub(super) result: Result<Measurement, ReadCaptureError>,
+    pub(super) result: Result<(Measurement, Scope), ReadCaptureError>,
 }

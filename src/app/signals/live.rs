@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{Done, Measurement, Origin, Signals};
+use super::{Done, Measurement, Origin, Scope, Signals};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
@@ -160,6 +160,7 @@ impl Signals {
         match action {
             SourceAction::Start => {
                 self.periods = settings.periods as u32;
+                self.replace_scope(Scope::live());
                 self.source.start(services);
             }
             SourceAction::Stop => self.source.stop(),
@@ -187,8 +188,12 @@ impl Signals {
     /// Takes what has come, and has it measured when it is time.
     pub(in crate::app) fn pump(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
+        let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };
         for batch in live.stream.take() {
+            if !live.held {
+                self.scope.add(&batch);
+            }
             live.recent.add(batch);
         }
         if live.held || live.measuring || !live.recent.is_due(live.measured) {
@@ -198,7 +203,7 @@ impl Signals {
         live.measuring = true;
         live.measured = live.recent.newest;
         services.tasks.run("measure", move || {
-            let measurement = Box::new(Measurement::of(Origin::Virtual, Arc::new(capture)));
+            let measurement = Box::new(Measurement::of(Origin::Virtual, Arc::new(capture), judge));
             StudioAction::Done(StudioDone::Signals(Done::Measured { number, measurement }))
         });
     }

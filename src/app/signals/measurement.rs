@@ -1,13 +1,17 @@
-//! A capture with all that is computed from it once, on a task: the analysis and the points of its Lissajous figure.
+//! A capture with all that is computed from it once, on a task: the analysis, the diagnosis, the spectra and the points of
+//! its Lissajous figure.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::Example;
+use super::{Example, Spectra};
 use crate::app::{Language, Text, explain};
 use crate::signal::analysis::{Analysis, AnalysisError};
 use crate::signal::capture::Capture;
+use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
 use crate::signal::position_error::Samples;
+use crate::signal::quality::Family;
+use crate::signal::spectrum::SpectrumError;
 
 /// Where a capture comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,19 +66,52 @@ pub struct Measurement {
     pub capture: Arc<Capture>,
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
+    /// What there is to look at.
+    pub diagnosis: Diagnosis,
+    /// By what the diagnosis was made.
+    pub judge: Judge,
+    /// Mean level of REFSIN and of REFCOS in volts, where they were recorded.
+    pub levels_v: Option<(f64, f64)>,
+    /// Amplitudes over frequency, or why there are none.
+    pub spectra: Result<Spectra, SpectrumError>,
     /// Samples as (cosine, sine) in volts, of many as many as a picture can show.
     pub points: Vec<(f64, f64)>,
+}
+
+/// By what a signal is judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Judge {
+    /// Whose limits.
+    pub family: Family,
+    /// Signal periods in a revolution; `None` where nobody knows.
+    pub periods: Option<u32>,
 }
 
 /// Points of a Lissajous figure that tell more than fewer do.
 const POINTS: usize = 4_000;
 
 impl Measurement {
-    /// Measures a capture; takes about 50 ms for a million samples.
-    pub fn of(origin: Origin, capture: Arc<Capture>) -> Self {
-        let (sine_v, cosine_v) = (capture.sine_v.as_slice(), capture.cosine_v.as_slice());
-        let analysis = Analysis::of(Samples { time_s: &capture.time_s, sine_v, cosine_v });
-        Measurement { analysis, points: spread(cosine_v, sine_v), origin, capture }
+    /// Measures a capture; takes about 100 ms for a million samples.
+    pub fn of(origin: Origin, capture: Arc<Capture>, judge: Judge) -> Self {
+        let samples = samples(&capture);
+        let analysis = Analysis::of(samples);
+        let mean = |column: &[f64]| column.iter().sum::<f64>() / column.len().max(1) as f64;
+        Measurement {
+            diagnosis: diagnosis(&capture, &analysis, judge),
+            judge,
+            levels_v: capture.references_v.as_ref().map(|(sine, cosine)| (mean(sine), mean(cosine))),
+            spectra: Spectra::of(samples),
+            points: spread(samples.cosine_v, samples.sine_v),
+            analysis,
+            origin,
+            capture,
+        }
+    }
+
+    /// The same, judged by something else.
+    #[must_use]
+    pub fn judged(&self, judge: Judge) -> Self {
+        Measurement { diagnosis: diagnosis(&self.capture, &self.analysis, judge), judge, ..self.clone() }
     }
 
     /// Why there is no analysis, in words.
@@ -93,6 +130,16 @@ impl Measurement {
         };
         self.points.iter().map(corrected).collect()
     }
+}
+
+fn samples(capture: &Capture) -> Samples<'_> {
+    Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v }
+}
+
+fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: Judge) -> Diagnosis {
+    let references_v = capture.references_v.as_ref().map(|(sine, cosine)| (sine.as_slice(), cosine.as_slice()));
+    let record = Record { samples: samples(capture), references_v, periods: judge.periods };
+    diagnose(&record, analysis.as_ref(), judge.family)
 }
 
 /// Samples spread over all of them. Not every so many, which could always hit the same place of the period.

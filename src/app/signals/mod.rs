@@ -3,7 +3,6 @@
 
 mod act;
 mod action;
-mod family;
 pub mod forms;
 pub mod input_circuit;
 pub mod interpolation;
@@ -11,14 +10,17 @@ mod live;
 mod measurement;
 mod quantities;
 mod reading;
+mod scope;
+mod spectra;
 pub mod synchronise;
 mod table;
 
 pub use act::Signals;
 pub use action::{Action, Done, Read};
-pub use family::Family;
 pub use live::{Source, SourceAction};
-pub use measurement::{Measurement, Origin, Place};
-pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
+pub use measurement::{Judge, Measurement, Origin, Place};
+pub use quantities::{Bound, Quantity, Unit, error_quantities, family_words, quantities};
 pub use reading::{Example, Reading};
+pub use scope::Scope;
+pub use spectra::{ChannelSpectrum, Spectra, dbv};
 pub use table::{Column, Table};

@@ -1,10 +1,11 @@
 //! What is measured of a signal, as a list: each number with its unit, its limit and whether it is inside. Limits as
 //! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
 
-use super::Family;
+use super::Measurement;
+use crate::app::Text;
 use crate::signal::analysis::{Analysis, LEAST_OCTANTS};
 use crate::signal::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
-use crate::signal::quality::Verdict;
+use crate::signal::quality::{Family, Verdict};
 
 /// A number that was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub enum Unit {
     Volts,
     /// Millivolts.
     Millivolts,
+    /// Decibels above one volt rms.
+    DecibelVolts,
     /// Percent.
     Percent,
     /// Electrical degrees.
@@ -68,6 +71,7 @@ impl Unit {
             Unit::One => "",
             Unit::Volts => "V",
             Unit::Millivolts => "mV",
+            Unit::DecibelVolts => "dBV",
             Unit::Percent => "%",
             Unit::Degrees => "°",
             Unit::ArcSeconds => "″",
@@ -115,8 +119,42 @@ impl Quantity {
     }
 }
 
-/// What an analysis measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed.
-pub fn quantities(analysis: &Analysis, family: Family, periods: u32) -> Vec<Quantity> {
+/// The name of a family, with the amplitudes that are good.
+pub fn family_words(family: Family) -> Text {
+    let (least, most) = family.limits().ok_v;
+    Text::new("quality.family_words").with("name", family.name()).with_number("least", 2.0 * least, 1).with_number(
+        "most",
+        2.0 * most,
+        1,
+    )
+}
+
+/// What was measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed. Nothing
+/// where there is no ellipse.
+pub fn quantities(measurement: &Measurement, family: Family, periods: u32) -> Vec<Quantity> {
+    let Ok(analysis) = &measurement.analysis else { return Vec::new() };
+    let mut list = of_ellipse(analysis, family);
+    let (least, most) = family.limits().level_v;
+    for (word, level) in [("quality.level_sine", 0), ("quality.level_cosine", 1)] {
+        let volts = measurement.levels_v.map(|(sine, cosine)| if level == 0 { sine } else { cosine });
+        let level = |volts| Quantity::new(word, volts, 3, Unit::Volts).bounded(Bound::Between(least, most));
+        list.extend(volts.map(level));
+    }
+    if let Some(frequency_hz) = analysis.frequency_hz() {
+        list.push(
+            Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
+                .bounded(Bound::Within(BANDWIDTH_HZ / 1e3)),
+        );
+        list.extend(speed_rpm_at(periods, frequency_hz).map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
+    }
+    list.push(Quantity::new("quality.samples", analysis.samples as f64, 0, Unit::One));
+    let left_out = |count: usize| Quantity::new("quality.left_out", count as f64, 0, Unit::One);
+    list.extend(analysis.outliers.as_ref().map(|outliers| left_out(outliers.count)));
+    list.extend(analysis.duration_s.map(|s| Quantity::new("quality.duration", 1e3 * s, 3, Unit::Milliseconds)));
+    list
+}
+
+fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     let limits = family.limits();
     let Analysis { ellipse, coverage, .. } = analysis;
     let volts = |word, peak: f64, factor: f64| {
@@ -131,7 +169,7 @@ pub fn quantities(analysis: &Analysis, family: Family, periods: u32) -> Vec<Quan
             .bounded(Bound::Within(100.0 * limits.offset))
     };
     let (least, most) = coverage.vector_v;
-    let mut list = vec![
+    vec![
         volts("quality.amplitude_sine", ellipse.amplitude_sine_v(), 2.0),
         volts("quality.amplitude_cosine", ellipse.amplitude_v, 2.0),
         volts("quality.vector_least", least, 1.0),
@@ -146,17 +184,7 @@ pub fn quantities(analysis: &Analysis, family: Family, periods: u32) -> Vec<Quan
         Quantity::new("quality.octants", f64::from(coverage.octants), 0, Unit::One)
             .bounded(Bound::AtLeast(f64::from(LEAST_OCTANTS))),
         Quantity::new("quality.periods", coverage.periods, 2, Unit::One),
-    ];
-    if let Some(frequency_hz) = analysis.frequency_hz() {
-        list.push(
-            Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
-                .bounded(Bound::Within(BANDWIDTH_HZ / 1e3)),
-        );
-        list.extend(speed_rpm_at(periods, frequency_hz).map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
-    }
-    list.push(Quantity::new("quality.samples", analysis.samples as f64, 0, Unit::One));
-    list.extend(analysis.duration_s.map(|s| Quantity::new("quality.duration", 1e3 * s, 3, Unit::Milliseconds)));
-    list
+    ]
 }
 
 /// The position error inside a period, before and after the correction; `periods` a revolution turn electrical degrees
@@ -178,13 +206,13 @@ pub fn error_quantities(analysis: &Analysis, periods: u32) -> Vec<Quantity> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::signals::{Measurement, Origin};
+    use crate::app::signals::{Judge, Origin};
     use crate::signal::capture::Capture;
     use std::sync::Arc;
 
     /// Section 7 of the reference: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°; here 1000 samples over two periods in
     /// 20 ms.
-    fn section_7() -> Analysis {
+    fn section_7() -> Measurement {
         let (alpha, turns) = (3.0_f64.to_radians(), 2.0 * std::f64::consts::TAU);
         let angle = |at: i32| f64::from(at) / 999.0 * turns;
         let capture = Capture {
@@ -193,7 +221,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos() + 0.02).collect(),
             ..Capture::default()
         };
-        Measurement::of(Origin::Virtual, Arc::new(capture)).analysis.unwrap()
+        Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default())
     }
 
     #[test]
@@ -241,7 +269,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
             ..Capture::default()
         };
-        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture)).analysis.unwrap();
+        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.unwrap();
         let list = error_quantities(&analysis, 1024);
         assert!((list[0].value - 1.1459).abs() < 1e-3 && list[0].unit == Unit::Degrees, "{:?}", list[0]);
         let (arc_seconds, _, unit) = list[0].also.unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::{Measurement, Origin, Place, Read, Table};
+use super::{Judge, Measurement, Origin, Place, Read, Scope, Table};
 use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Wishes};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
@@ -94,7 +94,7 @@ impl Drop for Reading {
 }
 
 /// Reads and measures; takes as long as the file is large.
-pub(super) fn read(place: Place, wishes: Wishes, progress: &Progress) -> Read {
+pub(super) fn read(place: Place, wishes: Wishes, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
         Place::Example(example) => {
             let bytes = example.bytes();
@@ -106,7 +106,10 @@ pub(super) fn read(place: Place, wishes: Wishes, progress: &Progress) -> Read {
         },
     };
     let table = Table::of(place, &head, wishes);
-    let result = result.map(|capture| Measurement::of(Origin::Table(table.place.clone()), Arc::new(capture)));
+    let result = result.map(|capture| {
+        let scope = Scope::of(&capture);
+        (Measurement::of(Origin::Table(table.place.clone()), Arc::new(capture), judge), scope)
+    });
     Read { table, result }
 }
 

@@ -6,6 +6,7 @@ mod input_circuit;
 mod numbers;
 mod octant;
 mod quality;
+mod scope;
 mod source;
 mod synchronise;
 mod table;
@@ -22,6 +23,8 @@ use crate::app::{Action, Text};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) enum Page {
+    /// The signals over time, and their spectrum.
+    Scope,
     /// The Lissajous figure and the numbers with their limits.
     #[default]
     Quality,
@@ -34,10 +37,11 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 4] = [Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
+    pub(super) const ALL: [Page; 5] = [Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
+            Page::Scope => icons::WAVE_SINE,
             Page::Quality => icons::TARGET,
             Page::Error => icons::CHART_LINE,
             Page::Synchronise => icons::CROSSHAIR,
@@ -47,6 +51,7 @@ impl Page {
 
     pub(super) fn word(self) -> &'static str {
         match self {
+            Page::Scope => "page.scope",
             Page::Quality => "page.quality",
             Page::Error => "page.error",
             Page::Synchronise => "page.synchronise",
@@ -56,6 +61,7 @@ impl Page {
 
     pub(super) fn help(self) -> &'static str {
         match self {
+            Page::Scope => "help.scope",
             Page::Quality => "help.quality",
             Page::Error => "help.error",
             Page::Synchronise => "help.synchronise",
@@ -76,6 +82,7 @@ pub(in crate::ui) struct View {
     periods: Draft,
     corrected: bool,
     octant: octant::View,
+    scope: scope::ScopeView,
     input_circuit: Circuit,
 }
 
@@ -93,6 +100,11 @@ pub(super) fn page_ui(
     let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
     ScrollArea::vertical().id_salt(view.page.word()).auto_shrink(false).show(ui, |ui| {
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
+            Page::Scope => {
+                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
+                    scope::page_ui(ui, skin, signals, view, actions);
+                }
+            }
             Page::Quality => {
                 if source::source_ui(ui, skin, signals, &mut view.source, actions) {
                     quality::page_ui(ui, skin, signals, view, actions);

@@ -3,9 +3,11 @@
 use egui::{RichText, Ui};
 
 use super::{View, numbers, source};
-use crate::app::signals::{Action as Signals_, Family, Measurement, Signals, forms, quantities};
+use crate::app::signals::{Action as Signals_, Measurement, Signals, family_words, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
+use crate::signal::diagnosis::{Finding, Severity};
+use crate::signal::quality::Family;
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
 use crate::ui::widgets::{Figure, Lissajous, lissajous};
 use crate::ui::{Skin, icons};
@@ -94,19 +96,32 @@ fn figure_of(measurement: &Measurement, corrected: bool, (colour, dashed): (usiz
     }
 }
 
-/// Why there is nothing to be said about a capture.
+/// Why there is nothing to be measured in a capture, and what there is to look at.
 pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Measurement) {
     let Some(why) = measurement.refusal(skin.language) else { return };
     card(ui, skin, "quality.findings", |ui| {
-        finding(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
+        line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
+        for finding in &measurement.diagnosis.findings {
+            finding_ui(ui, skin, finding);
+        }
     });
 }
 
-fn finding(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
+fn line(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
         paragraph(ui, words);
     });
+}
+
+fn finding_ui(ui: &mut Ui, skin: &Skin, finding: &Finding) {
+    let palette = skin.palette;
+    let (icon, colour) = match finding.severity {
+        Severity::Notice => (icons::INFO, palette.accent),
+        Severity::Warning => (icons::WARNING, palette.warn),
+        Severity::Fault => (icons::X_CIRCLE, palette.bad),
+    };
+    line(ui, icon, colour, skin.words(&explain::signal::finding(finding)));
 }
 
 /// What is wrong, in words.
@@ -115,14 +130,25 @@ fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measuremen
         refused_ui(ui, skin, measurement);
         return;
     }
-    let palette = skin.palette;
     card(ui, skin, "quality.findings", |ui| {
         let findings = signals.findings();
         if findings.is_empty() {
-            finding(ui, icons::CHECK_CIRCLE, palette.good, skin.say("quality.good"));
+            line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("quality.good"));
         }
-        for own in &findings {
-            finding(ui, icons::WARNING, palette.warn, skin.words(&explain::signal::finding(own)));
+        for finding in findings {
+            finding_ui(ui, skin, finding);
+        }
+        if let Some(kept) = signals.comparison() {
+            ui.add_space(skin.space.inside);
+            let text = Text::new("compare.worse").with_text("name", kept.origin.name());
+            ui.label(skin.caption(skin.words(&text)));
+            let worse = signals.worse();
+            if worse.is_empty() {
+                line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("compare.nothing"));
+            }
+            for finding in &worse {
+                finding_ui(ui, skin, finding);
+            }
         }
     });
 }
@@ -139,18 +165,16 @@ fn values(
         let word = skin.say("quality.family");
         let mut family = signals.family;
         entry(ui, skin, &word, |ui| {
-            let families = Family::ALL.map(|own| (own, skin.words(&own.words())));
+            let families = Family::ALL.map(|own| (own, skin.words(&family_words(own))));
             if choice(ui, &word, &mut family, families) {
                 actions.push(Action::Signals(Signals_::SetFamily(family)));
             }
         });
         periods_ui(ui, skin, signals, &mut view.periods, actions);
         ui.add_space(skin.space.inside);
-        if let Ok(analysis) = &measurement.analysis {
-            let of = |own: &Analysis| quantities(own, signals.family, signals.periods);
-            let others = signals.comparison().and_then(|own| own.analysis.as_ref().ok()).map(of);
-            numbers::rows_ui(ui, skin, "quality.numbers", &of(analysis), others.as_deref());
-        }
+        let of = |own: &Measurement| quantities(own, signals.family, signals.periods);
+        let others = signals.comparison().map(|own| of(own));
+        numbers::rows_ui(ui, skin, "quality.numbers", &of(measurement), others.as_deref());
     });
 }
 

@@ -83,7 +83,7 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
             .show_background(false)
             .grid_spacing(egui::Rangef::new(8.0, 24.0))
             .grid_color(skin.palette.line.into())
-            .set_margin_fraction(Vec2::new(0.0, 0.08))
+            .set_margin_fraction(Vec2::new(0.0, if chart.marks.is_empty() { 0.08 } else { 0.16 }))
             .label_formatter(told)
             .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
             .custom_y_axes(vec![axis(AxisHints::new_y(), own, 12.0)])
@@ -107,7 +107,7 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
             for (x, y, words) in chart.marks {
                 let text = egui::RichText::new(words).size(skin.sizes.caption).color(skin.palette.text);
                 let place = PlotPoint::new(*x, *y);
-                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(Align2::CENTER_BOTTOM));
+                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(beside(chart.traces, *x)));
             }
         });
         response.response.widget_info(|| {
@@ -161,6 +161,17 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
         let told = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
         plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
+    }
+}
+
+/// On which side of a place its words have room.
+fn beside(traces: &[Trace], x: f64) -> Align2 {
+    let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
+    let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
+    match (x - least) / (most - least).max(f64::MIN_POSITIVE) {
+        share if share < 0.12 => Align2::LEFT_BOTTOM,
+        share if share > 0.88 => Align2::RIGHT_BOTTOM,
+        _ => Align2::CENTER_BOTTOM,
     }
 }
 

@@ -1,0 +1,163 @@
+//! The signals over time, as lines of a recorder: differences, the length of the amplitude vector, and the four wires where
+//! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
+
+use crate::app::Text;
+use crate::app::recorder::{self, GroupId, Line, Recorder, Scale};
+use crate::signal::Time;
+use crate::signal::capture::Capture;
+use crate::signal::history::{Kind, Part, Refused};
+use crate::signal::wires::Wires;
+use crate::worker::stream::Batch;
+
+/// A recorder with the signals.
+#[derive(Debug)]
+pub struct Scope {
+    /// The recorder.
+    pub recorder: Recorder,
+    /// Its times are numbers of samples: the capture has none.
+    pub counts: bool,
+    /// The capture's times go back, so that there is nothing to draw.
+    pub refused: bool,
+    group: GroupId,
+}
+
+/// Samples of the virtual encoder that are kept: five seconds at 100 kHz.
+const KEPT: usize = 500_000;
+/// Nanoseconds of them that are shown to begin with.
+const SPAN: i64 = 10_000_000;
+/// Samples that are handed over at once.
+const PORTION: usize = 1 << 16;
+
+/// Differential columns, in volts: names and headings.
+const DIFFERENCES: [(&str, &str); 3] = [("scope.sine", "sine"), ("scope.cosine", "cosine"), ("scope.vector", "vector")];
+/// The wires, likewise.
+const WIRES: [(&str, &str); 4] =
+    [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
+
+impl Scope {
+    /// Nothing yet; for samples that come.
+    pub(super) fn live() -> Self {
+        Scope::new(true, KEPT, SPAN)
+    }
+
+    /// All of a capture.
+    pub(super) fn of(capture: &Capture) -> Self {
+        let count = capture.sine_v.len().min(capture.cosine_v.len());
+        let mut scope = Scope::new(capture.references_v.is_some(), count.max(1), SPAN);
+        scope.counts = capture.time_s.len() < count;
+        let mut from = 0;
+        while from < count && !scope.refused {
+            let to = (from + PORTION).min(count);
+            scope.refused = scope.add_capture(capture, from..to).is_err();
+            from = to;
+        }
+        if scope.refused {
+            scope.recorder.clear();
+        }
+        scope.recorder.act(recorder::Action::Fit);
+        scope
+    }
+
+    fn new(with_wires: bool, capacity: usize, span: i64) -> Self {
+        let wires = if with_wires { &WIRES[..] } else { &[] };
+        let mut recorder = Recorder::new(span);
+        let columns = vec![Kind::Real; DIFFERENCES.len() + wires.len()];
+        let group = recorder.add_group(&columns, capacity, None);
+        for (column, (name, heading)) in DIFFERENCES.iter().chain(wires).enumerate() {
+            let scales = vec![Scale::new("unit.volts", 1.0, 4), Scale::new("unit.millivolts", 1e3, 1)];
+            let line = Line::of(group, column, Text::new(name), *heading, scales);
+            let derived = *name == "scope.vector";
+            let line = if derived { line.derived() } else { line };
+            recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });
+        }
+        Scope { recorder, counts: false, refused: false, group }
+    }
+
+    fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), Refused> {
+        let part = |column: &[f64]| column.get(range.clone()).unwrap_or_default().to_vec();
+        let times = range.clone().map(|at| match capture.time_s.get(at) {
+            Some(seconds) if !self.counts => Time::from_nanoseconds((seconds * 1e9).round() as i64),
+            _ => Time::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(1_000_000_000)),
+        });
+        let times: Vec<Time> = times.collect();
+        let (sine, cosine) = (part(&capture.sine_v), part(&capture.cosine_v));
+        let wires = capture.references_v.as_ref().map(|(refsin, refcos)| {
+            let (refsin, refcos) = (part(refsin), part(refcos));
+            let sum = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a + b).collect();
+            Wires {
+                sin_v: sum(&sine, &refsin),
+                cos_v: sum(&cosine, &refcos),
+                refsin_v: refsin,
+                refcos_v: refcos,
+                reference_deg: Vec::new(),
+            }
+        });
+        self.append(&times, &sine, &cosine, wires.as_ref())
+    }
+
+    /// Samples that have come.
+    pub(super) fn add(&mut self, batch: &Batch<Wires>) {
+        if batch.lost > 0 {
+            self.recorder.break_before_next(self.group);
+        }
+        let count = i64::try_from(batch.samples.len()).unwrap_or(0);
+        let times: Vec<Time> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
+        let (sine, cosine) = (batch.samples.sine_v(), batch.samples.cosine_v());
+        // The times of one source only grow: nothing is refused.
+        let _ = self.append(&times, &sine, &cosine, Some(&batch.samples));
+    }
+
+    fn append(&mut self, times: &[Time], sine: &[f64], cosine: &[f64], wires: Option<&Wires>) -> Result<(), Refused> {
+        let vector: Vec<f64> = sine.iter().zip(cosine).map(|(sine, cosine)| sine.hypot(*cosine)).collect();
+        let mut parts = vec![Part::real(sine), Part::real(cosine), Part::real(&vector)];
+        if let Some(wires) = wires {
+            parts.extend([&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v].map(|own| Part::real(own)));
+        }
+        self.recorder.append(self.group, times, &parts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(scope: &Scope) -> Vec<&'static str> {
+        scope.recorder.shown().map(|line| line.name.id()).collect()
+    }
+
+    fn value(scope: &Scope, line: usize, nanoseconds: i64) -> f64 {
+        let line = &scope.recorder.lines()[line];
+        let sample = scope.recorder.nearest(line, Time::from_nanoseconds(nanoseconds)).unwrap();
+        line.value(&sample)
+    }
+
+    #[test]
+    fn a_capture_becomes_lines() {
+        let capture = Capture {
+            time_s: vec![-1e-6, 0.0, 1e-6],
+            sine_v: vec![0.3, 0.0, -0.3],
+            cosine_v: vec![0.4, 0.5, 0.4],
+            references_v: Some((vec![2.5; 3], vec![2.4; 3])),
+        };
+        let scope = Scope::of(&capture);
+        assert_eq!(names(&scope), ["scope.sine", "scope.cosine", "scope.vector"]);
+        assert_eq!(scope.recorder.lines().len(), 7);
+        // The vector of 0.3 and 0.4 is 0.5; SIN is 0.3 V above 2.5 V, COS 0.4 V above 2.4 V.
+        for (line, expected) in [0.3, 0.4, 0.5, 2.8, 2.5, 2.8, 2.4].into_iter().enumerate() {
+            assert!((value(&scope, line, -1_000) - expected).abs() < 1e-12, "{line}");
+        }
+        assert!(!scope.counts && !scope.refused);
+    }
+
+    #[test]
+    fn without_times_samples_are_counted_and_times_that_go_back_are_refused() {
+        let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
+        let scope = Scope::of(&capture);
+        assert!(scope.counts && (value(&scope, 0, 2_000_000_000) - 3.0).abs() < 1e-12);
+        assert_eq!(scope.recorder.lines().len(), 3);
+        capture.time_s = vec![0.0, 2.0, 1.0];
+        let scope = Scope::of(&capture);
+        assert!(scope.refused && scope.recorder.is_empty());
+        assert!(Scope::of(&Capture::default()).recorder.is_empty());
+    }
+}

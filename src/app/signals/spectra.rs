@@ -1,0 +1,122 @@
+//! The spectra of both channels, thinned out for a picture: in each stretch of frequencies the highest line, so that no
+//! peak is lost.
+
+use crate::signal::position_error::Samples;
+use crate::signal::spectrum::{Line, Spectrum, SpectrumError, sample_rate_hz};
+
+/// Both spectra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectra {
+    /// Of the sine channel.
+    pub sine: ChannelSpectrum,
+    /// Of the cosine channel.
+    pub cosine: ChannelSpectrum,
+    /// Distance of two lines in hertz.
+    pub spacing_hz: f64,
+    /// Samples that they are of: the last ones, where there are more than a transform takes at once.
+    pub samples: usize,
+}
+
+/// One spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelSpectrum {
+    /// (hertz, peak amplitude in volts), growing in frequency.
+    pub lines: Vec<(f64, f64)>,
+    /// The highest peaks, the highest first.
+    pub peaks: Vec<Line>,
+}
+
+/// Most samples of a transform.
+const MOST: usize = 1 << 20;
+/// Lines of a picture.
+const LINES: usize = 1_000;
+/// Peaks that are named.
+const PEAKS: usize = 6;
+/// Below this share of the highest a peak is noise.
+const LEAST_PEAK: f64 = 1e-4;
+
+impl Spectra {
+    /// The spectra of a capture.
+    ///
+    /// # Errors
+    /// [`SpectrumError`]: there are no times, they are uneven, or there are too few samples.
+    pub(super) fn of(samples: Samples<'_>) -> Result<Self, SpectrumError> {
+        let Samples { time_s, sine_v, cosine_v } = samples;
+        let count = sine_v.len().min(cosine_v.len()).min(time_s.len());
+        let from = count.saturating_sub(MOST);
+        let last = |column: &[f64]| column.get(from..count).unwrap_or_default().to_vec();
+        let rate_hz = sample_rate_hz(&last(time_s))?;
+        let channel = |column: &[f64]| Spectrum::of(&last(column), rate_hz);
+        let (sine, cosine) = (channel(sine_v)?, channel(cosine_v)?);
+        Ok(Spectra {
+            spacing_hz: sine.spacing_hz(),
+            samples: count - from,
+            sine: thinned(&sine),
+            cosine: thinned(&cosine),
+        })
+    }
+}
+
+fn thinned(spectrum: &Spectrum) -> ChannelSpectrum {
+    let amplitudes = spectrum.amplitudes_v();
+    let stretch = amplitudes.len().div_ceil(LINES).max(1);
+    let highest = |(number, lines): (usize, &[f64])| {
+        let (at, volts) = lines.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(((number * stretch + at) as f64 * spectrum.spacing_hz(), *volts))
+    };
+    let lines = amplitudes.chunks(stretch).enumerate().filter_map(highest).collect();
+    let peaks = spectrum.peaks(PEAKS);
+    let most = peaks.first().map_or(0.0, |peak| peak.amplitude_v);
+    let peaks = peaks.into_iter().filter(|peak| peak.amplitude_v >= LEAST_PEAK * most).collect();
+    ChannelSpectrum { lines, peaks }
+}
+
+/// An amplitude as a level: decibels of its rms value above one volt.
+pub fn dbv(peak_v: f64) -> f64 {
+    /// What a double still tells from zero beside one volt.
+    const LEAST: f64 = -160.0;
+    (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 100 kHz; a sine of 1 kHz with 0.5 V on both channels, and 8 kHz with 20 mV on the sine.
+    #[test]
+    fn no_peak_is_lost_in_a_picture() {
+        let time_s: Vec<f64> = (0..50_000).map(|at| f64::from(at) * 1e-5).collect();
+        let tone = |time: f64, hertz: f64| (std::f64::consts::TAU * hertz * time).sin();
+        let sine_v: Vec<f64> =
+            time_s.iter().map(|time| 0.5 * tone(*time, 1_000.0) + 0.02 * tone(*time, 8_000.0)).collect();
+        let cosine_v: Vec<f64> = time_s.iter().map(|time| 0.5 * tone(*time, 1_000.0)).collect();
+        let spectra = Spectra::of(Samples { time_s: &time_s, sine_v: &sine_v, cosine_v: &cosine_v }).unwrap();
+        assert!(spectra.samples == 50_000 && (spectra.spacing_hz - 2.0).abs() < 1e-9);
+        assert!(spectra.sine.lines.len() <= 1_000);
+        let [first, second] = spectra.sine.peaks[..] else { panic!("{:?}", spectra.sine.peaks) };
+        assert!((first.frequency_hz - 1_000.0).abs() < 0.1 && (first.amplitude_v - 0.5).abs() < 1e-3);
+        assert!((second.frequency_hz - 8_000.0).abs() < 0.1 && (second.amplitude_v - 0.02).abs() < 1e-4);
+        assert_eq!(spectra.cosine.peaks.len(), 1);
+        let drawn = spectra.sine.lines.iter().find(|(hertz, _)| (*hertz - 8_000.0).abs() < 1.0).unwrap();
+        assert!((drawn.1 - 0.02).abs() < 1e-4, "{drawn:?}");
+    }
+
+    #[test]
+    fn without_even_times_there_is_none() {
+        let column = vec![0.5; 20];
+        let none = Samples { time_s: &[], sine_v: &column, cosine_v: &column };
+        assert_eq!(Spectra::of(none), Err(SpectrumError::TooFew { samples: 0 }));
+        let mut time_s: Vec<f64> = (0..20).map(f64::from).collect();
+        time_s[10] = 10.5;
+        let uneven = Samples { time_s: &time_s, sine_v: &column, cosine_v: &column };
+        assert!(matches!(Spectra::of(uneven), Err(SpectrumError::Uneven { .. })));
+    }
+
+    #[test]
+    fn levels_are_of_the_rms_value() {
+        // A sine of √2 V peak has 1 V rms; a tenth of it is 20 dB less.
+        assert!(dbv(2.0_f64.sqrt()).abs() < 1e-12);
+        assert!((dbv(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);
+        assert_eq!(dbv(0.0), -160.0);
+    }
+}
