@@ -19,7 +19,7 @@ pub use act::Signals;
 pub use action::{Action, Done, Read};
 pub use live::{Source, SourceAction};
 pub use measurement::{Judge, Measurement, Origin, Place};
-pub use quantities::{Bound, Quantity, Unit, error_quantities, family_words, quantities};
+pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
 pub use scope::Scope;
 pub use spectra::{ChannelSpectrum, Spectra, dbv};

@@ -2,7 +2,6 @@
 //! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
 
 use super::Measurement;
-use crate::app::Text;
 use crate::signal::analysis::{Analysis, LEAST_OCTANTS};
 use crate::signal::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::signal::quality::{Family, Verdict};
@@ -117,16 +116,6 @@ impl Quantity {
         self.verdict = Some(verdict);
         self
     }
-}
-
-/// The name of a family, with the amplitudes that are good.
-pub fn family_words(family: Family) -> Text {
-    let (least, most) = family.limits().ok_v;
-    Text::new("quality.family_words").with("name", family.name()).with_number("least", 2.0 * least, 1).with_number(
-        "most",
-        2.0 * most,
-        1,
-    )
 }
 
 /// What was measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed. Nothing

@@ -32,8 +32,10 @@ const MOST: usize = 1 << 20;
 const LINES: usize = 1_000;
 /// Peaks that are named.
 const PEAKS: usize = 6;
-/// Below this share of the highest a peak is noise.
+/// A peak below this share of the highest is not worth a name.
 const LEAST_PEAK: f64 = 1e-4;
+/// A peak below so many times the median of all lines is noise: of a million lines of noise the highest has 4.5.
+const NOISE: f64 = 6.0;
 
 impl Spectra {
     /// The spectra of a capture.
@@ -67,8 +69,15 @@ fn thinned(spectrum: &Spectrum) -> ChannelSpectrum {
     let lines = amplitudes.chunks(stretch).enumerate().filter_map(highest).collect();
     let peaks = spectrum.peaks(PEAKS);
     let most = peaks.first().map_or(0.0, |peak| peak.amplitude_v);
-    let peaks = peaks.into_iter().filter(|peak| peak.amplitude_v >= LEAST_PEAK * most).collect();
+    let least = (LEAST_PEAK * most).max(NOISE * median(amplitudes));
+    let peaks = peaks.into_iter().filter(|peak| peak.amplitude_v >= least).collect();
     ChannelSpectrum { lines, peaks }
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// An amplitude as a level: decibels of its rms value above one volt.

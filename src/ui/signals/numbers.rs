@@ -9,6 +9,8 @@ use crate::ui::{Skin, icons};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.
 const WIDE: f32 = 390.0;
+/// Width from which limits have a column; else they are the tooltips of the marks.
+const LEAST: f32 = 350.0;
 /// What the column of limits takes of it.
 const LIMITS: f32 = 110.0;
 
@@ -20,8 +22,10 @@ pub(super) fn rows_ui(
     quantities: &[Quantity],
     compared: Option<&[Quantity]>,
 ) {
+    let room = ui.available_width();
     let bounded = quantities.iter().any(|quantity| quantity.bound.is_some());
-    let wide = ui.available_width() >= if bounded { WIDE } else { WIDE - LIMITS } && compared.is_none();
+    let wide = room >= if bounded { WIDE } else { WIDE - LIMITS } && compared.is_none();
+    let limits = room >= LEAST && compared.is_none();
     let between = if wide { skin.space.groups } else { skin.space.between };
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
@@ -38,13 +42,13 @@ pub(super) fn rows_ui(
                 if let Some(compared) = compared {
                     let other = compared.iter().find(|other| other.word == quantity.word);
                     comparison(ui, skin, quantity, other);
-                } else {
-                    let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit));
-                    ui.label(skin.caption(words.unwrap_or_default()));
+                }
+                let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit)).unwrap_or_default();
+                if limits {
+                    ui.label(skin.caption(&words));
                 }
                 if let Some(verdict) = quantity.verdict {
-                    let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit));
-                    mark(ui, skin, verdict, &words.unwrap_or_default());
+                    mark(ui, skin, verdict, &words);
                 }
                 ui.end_row();
             }

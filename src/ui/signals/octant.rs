@@ -30,6 +30,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, view: &mut View) {
 }
 
 fn tables(ui: &mut Ui, skin: &Skin) {
+    ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("octant.title").spacing([skin.space.groups, skin.space.inside]).show(ui, |ui| {
         for id in ["octant.intervals", "octant.largest", "octant.of_period", "octant.bits"] {
             ui.label(skin.caption(skin.say(id)));

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::{View, numbers, source};
-use crate::app::signals::{Action as Signals_, Measurement, Signals, family_words, forms, quantities};
+use crate::app::signals::{Action as Signals_, Measurement, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
 use crate::signal::diagnosis::{Finding, Severity};
@@ -165,7 +165,7 @@ fn values(
         let word = skin.say("quality.family");
         let mut family = signals.family;
         entry(ui, skin, &word, |ui| {
-            let families = Family::ALL.map(|own| (own, skin.words(&family_words(own))));
+            let families = Family::ALL.map(|own| (own, own.name().to_owned()));
             if choice(ui, &word, &mut family, families) {
                 actions.push(Action::Signals(Signals_::SetFamily(family)));
             }

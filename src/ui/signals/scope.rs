@@ -125,6 +125,7 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
 fn peaks(ui: &mut Ui, skin: &Skin, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
     ui.add_space(skin.space.inside);
+    ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("spectrum.title").spacing([skin.space.groups, skin.space.inside]).show(ui, |ui| {
         for id in ["spectrum.channel", "spectrum.frequency", "spectrum.amplitude", "spectrum.level", "spectrum.order"] {
             ui.label(skin.caption(skin.say(id)));
