@@ -83,7 +83,8 @@ pub struct Told {
     pub period: u64,
     /// Its place in the period, 0 to 31.
     pub step: u64,
-    /// How far it is ahead of the analogue position inside the period, in 1/32 period, offset and half step included.
+    /// How far it is ahead of the analogue position inside the period, in 1/32 period; offset and half step count in the
+    /// result only.
     pub difference_steps: f64,
     /// The fine position, or that there is none.
     pub result: Result<Synchronised, Unsynchronisable>,
@@ -125,15 +126,13 @@ impl Form {
         let last = synchroniser.periods * STEPS - 1;
         let absolute = number_or_hex("synchronise.absolute", &self.absolute, last)?;
         let phase = self.phase()?;
-        let half = if self.half_step { 0.5 } else { 0.0 };
         let step = absolute % STEPS;
-        let ahead = step as f64 + half - synchroniser.offset_steps;
         Ok(Told {
             absolute,
             phase,
             period: absolute / STEPS,
             step,
-            difference_steps: ahead - STEPS as f64 * phase.periods(),
+            difference_steps: step as f64 - STEPS as f64 * phase.periods(),
             result: synchroniser.synchronise(absolute, phase),
             periods,
         })
@@ -385,8 +384,10 @@ mod tests {
         assert!((page.measured().unwrap() - 2.5).abs() < 1e-9);
         page.act(Action::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
-        // d = 31 − 28 − 2.5
-        assert!((page.form.told().unwrap().difference_steps - 0.5).abs() < 0.01);
+        // d = 31 − 28; without the offset of 2.5 half a step remains.
+        let told = page.form.told().unwrap();
+        assert!((told.difference_steps - 3.0).abs() < 0.01);
+        assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);
         page.take(Rest { signals: None, ..at(10, 0.0) }, geometry);
         assert_eq!(page.problem.as_ref().unwrap().id(), "synchronise.no_channels");
         page.take(at(10, 90.0), Some(Geometry::Rotary { periods: 16, turns: 1 }));

@@ -9,25 +9,36 @@ use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Text};
 use crate::signal::quality::Verdict;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, icon_button, paragraph, row, text_entry, two_columns,
+    allowed_button, card, card_with, choice, entry, icon_button, paragraph, row, split, text_entry,
 };
 use crate::ui::{Skin, icons};
 
 /// Width of an entry for a number.
 const NUMBER: f32 = 96.0;
 /// Width of the column of buttons that read.
-const READ: f32 = 212.0;
+const READ: f32 = 176.0;
+/// Width of an entry for a position.
+const POSITION: f32 = 80.0;
+/// The least width for two columns.
+const COLUMNS: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
-    two_columns(
+    // Beside the long column where there are two, else at the end.
+    let wide = ui.available_width() >= COLUMNS;
+    split(
         ui,
         skin,
+        (0.5, COLUMNS),
         (&mut *actions, &mut form),
         |ui, (_, form)| {
             before(ui, skin, form);
             ui.add_space(skin.space.groups);
             motor(ui, skin, encoder, form);
+            if wide {
+                ui.add_space(skin.space.groups);
+                result::report_ui(ui, skin, encoder);
+            }
         },
         |ui, (actions, form)| {
             rest(ui, skin, encoder, form, actions);
@@ -41,8 +52,10 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             result::position_ui(ui, skin, encoder, form, actions);
         },
     );
-    ui.add_space(skin.space.groups);
-    result::report_ui(ui, skin, encoder);
+    if !wide {
+        ui.add_space(skin.space.groups);
+        result::report_ui(ui, skin, encoder);
+    }
     if form != encoder.commutation.form {
         actions.push(ask(encoder, Assistant::Edit(Box::new(form))));
     }
@@ -179,15 +192,14 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
     };
     ui.add_space(skin.space.inside);
     let reading = commutation.reading(slot);
-    entry(ui, skin, &skin.say(slot.word()), |ui| match reading {
-        Some(reading) => {
-            ui.label(skin.mono(skin.number(reading.fine_periods, 5)));
-            ui.label(skin.caption(skin.words(&kind_words(reading))));
-        }
-        None => {
-            ui.label(skin.mono("–").color(skin.palette.muted));
-        }
-    });
+    let shown = match reading {
+        Some(reading) => skin.mono(skin.number(reading.fine_periods, 5)),
+        None => skin.mono("–").color(skin.palette.muted),
+    };
+    row(ui, skin, &skin.say(slot.word()), shown);
+    if let Some(reading) = reading {
+        ui.label(skin.caption(skin.words(&kind_words(reading))));
+    }
     ui.horizontal_wrapped(|ui| {
         let allowed = may_read(commutation, encoder.is_ready());
         // Of one width, so that what is typed stands in one column.
@@ -200,7 +212,7 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
         });
         // What is typed for one place has to be told from what is typed for another.
         let label = format!("{} · {}", skin.say(slot.word()), skin.say("commutation.fine"));
-        let response = text_entry(ui, typed, NUMBER, &label, &skin.say("commutation.or_type"));
+        let response = text_entry(ui, typed, POSITION, &label, &skin.say("commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let filled = !typed.trim().is_empty();
         if icon_button(ui, filled, icons::CHECK, &skin.say(take)).clicked() || (enter && filled) {

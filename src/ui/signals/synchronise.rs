@@ -16,7 +16,9 @@ use crate::ui::{Skin, icons};
 /// Width of an entry.
 const ENTRY: f32 = 112.0;
 /// Side of the ring.
-const RING: f32 = 220.0;
+const RING: f32 = 200.0;
+/// Share of the left column, and the least width for two.
+const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 /// Draws the page.
 pub(super) fn page_ui(
@@ -29,25 +31,31 @@ pub(super) fn page_ui(
     let mut form = state.form.clone();
     // What is drawn beside the entries is what they come to now.
     let told = form.told();
+    // Two rows, so that also in one column the result stands next to what it comes from.
     split(
         ui,
         skin,
-        (0.42, 560.0),
+        COLUMNS,
+        (&mut form, &mut *actions),
+        |ui, (form, actions)| positions(ui, skin, form, state, told.as_ref().err(), encoder, actions),
+        |ui, _| {
+            if let Ok(told) = &told {
+                result(ui, skin, told);
+            }
+        },
+    );
+    ui.add_space(skin.space.groups);
+    split(
+        ui,
+        skin,
+        COLUMNS,
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
-            positions(ui, skin, form, state, told.as_ref().err(), encoder, actions);
-            ui.add_space(skin.space.groups);
             measured(ui, skin, state, actions);
             ui.add_space(skin.space.groups);
             counter(ui, skin, form);
         },
-        |ui, _| {
-            if let Ok(told) = &told {
-                result(ui, skin, told);
-                ui.add_space(skin.space.groups);
-            }
-            order(ui, skin);
-        },
+        |ui, _| order(ui, skin),
     );
     if form != state.form {
         actions.push(ask(Page::Edit(Box::new(form))));
@@ -172,7 +180,8 @@ fn numbers(ui: &mut Ui, skin: &Skin, told: &Told) {
     row(ui, skin, &skin.say("synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(skin, 1)));
     row(ui, skin, &skin.say("synchronise.difference"), number(told.difference_steps, 2, "/32"));
     if let Ok(fine) = told.result {
-        row(ui, skin, &skin.say("synchronise.correction"), skin.mono(format!("{:+}", fine.correction)));
+        let correction = if fine.correction == 0 { "0".to_owned() } else { format!("{:+}", fine.correction) };
+        row(ui, skin, &skin.say("synchronise.correction"), skin.mono(correction));
         row(ui, skin, &skin.say("synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
         row(ui, skin, &skin.say("synchronise.steps"), skin.mono(format!("{:X}h", fine.steps(16))));
     }
