@@ -29,9 +29,9 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let analysis = Analysis::of(samples).map_err(|error| failed(&explain::signal::analysis(path, &error)))?;
     let references_v = capture.references_v.as_ref().map(|(refsin, refcos)| (refsin.as_slice(), refcos.as_slice()));
     let record = Record { samples, references_v, periods: None };
-    let diagnosis = diagnose(&record, Ok(&analysis), Family::Hiperface);
+    let diagnosis = diagnose(&record, Ok(&analysis), &Family::Hiperface.limits());
     let findings: Vec<String> =
-        diagnosis.findings.iter().map(|finding| explain::signal::finding(finding).terminal()).collect();
+        diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal()).collect();
     output.show(&json(&analysis, &findings), &text(&analysis, &findings))?;
     Ok(Done::Well)
 }

@@ -5,7 +5,7 @@ use encoder_studio::signal::analysis::{Analysis, AnalysisError};
 use encoder_studio::signal::diagnosis::{Diagnosis, Record, What, diagnose};
 use encoder_studio::signal::nonlinearity::nonlinearity;
 use encoder_studio::signal::position_error::Samples;
-use encoder_studio::signal::quality::Family;
+use encoder_studio::signal::quality::Limits;
 use encoder_studio::signal::wires::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{References, Settings, Source};
 
@@ -24,7 +24,7 @@ fn diagnosed(settings: Settings) -> (Result<Analysis, AnalysisError>, Diagnosis)
     let analysis = Analysis::of(samples);
     let references_v = Some((wires.refsin_v.as_slice(), wires.refcos_v.as_slice()));
     let record = Record { samples, references_v, periods: Some(512) };
-    let told = diagnose(&record, analysis.as_ref(), Family::Hiperface);
+    let told = diagnose(&record, analysis.as_ref(), &Limits::HIPERFACE);
     (analysis, told)
 }
 

@@ -78,7 +78,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
 }
 
 /// What was found to look at in a signal.
-pub fn finding(finding: &Finding) -> Text {
+pub fn diagnosis(finding: &Finding) -> Text {
     let of = |id, which: Channel| {
         Text::new(id).with_text(
             "channel",
@@ -92,7 +92,7 @@ pub fn finding(finding: &Finding) -> Text {
         Text::new(id).with_number("millivolts", volts * 1e3, 1).with_number("percent", share * 100.0, 1)
     };
     match finding.what {
-        What::Limit(parameter) => limit(&parameter),
+        What::Limit(parameter) => self::finding(&parameter),
         What::Still => Text::new("diagnosis.still"),
         What::Same => Text::new("diagnosis.same"),
         What::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
@@ -160,9 +160,9 @@ fn decimals(value: f64) -> usize {
 }
 
 /// What of a signal's parameters is out of its limits.
-fn limit(parameter: &Parameter) -> Text {
+pub fn finding(finding: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
-    match *parameter {
+    match *finding {
         Parameter::Amplitude { volts, ok_v: (least, most), verdict } => {
             let id = if verdict == Verdict::Fault { "signal.amplitude_fault" } else { "signal.amplitude" };
             Text::new(id).with_number("volts", 2.0 * volts, 3).with_number("least", 2.0 * least, 1).with_number(
@@ -226,7 +226,7 @@ mod tests {
     fn a_finding_says_what_to_do_in_both_languages() {
         let said = |what| {
             let finding = Finding { severity: Severity::Warning, what };
-            [Language::English, Language::German].map(|language| super::finding(&finding).words(language))
+            [Language::English, Language::German].map(|language| diagnosis(&finding).words(language))
         };
         let drive = What::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };
         assert_eq!(

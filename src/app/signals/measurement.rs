@@ -139,7 +139,7 @@ fn samples(capture: &Capture) -> Samples<'_> {
 fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: Judge) -> Diagnosis {
     let references_v = capture.references_v.as_ref().map(|(sine, cosine)| (sine.as_slice(), cosine.as_slice()));
     let record = Record { samples: samples(capture), references_v, periods: judge.periods };
-    diagnose(&record, analysis.as_ref(), judge.family)
+    diagnose(&record, analysis.as_ref(), &judge.family.limits())
 }
 
 /// Samples spread over all of them. Not every so many, which could always hit the same place of the period.

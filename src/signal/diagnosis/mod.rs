@@ -15,7 +15,7 @@ pub use lines::Interference;
 use super::analysis::{Analysis, AnalysisError};
 use super::ellipse::{Channel, FitError};
 use super::position_error::Samples;
-use super::quality::{Family, Finding as OutOfLimits, Verdict, within};
+use super::quality::{Finding as OutOfLimits, Limits, Verdict, within};
 use super::wires::Wire;
 
 /// Hum and interference below this share of the amplitude are not told.
@@ -222,15 +222,15 @@ pub struct Diagnosis {
 }
 
 /// Looks at a capture and at what its analysis gave.
-pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, family: Family) -> Diagnosis {
+pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
     let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
-    levels(record, family, &mut say);
+    levels(record, limits, &mut say);
     match analysis {
         Err(error) => without_ellipse(record, error, &mut say),
         Ok(analysis) => {
             let amplitude = analysis.ellipse.amplitude_v;
-            parameters(analysis, family, &mut say);
+            parameters(analysis, limits, &mut say);
             let seen = lines::look(&record.samples, analysis);
             let noise_v = seen.as_ref().map_or(analysis.coverage.residual_rms * amplitude, |seen| seen.noise_v);
             disturbances(amplitude, noise_v, seen.as_ref(), &mut say);
@@ -260,9 +260,9 @@ fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-fn levels(record: &Record<'_>, family: Family, say: &mut dyn FnMut(Severity, What)) {
+fn levels(record: &Record<'_>, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
     let Some((refsin, refcos)) = record.references_v else { return };
-    let ok_v = family.limits().level_v;
+    let ok_v = limits.level_v;
     for (wire, values) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
         if let Some(volts) = mean(values)
             && !within(volts, ok_v)
@@ -304,7 +304,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
 }
 
 /// The ellipse against its limits. A channel that has lost a wire explains amplitude and gain.
-fn parameters(analysis: &Analysis, family: Family, say: &mut dyn FnMut(Severity, What)) {
+fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {
         Some((Channel::Sine, 1.0 / ratio))
@@ -316,7 +316,7 @@ fn parameters(analysis: &Analysis, family: Family, say: &mut dyn FnMut(Severity,
     if let Some((channel, share)) = half {
         say(Severity::Fault, What::Half { channel, share });
     }
-    for found in family.limits().judge(&analysis.ellipse, analysis.coverage.residual_rms) {
+    for found in limits.judge(&analysis.ellipse, analysis.coverage.residual_rms) {
         let explained = matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_));
         let severity = match found {
             OutOfLimits::Amplitude { verdict: Verdict::Fault, .. } => Severity::Fault,

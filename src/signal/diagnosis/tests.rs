@@ -56,7 +56,7 @@ impl Made {
 
     fn diagnosed(&self) -> Diagnosis {
         let record = self.record();
-        diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Hiperface)
+        diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::HIPERFACE)
     }
 
     /// The one finding.
@@ -255,7 +255,7 @@ fn levels_of_the_references_are_judged_by_the_family() {
     let What::Level { wire: Wire::Refcos, volts, ok_v: (2.0, 3.0) } = finding.what else { panic!("{finding:?}") };
     near(volts, 3.2, 1e-9);
     let record = capture.record();
-    let narrow = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Ttk70);
+    let narrow = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::TTK70);
     assert_eq!(narrow.findings.len(), 2);
 }
 
@@ -281,7 +281,7 @@ fn the_worst_comes_first_and_limits_are_the_family_s() {
     let severities: Vec<Severity> = capture.diagnosed().findings.iter().map(|finding| finding.severity).collect();
     assert_eq!(severities, [Severity::Warning, Severity::Warning, Severity::Notice]);
     let record = capture.record();
-    let wide = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::AfsAfm60);
+    let wide = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::AFS_AFM60);
     assert_eq!(wide.findings.len(), 2, "0.84 V is good there: {wide:?}");
 }
 
@@ -339,7 +339,7 @@ fn nothing_to_look_at_is_no_disaster() {
             references_v: Some((&[], &[])),
             periods: Some(0),
         };
-        let told = diagnose(&record, Analysis::of(record.samples).as_ref(), Family::Hiperface);
+        let told = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::HIPERFACE);
         assert_eq!(told, Diagnosis::default());
     }
     let mut capture = made(steady, |_, _, signal| signal);

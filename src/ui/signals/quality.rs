@@ -121,7 +121,7 @@ fn finding_ui(ui: &mut Ui, skin: &Skin, finding: &Finding) {
         Severity::Warning => (icons::WARNING, palette.warn),
         Severity::Fault => (icons::X_CIRCLE, palette.bad),
     };
-    line(ui, icon, colour, skin.words(&explain::signal::finding(finding)));
+    line(ui, icon, colour, skin.words(&explain::signal::diagnosis(finding)));
 }
 
 /// What is wrong, in words.
