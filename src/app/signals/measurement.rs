@@ -1,4 +1,4 @@
-//! A capture with all that is computed from it once, on a task: the analysis, the diagnosis, the spectra and the points of
+//! A capture with all that is computed from it once, on a task: the analysis, the diagnosis, the spectra and the picture of
 //! its Lissajous figure.
 
 use std::path::{Path, PathBuf};
@@ -9,6 +9,8 @@ use crate::app::{Language, Text, explain};
 use crate::signal::analysis::{Analysis, AnalysisError};
 use crate::signal::capture::Capture;
 use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
+use crate::signal::ellipse::Correction;
+use crate::signal::lissajous::{Density, Square};
 use crate::signal::position_error::Samples;
 use crate::signal::quality::Family;
 use crate::signal::spectrum::SpectrumError;
@@ -74,8 +76,10 @@ pub struct Measurement {
     pub levels_v: Option<(f64, f64)>,
     /// Amplitudes over frequency, or why there are none.
     pub spectra: Result<Spectra, SpectrumError>,
-    /// Samples as (cosine, sine) in volts, of many as many as a picture can show.
-    pub points: Vec<(f64, f64)>,
+    /// All samples as a picture, sine over cosine; `None` where they are too large for one.
+    pub raw: Option<Density>,
+    /// All of them after the correction of the ellipse; `None` without one.
+    pub corrected: Option<Density>,
 }
 
 /// By what a signal is judged.
@@ -87,8 +91,13 @@ pub struct Judge {
     pub periods: Option<u32>,
 }
 
-/// Points of a Lissajous figure that tell more than fewer do.
-const POINTS: usize = 4_000;
+/// Cells of a side of a picture: of few samples each is to be seen.
+const CELLS: usize = 240;
+const CELLS_OF_FEW: usize = 120;
+/// Samples that are few.
+const FEW: usize = 2_000;
+/// Volts from the middle to the edge at least: all rings have room.
+const LEAST_HALF_V: f64 = 0.75;
 
 impl Measurement {
     /// Measures a capture; takes about 100 ms for a million samples.
@@ -101,7 +110,8 @@ impl Measurement {
             judge,
             levels_v: capture.references_v.as_ref().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
-            points: spread(samples.cosine_v, samples.sine_v),
+            raw: density(samples, None),
+            corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
             analysis,
             origin,
             capture,
@@ -119,17 +129,6 @@ impl Measurement {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
     }
-
-    /// What they are after the correction of the ellipse; nothing without one.
-    pub fn corrected_points(&self) -> Vec<(f64, f64)> {
-        let Ok(analysis) = &self.analysis else { return Vec::new() };
-        let correction = analysis.ellipse.correction();
-        let corrected = |(cosine, sine): &(f64, f64)| {
-            let (sine, cosine) = correction.apply(*sine, *cosine);
-            (cosine, sine)
-        };
-        self.points.iter().map(corrected).collect()
-    }
 }
 
 fn samples(capture: &Capture) -> Samples<'_> {
@@ -142,17 +141,26 @@ fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judg
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
 }
 
-/// Samples spread over all of them. Not every so many, which could always hit the same place of the period.
-fn spread(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
-    /// The golden section: its multiples fill the unit interval evenly.
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let count = x.len().min(y.len());
-    let pair = |at: usize| x.get(at).copied().zip(y.get(at).copied());
-    if count <= POINTS {
-        return (0..count).filter_map(pair).collect();
+/// A picture of all samples, around zero, corrected or as they are.
+fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
+    /// Samples that are corrected at once.
+    const PORTION: usize = 1 << 14;
+    let Samples { sine_v, cosine_v, .. } = samples;
+    let most = sine_v.iter().chain(cosine_v).fold(0.0, |most: f64, volts| most.max(volts.abs()));
+    // In steps, so that a live picture does not breathe.
+    let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(LEAST_HALF_V);
+    let side = if sine_v.len() > FEW { CELLS } else { CELLS_OF_FEW };
+    let mut density = Density::new(Square::centred(half_v), side)?;
+    let Some(correction) = correction else {
+        density.add(sine_v, cosine_v);
+        return Some(density);
+    };
+    for (sine, cosine) in sine_v.chunks(PORTION).zip(cosine_v.chunks(PORTION)) {
+        let pairs = sine.iter().zip(cosine).map(|(sine, cosine)| correction.apply(*sine, *cosine));
+        let (sine, cosine): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        density.add(&sine, &cosine);
     }
-    let place = |at: usize| ((at as f64 + (at as f64 * GOLDEN).fract()) * count as f64 / POINTS as f64) as usize;
-    (0..POINTS).filter_map(|at| pair(place(at))).collect()
+    Some(density)
 }
 
 #[cfg(test)]
@@ -160,19 +168,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn many_samples_are_spread_and_few_are_all_there() {
-        let few: Vec<f64> = (0..10).map(f64::from).collect();
-        assert_eq!(spread(&few, &few).len(), 10);
-        // A period of 250 samples, of which every 250th would be one point.
-        let angle = |at: i32| f64::from(at) / 250.0 * std::f64::consts::TAU;
-        let x: Vec<f64> = (0..1_000_000).map(|at| angle(at).cos()).collect();
-        let y: Vec<f64> = (0..1_000_000).map(|at| angle(at).sin()).collect();
-        let points = spread(&x, &y);
-        let mut sectors = [0; 16];
-        for (x, y) in &points {
-            sectors[((y.atan2(*x) / std::f64::consts::TAU).rem_euclid(1.0) * 16.0) as usize % 16] += 1;
+    fn every_sample_is_in_the_picture_and_the_corrected_ones_lie_on_a_circle() {
+        let angle = |at: i32| f64::from(at) / 10_000.0 * std::f64::consts::TAU;
+        let capture = Capture {
+            sine_v: (0..10_000).map(|at| 0.3 * angle(at).sin() + 0.1).collect(),
+            cosine_v: (0..10_000).map(|at| 0.5 * angle(at).cos() - 0.05).collect(),
+            ..Capture::default()
+        };
+        let measurement = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default());
+        for density in [&measurement.raw, &measurement.corrected] {
+            let density = density.as_ref().unwrap();
+            assert_eq!(density.counts().iter().sum::<u32>(), 10_000);
+            assert_eq!((density.side(), density.square().half_v), (240, 0.75));
         }
-        assert_eq!(points.len(), 4000);
-        assert!(sectors.iter().all(|count| (150..=350).contains(count)), "{sectors:?}");
+        for lengths in measurement.corrected.as_ref().unwrap().lengths() {
+            assert!((lengths.least_v - 0.5).abs() < 1e-6 && (lengths.most_v - 0.5).abs() < 1e-6, "{lengths:?}");
+        }
     }
 }

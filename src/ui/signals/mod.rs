@@ -81,6 +81,7 @@ pub(in crate::ui) struct View {
     source: source::View,
     periods: Draft,
     corrected: bool,
+    pictures: [quality::Picture; 2],
     octant: octant::View,
     scope: scope::ScopeView,
     input_circuit: Circuit,

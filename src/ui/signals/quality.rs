@@ -1,15 +1,18 @@
 //! Is the signal good: the Lissajous figure, what is wrong in words, and every number beside its limit.
 
-use egui::{RichText, Ui};
+use std::sync::Arc;
+
+use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{View, numbers, source};
 use crate::app::signals::{Action as Signals_, Measurement, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
 use crate::signal::diagnosis::{Finding, Severity};
+use crate::signal::lissajous::Square;
 use crate::signal::quality::Family;
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
-use crate::ui::widgets::{Figure, Lissajous, lissajous};
+use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Skin, icons};
 
 /// Periods that encoders have.
@@ -36,7 +39,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
     );
 }
 
-fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement, view: &mut View) {
+fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measurement>, view: &mut View) {
     let analysed = measurement.analysis.as_ref().ok();
     let corrected = view.corrected && analysed.is_some();
     let aside = |ui: &mut Ui| {
@@ -58,11 +61,19 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement
                 .with_number("longest", analysis.coverage.vector_v.1, 3)
                 .with_number("least", least, 2)
                 .with_number("most", most, 2),
-            None => Text::new("quality.lissajous_bare").with("samples", measurement.points.len()),
+            None => Text::new("quality.lissajous_bare").with("samples", measurement.capture.sine_v.len()),
         };
-        let compared = signals.comparison().map(|own| figure_of(own, corrected, (1, true)));
-        let figures: Vec<Figure> =
-            compared.into_iter().chain([figure_of(measurement, corrected, (0, false))]).collect();
+        let [own, other] = &mut view.pictures;
+        if signals.comparison().is_none() {
+            *other = Picture::default();
+        }
+        let compared = signals.comparison().map(|kept| {
+            let picture = other.of(ui, skin, kept, corrected, 1);
+            figure_of(kept, corrected, picture, (1, true))
+        });
+        let picture = own.of(ui, skin, measurement, corrected, 0);
+        let shown = figure_of(measurement, corrected, picture, (0, false));
+        let figures: Vec<Figure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
         let lissajous_ = Lissajous {
             figures: &figures,
@@ -76,7 +87,41 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement
     });
 }
 
-fn figure_of(measurement: &Measurement, corrected: bool, (colour, dashed): (usize, bool)) -> Figure {
+/// The samples of a capture as a texture, kept until they or the colour are others.
+#[derive(Default)]
+pub(super) struct Picture(Option<(Arc<Measurement>, bool, Color32, TextureHandle)>);
+
+impl Picture {
+    fn of(
+        &mut self,
+        ui: &Ui,
+        skin: &Skin,
+        measurement: &Arc<Measurement>,
+        corrected: bool,
+        colour: usize,
+    ) -> Option<(TextureId, Square)> {
+        let colour = series(skin, colour);
+        let density = if corrected { &measurement.corrected } else { &measurement.raw };
+        let density = density.as_ref()?;
+        let same = |(own, own_corrected, own_colour, _): &(Arc<Measurement>, bool, Color32, TextureHandle)| {
+            Arc::ptr_eq(own, measurement) && *own_corrected == corrected && *own_colour == colour
+        };
+        if !self.0.as_ref().is_some_and(same) {
+            let image = phosphor(density, colour);
+            let texture = ui.ctx().load_texture("", image, egui::TextureOptions::LINEAR);
+            self.0 = Some((measurement.clone(), corrected, colour, texture));
+        }
+        let (.., texture) = self.0.as_ref()?;
+        Some((texture.id(), density.square()))
+    }
+}
+
+fn figure_of(
+    measurement: &Measurement,
+    corrected: bool,
+    picture: Option<(TextureId, Square)>,
+    (colour, dashed): (usize, bool),
+) -> Figure {
     let curve = |analysis: &Analysis| {
         let angle = |at: usize| at as f64 / CURVE as f64 * std::f64::consts::TAU;
         let point = |at: usize| match corrected {
@@ -88,12 +133,7 @@ fn figure_of(measurement: &Measurement, corrected: bool, (colour, dashed): (usiz
         };
         (0..=CURVE).map(point).collect()
     };
-    Figure {
-        points: if corrected { measurement.corrected_points() } else { measurement.points.clone() },
-        curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(),
-        colour,
-        dashed,
-    }
+    Figure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
 /// Why there is nothing to be measured in a capture, and what there is to look at.

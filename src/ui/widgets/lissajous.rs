@@ -4,14 +4,17 @@
 //! * **Keyboard**: nothing to operate; Tab passes it.
 //! * **Pointer**: the place under it is told in volts, as length and as angle.
 //! * **Accessible**: an image with the label and the value given.
-//! * **Painting**: samples as dots, the fitted ellipse as a line, the good ring as a band between two lines, the limits of
+//! * **Painting**: samples as a density, brighter where there are more, the fitted ellipse as a line, the good ring as a band between two lines, the limits of
 //!   a fault dashed; zero in the middle, the same scale for both axes.
 
 use egui::accesskit::Role;
 use egui::epaint::{Mesh, PathStroke};
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+use egui::{
+    Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, TextureId, Ui, Vec2, WidgetInfo,
+};
 
 use crate::app::Text;
+use crate::signal::lissajous::{Density, Square};
 use crate::ui::Skin;
 use crate::ui::widgets::series;
 
@@ -33,9 +36,9 @@ pub struct Lissajous<'a> {
 /// One signal.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// Samples as (cosine, sine) in volts.
-    pub points: Vec<(f64, f64)>,
-    /// The fitted curve, closed, likewise.
+    /// Samples as a picture in the colour of the series, and the square that it shows.
+    pub picture: Option<(TextureId, Square)>,
+    /// The fitted curve, closed, as (cosine, sine) in volts.
     pub curve: Vec<(f64, f64)>,
     /// Which of the series' colours.
     pub colour: usize,
@@ -89,7 +92,7 @@ pub fn lissajous(ui: &mut Ui, skin: &Skin, figure: &Lissajous<'_>, side: f32) {
     grid(&painter, skin, &place);
     rings(&painter, skin, &place, figure);
     for own in figure.figures {
-        dots(&painter, &place, own, series(skin, own.colour));
+        samples(&painter, &place, own);
     }
     for own in figure.figures {
         curve(&painter, &place, own, series(skin, own.colour));
@@ -99,12 +102,28 @@ pub fn lissajous(ui: &mut Ui, skin: &Skin, figure: &Lissajous<'_>, side: f32) {
     }
 }
 
-/// Volts from the middle to the edge: all points, and the good ring in any case.
+/// The picture of a density in one colour: brighter where there are more samples, and none invisible.
+pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
+    /// What a single sample has of the full brightness.
+    const LEAST: f32 = 0.4;
+    let side = density.side();
+    let scale = f64::from(density.most()).ln_1p().max(f64::MIN_POSITIVE);
+    let brightness = |count: u32| match count {
+        0 => 0.0,
+        count => LEAST + (1.0 - LEAST) * (f64::from(count).ln_1p() / scale) as f32,
+    };
+    // Pictures begin at the top, densities at the bottom.
+    let rows = density.counts().chunks(side).rev();
+    let pixels = rows.flatten().map(|count| colour.gamma_multiply(brightness(*count))).collect();
+    ColorImage::new([side, side], pixels)
+}
+
+/// Volts from the middle to the edge: all samples and curves, and the good ring in any case.
 fn range(figure: &Lissajous<'_>) -> f64 {
-    let all = figure.figures.iter().flat_map(|own| own.points.iter().chain(&own.curve));
-    let most = all.map(|(x, y)| x.abs().max(y.abs())).filter(|volts| volts.is_finite()).fold(figure.ok_v.1, f64::max);
-    // In steps, so that a live picture does not breathe.
-    (most * 1.12 * 20.0).ceil() / 20.0
+    let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
+    let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));
+    let curves = curves.filter(|volts| volts.is_finite()).map(|volts| volts * 1.05);
+    curves.chain(pictures).fold(figure.ok_v.1 * 1.12, f64::max)
 }
 
 fn grid(painter: &Painter, skin: &Skin, place: &Place) {
@@ -156,19 +175,13 @@ fn rings(painter: &Painter, skin: &Skin, place: &Place, figure: &Lissajous<'_>) 
     }
 }
 
-fn dots(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {
-    // Few points have to be seen one by one, many together.
-    let (half, strength) = match figure.points.len() {
-        0..=1000 => (1.25, 0.85),
-        1001..=4000 => (1.0, 0.6),
-        _ => (0.75, 0.45),
-    };
-    let colour = colour.gamma_multiply(strength);
-    let mut mesh = Mesh::default();
-    for point in &figure.points {
-        mesh.add_colored_rect(Rect::from_center_size(place.at(*point), Vec2::splat(2.0 * half)), colour);
-    }
-    painter.add(Shape::mesh(mesh));
+fn samples(painter: &Painter, place: &Place, figure: &Figure) {
+    let Some((texture, square)) = figure.picture else { return };
+    let Square { cosine_v, sine_v, half_v } = square;
+    let corners = [(cosine_v - half_v, sine_v + half_v), (cosine_v + half_v, sine_v - half_v)];
+    let rect = Rect::from_two_pos(place.at(corners[0]), place.at(corners[1]));
+    let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    painter.image(texture, rect, whole, Color32::WHITE);
 }
 
 fn curve(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {

@@ -15,7 +15,7 @@ use super::Skin;
 pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
-pub use lissajous::{Figure, Lissajous, lissajous};
+pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use step_ring::{StepRing, step_ring};
 pub use typed_view::typed_view;
 
