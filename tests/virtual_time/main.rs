@@ -12,6 +12,7 @@ mod noise;
 mod plan_rules;
 mod polling;
 mod position;
+mod rest;
 mod settings;
 mod support;
 mod survey;

@@ -131,6 +131,10 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
     let found = commutation::stored(&desk.encoder().staged);
     assert!(!found[0].edited && found[0].record.unwrap().confirmed);
+    // The readings are still there: the same once more is no edit.
+    desk.assist(Assistant::Store);
+    assert!(desk.edits().is_empty());
+    assert_eq!(desk.times_told("commutation.same"), 1);
     let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
     report.iter().for_each(texts::check);
     let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal).collect();

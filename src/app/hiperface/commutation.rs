@@ -182,3 +182,46 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
         Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
     Ok(Reading { fine_periods: told.periods(), kind, raw: Some(raw) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::hiperface::Signals;
+
+    const SKM36: Option<Geometry> = Some(Geometry::Rotary { periods: 128, turns: 4096 });
+
+    fn rest(raw: u32, volts: Option<(f64, f64)>) -> Rest {
+        Rest { raw, valid: true, signals: volts.map(|(sine_v, cosine_v)| Signals { sine_v, cosine_v }) }
+    }
+
+    fn read(source: Source, phase: &str, rest: Rest) -> Result<Reading, &'static str> {
+        let form = Form { source, phase: phase.to_owned(), ..Form::default() };
+        let commutation = Commutation { form, ..Commutation::default() };
+        commutation.reading_of(rest, SKM36).map_err(|text| text.id())
+    }
+
+    #[test]
+    fn a_reading_is_as_fine_as_the_encoder_lets_it_be() {
+        let without = read(Source::Signals, "", rest(40, None)).unwrap();
+        assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, Kind::Absolute, Some(40)));
+        let with = read(Source::Signals, "", rest(40, Some((0.5, 0.0)))).unwrap();
+        assert_eq!(with.fine_periods, 1.25);
+        assert_eq!(read(Source::Absolute, "", rest(40, Some((0.5, 0.0)))).unwrap().kind, Kind::Absolute);
+        let typed = read(Source::Typed, "0,27", rest(40, None)).unwrap();
+        assert!((typed.fine_periods - 1.27).abs() < 1e-12);
+        // SKM36: the last step of the range and a phase beyond its end.
+        let around = read(Source::Typed, "0.01", rest(0x00FF_FFFF, None)).unwrap();
+        assert!((around.fine_periods - 0.01).abs() < 1e-12, "{around:?}");
+    }
+
+    #[test]
+    fn what_is_no_position_is_refused() {
+        assert_eq!(read(Source::Absolute, "", Rest { valid: false, ..rest(40, None) }), Err("commutation.invalid"));
+        for volts in [(0.0, 0.0), (0.1, 0.1), (0.7, 0.7), (f64::NAN, 0.5)] {
+            assert_eq!(read(Source::Signals, "", rest(40, Some(volts))), Err("commutation.no_signal"), "{volts:?}");
+        }
+        assert_eq!(read(Source::Typed, "", rest(40, None)), Err("entry.missing"));
+        assert_eq!(read(Source::Typed, "0.765625", rest(40, None)), Err("commutation.half_apart"), "8.5 + 16 steps");
+        assert_eq!(read(Source::Typed, "0.75", rest(40, None)), Err("commutation.far_apart"), "15.5 steps");
+    }
+}

@@ -22,7 +22,9 @@ impl Encoder {
                     self.put(field, address, &bytes, services);
                     let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
                     if (address..).zip(&bytes).all(is_there) {
-                        let text = Text::new("commutation.staged").with("field", field).with("address", address);
+                        let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
+                        let id = if edited { "commutation.staged" } else { "commutation.same" };
+                        let text = Text::new(id).with("field", field).with("address", address);
                         services.tell(Severity::Good, vec![text], Some(&self.name()));
                     }
                 }

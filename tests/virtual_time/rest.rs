@@ -1,0 +1,50 @@
+//! The shaft at rest: position, sine and cosine read together, and only while it stands still.
+
+use encoder_studio::device::hiperface::{Error, Rest, Signals};
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::hiperface::{Command, StatusCode};
+use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError};
+
+use crate::support::Desk;
+
+fn rest(desk: &mut Desk) -> Result<Rest, JobError> {
+    match desk.run(HiperfaceJob::Rest)? {
+        HiperfaceOutput::Rest(rest) => Ok(rest),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Three quarters of a period: counts 409 and 511, of which 511.5 are 0 V and 1023 are 5 V.
+#[test]
+fn both_channels_are_read_between_two_looks_at_the_position() {
+    let mut desk = Desk::new("position=3224");
+    let Rest { raw, valid, signals } = rest(&mut desk).unwrap();
+    assert_eq!((raw, valid), (3224, true));
+    let Signals { sine_v, cosine_v } = signals.unwrap();
+    assert!((sine_v + 0.500_978).abs() < 1e-6 && (cosine_v + 0.002_444).abs() < 1e-6, "{sine_v} {cosine_v}");
+    let tap = desk.tap();
+    assert_eq!((tap.count(Command::ReadPosition), tap.count(Command::ReadAnalogue)), (4, 8));
+    assert_eq!(tap.count(Command::SetPosition) + tap.count(Command::StoreData), 0);
+}
+
+#[test]
+fn a_shaft_that_moves_or_has_no_position_is_refused() {
+    for rpm in ["60", "-0.5"] {
+        let error = rest(&mut Desk::new(&format!("rpm={rpm}"))).unwrap_err();
+        assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");
+    }
+    let error = rest(&mut Desk::new("rpm=9000")).unwrap_err();
+    assert!(matches!(&error, JobError::Device(error) if error.is_rejection(StatusCode::TOO_FAST)), "{error:?}");
+}
+
+/// Slow enough to look at rest for two tenths of a second, and not for the whole reading.
+#[test]
+fn a_shaft_that_creeps_is_found_out_at_the_end() {
+    let mut desk = Desk::new("position=100");
+    let now = desk.clock.now();
+    // 6.7 steps of 1/4096 turn a second: one while the shaft is watched, two more by the end.
+    desk.bus().encoder_mut(0).unwrap().set_rpm(now, 6.7 * 60.0 / 4096.0);
+    let error = rest(&mut desk).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");
+    assert_eq!(desk.tap().count(Command::ReadAnalogue), 8, "it stood still at first");
+}
