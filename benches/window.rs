@@ -1,10 +1,11 @@
 //! How soon the window is there, and what it costs to keep it open: the program beside a window with nothing in it, both
-//! drawn in software. Needs a display, or Xvfb; says so where there is neither.
+//! drawn in software; and what a picture takes with forty million samples in the plot. Needs a display, or Xvfb; says so where there is neither.
 //!
 //! `cargo bench --bench window`
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
 
+use std::io::Write as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
@@ -15,6 +16,10 @@ const IDLE: Duration = Duration::from_secs(10);
 fn main() {
     if std::env::args().any(|argument| argument == "minimal") {
         minimal();
+        return;
+    }
+    if std::env::args().any(|argument| argument == "plot") {
+        plot();
         return;
     }
     let Some(display) = Display::find() else {
@@ -48,6 +53,102 @@ fn main() {
     thread::sleep(Duration::from_secs(3));
     println!("idle, a profile open:                   {:.2} % of a processor", busy(&child));
     end(&mut child);
+    let capture = folder.path().join("capture.csv");
+    write_capture(&capture);
+    let mut child = display.start(own.to_str().unwrap(), &["plot"], folder.path());
+    let result = folder.path().join("plot.txt");
+    wait_for_up_to(Duration::from_secs(300), || {
+        fs::read_to_string(&result).ok().filter(|text| text.ends_with('\n')).map(|_| 0)
+    });
+    print!("{}", fs::read_to_string(&result).unwrap());
+    end(&mut child);
+}
+
+/// Four lines of ten million samples: sine, cosine, REFSIN, REFCOS, at a microsecond each.
+const SAMPLES: usize = 10_000_000;
+
+fn write_capture(path: &std::path::Path) {
+    let mut file = std::io::BufWriter::new(fs::File::create(path).unwrap());
+    writeln!(file, "time [s],SIN [V],REFSIN [V],COS [V],REFCOS [V]").unwrap();
+    for at in 0..SAMPLES {
+        let angle = at as f64 * 1e-3;
+        let noise = ((at.wrapping_mul(2_654_435_761) >> 16) % 1000) as f64 * 1e-5;
+        let (sine, cosine) = (2.5 + 0.5 * angle.sin() + noise, 2.5 + 0.5 * angle.cos() - noise);
+        writeln!(file, "{:.6},{sine:.4},2.5,{cosine:.4},2.5", at as f64 * 1e-6).unwrap();
+    }
+}
+
+/// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
+fn plot() {
+    use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder, signals};
+    use encoder_studio::signal::Time;
+    use encoder_studio::store::Store;
+    use encoder_studio::ui::{Window, install_fonts};
+
+    const PICTURES: usize = 150;
+    struct Plotting {
+        window: Window,
+        /// Nanoseconds since the program began, of each picture.
+        times: Vec<Instant>,
+    }
+    impl eframe::App for Plotting {
+        fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+            let studio = self.window.studio();
+            if studio.signals.measurement().is_some() {
+                self.times.push(Instant::now());
+                let span = SAMPLES as i64 * 1000;
+                let share = [1.0, 0.5, 0.1, 1e-3][self.times.len() % 4];
+                let length = (span as f64 * share) as i64;
+                let from = (span - length) / 300 * (self.times.len() % 300) as i64;
+                let (from, to) = (Time::from_nanoseconds(from), Time::from_nanoseconds(from + length));
+                let mailbox = studio.mailbox();
+                mailbox.send(Action::Recorder(Desk::Signals, recorder::Action::Look(from, to)));
+                if self.times.len() == 1 {
+                    let lines = studio.signals.scope().recorder.lines();
+                    for (at, line) in lines.iter().enumerate() {
+                        // Sine, cosine, and both references.
+                        let shown = [0, 1, 4, 6].contains(&at);
+                        mailbox.send(Action::Recorder(Desk::Signals, recorder::Action::Show(line.id, shown)));
+                    }
+                }
+            }
+            self.window.draw(ui);
+            ui.ctx().request_repaint();
+            if self.times.len() > PICTURES {
+                // The first ones lay out letters and fill the memory.
+                let mut took: Vec<u64> =
+                    self.times.windows(2).skip(20).map(|pair| (pair[1] - pair[0]).as_micros() as u64).collect();
+                let folder = std::env::var("XDG_DATA_HOME").unwrap();
+                let median = median(&mut took) as f64 / 1e3;
+                let most = took[took.len() - 1] as f64 / 1e3;
+                let text = format!(
+                    "the window with 4 × 10 M samples:       {median:.1} ms a picture, median, {most:.1} at most\n"
+                );
+                fs::write(format!("{folder}/plot.txt"), text).unwrap();
+                self.times.clear();
+                std::process::exit(0);
+            }
+        }
+    }
+    let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
+    let mut studio = Studio::new(World::real(Store::at(&folder)), std::sync::Arc::new(|| {}));
+    studio.begin(None, None);
+    studio.act(Action::Signals(signals::Action::Open(folder.join("capture.csv"))));
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]),
+        renderer: eframe::Renderer::Glow,
+        ..Default::default()
+    };
+    let look = Look::built_in().unwrap();
+    eframe::run_native(
+        "plot",
+        options,
+        Box::new(move |cc| {
+            install_fonts(&cc.egui_ctx);
+            Ok(Box::new(Plotting { window: Window::new(studio, look), times: Vec::new() }))
+        }),
+    )
+    .unwrap();
 }
 
 /// The window that does nothing: what eframe, the driver and the X server need in any case.
@@ -74,13 +175,17 @@ fn first_picture(log: &str) -> Option<u64> {
     rest.split_once(" ms")?.0.parse().ok()
 }
 
-fn wait_for(mut look: impl FnMut() -> Option<u64>) -> u64 {
+fn wait_for(look: impl FnMut() -> Option<u64>) -> u64 {
+    wait_for_up_to(Duration::from_secs(20), look)
+}
+
+fn wait_for_up_to(patience: Duration, mut look: impl FnMut() -> Option<u64>) -> u64 {
     let began = Instant::now();
     loop {
         if let Some(found) = look() {
             return found;
         }
-        assert!(began.elapsed() < Duration::from_secs(20), "nothing in 20 s");
+        assert!(began.elapsed() < patience, "nothing in {patience:?}");
         thread::sleep(Duration::from_millis(5));
     }
 }
