@@ -164,11 +164,6 @@ pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
     Argument::Number(format!("{value:.decimals$}")).said(Place::Window(language))
 }
 
-/// A number as a person types it, with a point or a comma before the decimals; finite.
-pub fn number(text: &str) -> Option<f64> {
-    text.trim().replace(',', ".").replace('−', "-").parse().ok().filter(|number: &f64| number.is_finite())
-}
-
 impl Texts {
     /// The table's source.
     pub const SOURCE: &'static str = include_str!("../../assets/texts.ron");

@@ -22,13 +22,7 @@ pub fn periods(text: &str) -> Result<u32, Text> {
 /// # Errors
 /// In words.
 pub fn number(text: &str) -> Result<f64, Text> {
-    let refused = || Text::new("signals.bad_number").with("entry", text);
-    let plain = text.trim().replace(',', ".");
-    // The parser would take words for infinity.
-    if !plain.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E')) {
-        return Err(refused());
-    }
-    plain.parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(refused)
+    crate::app::number(text).ok_or_else(|| Text::new("signals.bad_number").with("entry", text))
 }
 
 /// Volts in one unit of a table.
