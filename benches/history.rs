@@ -90,7 +90,9 @@ impl Naive {
     }
 }
 
-/// Both in turns. The worst stall is the longest batch that is long in every round: what the machine does beside is not.
+/// Both in turns, and after them the same bytes copied into memory that the system has to give first, which is what keeping
+/// them costs at least. The worst stall is the longest batch that is long in every round: what the machine does beside is
+/// not.
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;
@@ -125,6 +127,29 @@ fn append(batch: usize) {
     println!("append {SIGNALS} columns in batches of {batch}, median of {ROUNDS}, a value:");
     println!("  plain vectors {naive:6.2} ns, worst stall {naive_worst:8.1} µs");
     println!("  history       {ours:6.2} ns, worst stall {worst:8.1} µs, {:.2} × the time", ours / naive);
+    let (copy, copy_worst) = copies(&times(0, batch), &columns, batches);
+    println!("  a bare copy   {:6.2} ns, worst stall {:8.1} µs", each(copy), micros(copy_worst));
+}
+
+/// All batches, median, and the worst one.
+fn copies(times: &[Time], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
+    let mut least = vec![Duration::MAX; batches];
+    let mut totals: Vec<Duration> = (0..ROUNDS)
+        .map(|_| {
+            let mut kept = Vec::with_capacity(batches);
+            let mut total = Duration::ZERO;
+            for least in &mut least {
+                let began = Instant::now();
+                kept.push((times.to_vec(), columns.to_vec()));
+                let took = began.elapsed();
+                *least = took.min(*least);
+                total += took;
+            }
+            black_box(kept);
+            total
+        })
+        .collect();
+    (median(&mut totals), least.into_iter().max().unwrap())
 }
 
 /// Pictures while the view moves by a tenth of a pixel column a picture.

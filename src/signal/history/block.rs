@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::flags::{FlagBlock, Flags};
 use super::number::Number;
-use super::spread::{Spread, extremes, together};
+use super::spread::{Spread, extremes, extremes_of_eight, together};
 use super::{BLOCK, FAN};
 
 /// A level of the pyramid.
@@ -186,7 +186,7 @@ impl<T: Number> Block<T> {
 
     /// The first sample in `range` that has a value.
     pub(super) fn first_good(&self, range: Range<usize>) -> Option<usize> {
-        if !self.flags.any().contains(Flags::BAD) {
+        if self.flags.is_surely_good(range.start) {
             return (!range.is_empty()).then_some(range.start);
         }
         if self.len() == BLOCK && self.top.is_empty() {
@@ -204,7 +204,7 @@ impl<T: Number> Block<T> {
 
     /// The last sample in `range` that has a value.
     pub(super) fn last_good(&self, range: Range<usize>) -> Option<usize> {
-        if !self.flags.any().contains(Flags::BAD) {
+        if self.flags.is_surely_good(range.end.saturating_sub(1)) {
             return range.end.checked_sub(1).filter(|last| *last >= range.start);
         }
         if self.len() == BLOCK && self.top.is_empty() {
@@ -249,7 +249,7 @@ impl<T: Number> Block<T> {
             }
             Some(base) => {
                 for (bucket, group) in buckets.zip(groups) {
-                    *bucket = Bucket::around(extremes(group), base);
+                    *bucket = Bucket::around(Some(extremes_of_eight(group)), base);
                 }
             }
         }

@@ -44,22 +44,21 @@ impl BitOrAssign for Flags {
     }
 }
 
-/// Samples that share one summary.
-const GROUP: usize = 64;
+/// Samples that share one summary; a block has as many groups as a `u64` has bits.
+const GROUP: usize = BLOCK / u64::BITS as usize;
 
-/// The flags of a block. Takes memory from the first flag on.
+/// The flags there are.
+const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
+
+/// The flags of a block. What groups of samples have stands right here, so that those of the samples, which lie elsewhere
+/// in memory, are looked at only where there is something. Takes memory from the first flag on.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     /// What the block has.
     any: Flags,
-    kept: Option<Box<Kept>>,
-}
-
-#[derive(Debug)]
-struct Kept {
-    samples: [Flags; BLOCK],
-    /// What each `GROUP` of samples has.
-    groups: [Flags; BLOCK / GROUP],
+    /// For each kind of flag, a bit for each group that has it.
+    groups: [u64; KINDS.len()],
+    kept: Option<Box<[Flags; BLOCK]>>,
 }
 
 impl FlagBlock {
@@ -77,49 +76,77 @@ impl FlagBlock {
         if flags == Flags::NONE {
             return;
         }
-        let nothing = || Box::new(Kept { samples: [Flags::NONE; BLOCK], groups: [Flags::NONE; BLOCK / GROUP] });
-        let kept = self.kept.get_or_insert_with(nothing);
         let flags = flags.completed();
-        for place in [kept.samples.get_mut(at), kept.groups.get_mut(at / GROUP)].into_iter().flatten() {
+        let kept = self.kept.get_or_insert_with(|| Box::new([Flags::NONE; BLOCK]));
+        if let Some(place) = kept.get_mut(at) {
             *place |= flags;
+        }
+        for (groups, kind) in self.groups.iter_mut().zip(KINDS) {
+            *groups |= u64::from(flags.contains(kind)) << (at / GROUP);
         }
         self.any |= flags;
     }
 
-    fn samples(&self) -> &[Flags] {
-        self.kept.as_ref().map_or(&[], |kept| &kept.samples)
+    fn samples(&self, range: Range<usize>) -> &[Flags] {
+        self.kept.as_ref().and_then(|kept| kept.get(range)).unwrap_or_default()
     }
 
     pub(super) fn get(&self, at: usize) -> Flags {
-        self.samples().get(at).copied().unwrap_or_default()
+        match self.of_groups(at / GROUP..at / GROUP + 1) {
+            Flags::NONE => Flags::NONE,
+            _ => self.kept.as_ref().and_then(|kept| kept.get(at)).copied().unwrap_or_default(),
+        }
     }
 
     /// What the samples of `range` have, together.
     pub(super) fn within(&self, range: Range<usize>) -> Flags {
-        let Some(kept) = &self.kept else { return Flags::NONE };
-        let (from, to) = (range.start.next_multiple_of(GROUP), range.end / GROUP * GROUP);
-        if from >= to {
-            return union(&kept.samples, range);
+        if self.any == Flags::NONE || range.is_empty() {
+            return Flags::NONE;
         }
-        union(&kept.samples, range.start..from)
-            | union(&kept.groups, from / GROUP..to / GROUP)
-            | union(&kept.samples, to..range.end)
+        let (from, to) = (range.start.div_ceil(GROUP), range.end / GROUP);
+        let mut found = self.of_groups(from..to.max(from));
+        let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
+        for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
+            // Part of one group, of which nothing new may be to be had.
+            let group = edge.start / GROUP;
+            if !found.contains(self.of_groups(group..group + 1)) {
+                found |= union(self.samples(edge));
+            }
+        }
+        found
+    }
+
+    /// Whether a look at its group is enough to know that the sample `at` has a value to believe.
+    pub(super) fn is_surely_good(&self, at: usize) -> bool {
+        !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
 
     /// The stretches of `range` whose samples have a value to believe.
     pub(super) fn good(&self, range: Range<usize>) -> Good<'_> {
-        let samples = if self.any.contains(Flags::BAD) { self.samples() } else { &[] };
+        let bad = self.of_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
+        let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());
         Good { samples, range }
     }
 
     /// Bytes on the heap.
     pub(super) fn memory(&self) -> usize {
-        self.kept.as_ref().map_or(0, |_| size_of::<Kept>())
+        self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
+    }
+
+    /// What any sample of these groups has.
+    fn of_groups(&self, groups: Range<usize>) -> Flags {
+        if groups.is_empty() || self.any == Flags::NONE {
+            return Flags::NONE;
+        }
+        let count = groups.len().min(u64::BITS as usize);
+        let mask = (u64::MAX >> (u64::BITS as usize - count)) << groups.start.min(u64::BITS as usize - 1);
+        let has = |(bits, kind): (&u64, Flags)| if bits & mask == 0 { Flags::NONE } else { kind };
+        self.groups.iter().zip(KINDS).map(has).fold(Flags::NONE, |all, flags| all | flags)
     }
 }
 
-fn union(flags: &[Flags], range: Range<usize>) -> Flags {
-    flags.get(range).unwrap_or_default().iter().fold(Flags::NONE, |all, flags| all | *flags)
+fn union(flags: &[Flags]) -> Flags {
+    flags.iter().fold(Flags::NONE, |all, flags| all | *flags)
 }
 
 /// See [`FlagBlock::good`].
@@ -186,6 +213,34 @@ mod tests {
         ];
         for (range, flags) in cases {
             assert_eq!(block.within(range.clone()), flags, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn every_range_has_what_its_samples_have_one_by_one() {
+        let mut random = fastrand::Rng::with_seed(4);
+        for flagged in [1, 3, 40, 2_000] {
+            let mut block = FlagBlock::default();
+            let mut plain = vec![Flags::NONE; BLOCK];
+            for _ in 0..flagged {
+                let (at, flags) = (random.usize(..BLOCK), KINDS[random.usize(..3)]);
+                block.mark(at, flags);
+                plain[at] |= flags.completed();
+            }
+            for _ in 0..2_000 {
+                let (one, other) = (random.usize(..=BLOCK), random.usize(..=BLOCK));
+                // Short ranges as well as long ones.
+                let other = if random.bool() { other } else { (one + other % 70).min(BLOCK) };
+                let range = one.min(other)..one.max(other);
+                assert_eq!(block.within(range.clone()), union(&plain[range.clone()]), "{range:?}");
+                let good: usize = block.good(range.clone()).map(|stretch| stretch.len()).sum();
+                assert_eq!(good, plain[range].iter().filter(|flags| !flags.contains(Flags::BAD)).count());
+            }
+            for (at, flags) in plain.iter().enumerate() {
+                assert_eq!(block.get(at), *flags);
+                assert!(!block.is_surely_good(at) || !flags.contains(Flags::BAD));
+            }
+            assert_eq!(block.any(), union(&plain));
         }
     }
 

@@ -212,9 +212,11 @@ impl<T: Number> Painter<'_, T> {
         if let (Some(first), Some(last)) = (self.series.first_good(range.clone()), self.series.last_good(range)) {
             let good = first..last + 1;
             pixel.joined = self.is_joined(first);
-            pixel.values = self.series.ends(good.clone()).map(|ends| self.reduced(good, ends));
-            pixel.from = self.history.time(first).unwrap_or(start);
-            pixel.to = self.history.time(last).unwrap_or(end);
+            // Mostly the first and the last sample are good, and what is known of them need not be fetched again.
+            let ends = if good == (from.index..to.index) { Some(ends) } else { self.series.ends(good.clone()) };
+            pixel.values = ends.map(|ends| self.reduced(good, ends));
+            pixel.from = if first == from.index { start } else { self.history.time(first).unwrap_or(start) };
+            pixel.to = if last + 1 == to.index { end } else { self.history.time(last).unwrap_or(end) };
             self.last = Some(last);
         }
         self.picture.pixels.push(pixel);

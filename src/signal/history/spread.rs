@@ -53,12 +53,39 @@ pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T
     }
 }
 
-/// Least and greatest of `values`, which are all numbers.
+/// Least and greatest of `values`, which are all numbers. Eight side by side, as with the sums.
 pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
-    let first = *values.first()?;
-    Some(values.iter().fold((first, first), |(min, max), value| {
-        (if *value < min { *value } else { min }, if *value > max { *value } else { max })
-    }))
+    let (groups, rest) = values.as_chunks::<8>();
+    let of_groups = groups.split_first().map(|(first, others)| {
+        let (mut least, mut most) = (*first, *first);
+        for group in others {
+            for ((least, most), value) in least.iter_mut().zip(&mut most).zip(group) {
+                *least = lesser(*least, *value);
+                *most = greater(*most, *value);
+            }
+        }
+        (of_eight(least, lesser), of_eight(most, greater))
+    });
+    let start = of_groups.or_else(|| rest.first().map(|first| (*first, *first)))?;
+    Some(rest.iter().fold(start, |(least, most), value| (lesser(least, *value), greater(most, *value))))
+}
+
+/// Least and greatest of eight values, which are all numbers.
+pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
+    (of_eight(*values, lesser), of_eight(*values, greater))
+}
+
+/// In pairs, so that none has to wait for the one before.
+fn of_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
+    choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
+}
+
+fn lesser<T: Number>(one: T, other: T) -> T {
+    if other < one { other } else { one }
+}
+
+fn greater<T: Number>(one: T, other: T) -> T {
+    if other > one { other } else { one }
 }
 
 /// Eight sums side by side, which a processor does in little more time than one.
