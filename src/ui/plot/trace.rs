@@ -112,7 +112,8 @@ fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen:
         let y = |own: f64| value.y(own * pen.factor);
         let (one, other) = (y(values.min), y(values.max));
         let (mut top, mut bottom) = (one.min(other), one.max(other));
-        let left = time.column(pixel.from);
+        // Its last sample lies in it, while its first may be a little before it.
+        let left = time.column(pixel.to);
         if let Some((x, y)) = before.filter(|_| pixel.joined) {
             (top, bottom) = (top.min(y), bottom.max(y));
             // Columns between which there are no samples are bridged.
@@ -259,7 +260,7 @@ mod tests {
 
     /// 100 columns of a nanosecond each: `count` samples evenly over them, of which some are marked.
     fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
-        let mut history = History::new(&[Kind::Real], 100_000);
+        let mut history = History::new(&[Kind::Real], 1_000_000);
         let times: Vec<Time> = (0..count).map(|at| Time::from_nanoseconds(at * 100_000 / count)).collect();
         let values: Vec<f64> = (0..count).map(value).collect();
         let flags: Vec<Flags> = (0..count).map(flags).collect();
@@ -283,6 +284,23 @@ mod tests {
         assert_eq!(shapes.len(), 1, "one mesh");
         let reach = reach(&shapes);
         assert!(reach.top() <= 0.5 && reach.bottom() < 27.0, "{reach}");
+    }
+
+    #[test]
+    fn every_pixel_column_has_its_bar() {
+        for count in [50_000, 51_234, 499_999] {
+            let shapes = drawn(count, |at| (at % 2) as f64, |_| Flags::NONE);
+            let [Shape::Mesh(mesh)] = shapes.as_slice() else { panic!("{shapes:?}") };
+            let tall = |column: usize| {
+                let x = column as f32 + 0.5;
+                mesh.vertices.chunks(4).any(|bar| {
+                    let rect = Rect::from_points(&bar.iter().map(|vertex| vertex.pos).collect::<Vec<_>>());
+                    rect.x_range().contains(x) && rect.height() > 45.0
+                })
+            };
+            let missing: Vec<usize> = (0..100).filter(|column| !tall(*column)).collect();
+            assert!(missing.is_empty(), "{count}: {missing:?}");
+        }
     }
 
     #[test]
