@@ -224,6 +224,7 @@ fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
 
 /// Ticks at the foot of the lane for what is bad or comes with a warning, at any zoom.
 fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
+    let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
         let (colour, height) = if pixel.flags.contains(Flags::BAD) {
             (pen.bad, 6.0)
@@ -233,10 +234,11 @@ fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Ve
             continue;
         };
         let x = time.x(pixel.from);
-        if lane.x_range().contains(x) {
-            let rect = Rect::from_min_size(pos2(x - 1.0, lane.bottom() - height), vec2(2.0, height));
-            out.push(Shape::rect_filled(rect, 0.0, colour));
-        }
+        let tick = Rect::from_min_size(pos2(x - 1.0, lane.bottom() - height), vec2(2.0, height));
+        bar(&mut mesh, tick, lane, colour);
+    }
+    if !mesh.is_empty() {
+        out.push(Shape::mesh(mesh));
     }
 }
 
@@ -303,15 +305,21 @@ mod tests {
         }
     }
 
+    fn is_marked(shapes: &[Shape]) -> bool {
+        let red = |mesh: &Mesh| mesh.vertices.iter().any(|vertex| vertex.color == Color32::RED);
+        shapes.iter().any(|shape| matches!(shape, Shape::Mesh(mesh) if red(mesh)))
+    }
+
     #[test]
     fn gaps_stay_gaps_and_marks_are_seen() {
         let gap = |at| if at == 5 { Flags::BAD } else { Flags::NONE };
         let shapes = drawn(10, |_| 0.5, gap);
         let lines = shapes.iter().filter(|shape| matches!(shape, Shape::Path(_))).count();
         assert_eq!(lines, 2, "before and behind the gap");
-        assert!(shapes.iter().any(|shape| matches!(shape, Shape::Rect(rect) if rect.fill == Color32::RED)));
+        assert!(is_marked(&shapes));
         let many = drawn(50_000, |_| 0.5, |at| if at == 31_234 { Flags::BAD } else { Flags::NONE });
-        assert!(many.iter().any(|shape| matches!(shape, Shape::Rect(rect) if rect.fill == Color32::RED)));
+        assert!(is_marked(&many));
+        assert!(!is_marked(&drawn(10, |_| 0.5, |_| Flags::NONE)));
     }
 
     #[test]
