@@ -76,8 +76,8 @@ pub fn plot_ui(
     actions: &mut Vec<Action>,
 ) {
     let context = &mut Context { skin, recorder, desk, actions };
-    let top = ui.cursor().top();
     toolbar::toolbar_ui(ui, context, view);
+    let top = ui.cursor().top();
     let below = ui.available_height();
     // The readout stands below the chart and takes what it took in the picture before.
     let readout_id = ui.scope_id().with("readout");
@@ -91,8 +91,9 @@ pub fn plot_ui(
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();
     }
-    let whole = Rect::from_min_max(egui::pos2(ui.min_rect().left(), top), ui.min_rect().max);
-    view.shot.take(ui.ctx(), whole, context.actions);
+    // The tools are no part of the picture.
+    let picture = Rect::from_min_max(egui::pos2(ui.min_rect().left(), top), ui.min_rect().max).expand(4.0);
+    view.shot.take(ui.ctx(), picture, context.actions);
 }
 
 /// Draws the chart; gives the time under the pointer.
