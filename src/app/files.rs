@@ -91,7 +91,7 @@ impl Studio {
     }
 
     pub(super) fn table_written(&mut self, desk: Desk, exported: Exported) {
-        let lost = self.recorder_mut(desk).map_or(0, Recorder::end_export);
+        let lost = self.recorder_mut(desk).and_then(|recorder| recorder.end_export(exported.number)).unwrap_or(0);
         let path = exported.path.display();
         let (severity, mut texts) = match &exported.rows {
             Ok(Some(rows)) => {

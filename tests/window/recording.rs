@@ -172,3 +172,21 @@ fn what_is_watched_is_recorded_beside_the_position() {
     // What is watched outlives the cable.
     assert_eq!(desk.encoder().record.watched(), [Watch::Analogue(0x48), Watch::Analogue(0x07)]);
 }
+
+#[test]
+fn a_position_that_is_read_while_polling_disturbs_nothing() {
+    let mut desk = Desk::begun("rpm=600");
+    desk.ask(FAST);
+    for round in 1..=5 {
+        desk.until("samples come", |studio| recorded(studio) > round * 40);
+        desk.ask(Hiperface::ReadPosition);
+        desk.until_ready();
+    }
+    desk.act(Action::Stop);
+    let recording = recorder(&desk);
+    let history = recording.history(line(recording, "position")).unwrap();
+    let times: Vec<_> = history.all().map(|index| history.time(index).unwrap()).collect();
+    assert!(times.is_sorted_by(|one, other| one < other), "none stands at another's time");
+    let (slowest, fastest) = extent(recording, "speed");
+    assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");
+}

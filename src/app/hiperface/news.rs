@@ -50,10 +50,11 @@ impl Encoder {
 
     /// Takes what has come over the line since the last time.
     pub(in crate::app) fn pump(&mut self, services: &mut Services) {
+        // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
+        self.take_samples_and_frames();
         while let Some(event) = self.line.as_mut().and_then(Line::next) {
             self.take(event, services);
         }
-        self.take_samples_and_frames();
         if self.line.as_ref().is_some_and(Line::is_dead) {
             self.lose(Text::new("session.ended"), services);
         }

@@ -3,7 +3,7 @@
 use jiff::Zoned;
 
 use crate::app::Text;
-use crate::app::recorder::{GroupId, Line, LineId, Recorder, Scale};
+use crate::app::recorder::{self, GroupId, Line, LineId, Recorder, Scale};
 use crate::device::hiperface::{PositionReading, Sample, Watch, WatchedReading};
 use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
 use crate::signal::history::{Flags, Kind, Part};
@@ -14,6 +14,8 @@ use crate::units::Moment;
 const CAPACITY: usize = 4_000_000;
 /// Nanoseconds between positions from which they are not joined: a line would tell of a movement that nobody has seen.
 const APART: i64 = 2_500_000_000;
+/// Likewise between watched values, which come more slowly.
+const WATCHED_APART: i64 = 2 * APART;
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 /// Values of one watched thing that are kept.
@@ -109,8 +111,8 @@ impl Record {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
         // A clock of the wall may be set back.
-        let newest = self.newest.map_or(0, Time::nanoseconds);
-        self.shift = later.max(newest);
+        let behind = self.newest.map_or(0, |newest| newest.nanoseconds().saturating_add(1));
+        self.shift = later.max(behind);
         self.gap();
     }
 
@@ -122,14 +124,16 @@ impl Record {
         for sample in samples {
             match sample {
                 Sample::Position(reading) => {
-                    self.follow(&reading, geometry);
+                    self.see(geometry);
+                    self.follow(&reading);
                     self.last = Some(reading);
                     self.no_position = None;
                 }
                 Sample::NoPosition { at, codes } => {
+                    self.see(geometry);
                     let before = self.last.as_ref().map_or(0, |reading| i64::from(reading.raw));
-                    self.append(at, before, Rates::default(), Flags::BAD);
-                    self.gap();
+                    self.append(self.time(at), before, Rates::default(), Flags::BAD);
+                    self.lose_track();
                     self.no_position = Some(Sample::NoPosition { at, codes });
                 }
                 Sample::Watched(reading) => self.take_watched(&reading),
@@ -148,7 +152,7 @@ impl Record {
         }
         for what in wished {
             if self.watched.iter().all(|own| own.what != *what) {
-                let group = self.recorder.add_group(&[Kind::Whole], WATCHED, None);
+                let group = self.recorder.add_group(&[Kind::Whole], WATCHED, Some(WATCHED_APART));
                 let line = self.recorder.add_line(line_of(*what, group));
                 self.watched.push(Watched { what: *what, group, line });
             }
@@ -173,7 +177,7 @@ impl Record {
         self.recorder.remark(own.line, absent);
         let (value, flags) = ([value], [flags]);
         let time = self.time(reading.at);
-        // A clock of the wall that was set back: what is earlier than the last one is left out.
+        // Each kind of value comes in the order of time; the clock of a later session begins behind the last position.
         let _ = self.recorder.append(own.group, &[time], &[Part::whole(&value).flagged(&flags)]);
     }
 
@@ -206,27 +210,33 @@ impl Record {
         self.watch(&watched);
     }
 
-    fn follow(&mut self, reading: &PositionReading, geometry: Option<Geometry>) {
-        if self.follower.as_ref().is_none_or(|follower| follower.geometry != geometry) {
-            // Steps mean something else now: what was recorded cannot be seen in the same units.
-            let (began, shift, newest, dropped) = (self.began.take(), self.shift, self.newest, self.dropped);
-            let watched = self.watched();
-            *self = Record { began, shift, newest, dropped, ..Record::about(geometry) };
-            self.watch(&watched);
-            self.follower = Some(Follower::new(geometry));
+    /// Position words mean this from now on. What was recorded with another meaning cannot be seen in the same units.
+    fn see(&mut self, geometry: Option<Geometry>) {
+        if self.follower.as_ref().is_some_and(|follower| follower.geometry == geometry) {
+            return;
         }
+        let (began, shift, newest, dropped) = (self.began.take(), self.shift, self.newest, self.dropped);
+        let (watched, span) = (self.watched(), self.recorder.span());
+        *self = Record { began, shift, newest, dropped, ..Record::about(geometry) };
+        self.recorder.act(recorder::Action::SetSpan(span));
+        self.watch(&watched);
+        self.follower = Some(Follower::new(geometry));
+    }
+
+    fn follow(&mut self, reading: &PositionReading) {
         let time = self.time(reading.at);
-        let late = self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > APART);
-        let Some(follower) = &mut self.follower else { return };
-        if late || !reading.valid {
-            follower.unwrap.gap();
-            follower.motion.reset();
+        if self.newest.is_some_and(|newest| time < newest) {
+            // Read on its own between two samples that are recorded already.
+            return;
+        }
+        if !reading.valid || self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > APART) {
+            self.lose_track();
         }
         let word = i64::from(reading.raw);
-        let next = follower.unwrap.next(word).filter(|_| reading.valid);
-        let Some(next) = next else {
-            follower.unwrap.gap();
-            return self.append(reading.at, word, Rates::default(), Flags::BAD);
+        let Some(follower) = &mut self.follower else { return };
+        let Some(next) = follower.unwrap.next(word).filter(|_| reading.valid) else {
+            self.lose_track();
+            return self.append(time, word, Rates::default(), Flags::BAD);
         };
         if next.broken {
             follower.motion.reset();
@@ -236,13 +246,11 @@ impl Record {
         if !reading.codes.is_empty() {
             flags |= Flags::WARNING;
         }
-        self.append(reading.at, next.steps, rates, flags);
+        self.append(time, next.steps, rates, flags);
     }
 
-    fn append(&mut self, at: Moment, steps: i64, rates: Rates, flags: Flags) {
-        // One that is read between two that were sampled may be told a little late.
-        let time = self.newest.map_or(self.time(at), |newest| self.time(at).max(newest));
-        self.newest = Some(time);
+    /// At a time that is not before the newest; else it is left out.
+    fn append(&mut self, time: Time, steps: i64, rates: Rates, flags: Flags) {
         // What is not known is no number, which breaks the line and counts nowhere.
         let (speed, acceleration) = (rates.speed.unwrap_or(f64::NAN), rates.acceleration.unwrap_or(f64::NAN));
         let (steps, speed, acceleration, flags) = ([steps], [speed], [acceleration], [flags]);
@@ -251,12 +259,19 @@ impl Record {
             Part::real(&speed).flagged(&flags),
             Part::real(&acceleration).flagged(&flags),
         ];
-        let appended = self.recorder.append(self.positions, &[time], &parts);
-        debug_assert_eq!(appended, Ok(()), "three columns, and no time goes back");
+        if self.recorder.append(self.positions, &[time], &parts).is_ok() {
+            self.newest = Some(time);
+        }
     }
 
+    /// Samples are missing before those that come next.
     fn gap(&mut self) {
-        self.recorder.break_before_next(self.positions);
+        self.recorder.break_all();
+        self.lose_track();
+    }
+
+    /// How the next position goes on from the last is not known.
+    fn lose_track(&mut self) {
         if let Some(follower) = &mut self.follower {
             follower.unwrap.gap();
             follower.motion.reset();
@@ -268,13 +283,10 @@ impl Record {
     }
 }
 
-/// The temperature in every encoder that has it, in °C (SICK 8010701, analogue values).
-const TEMPERATURE: u8 = 0x48;
-
 /// What a watched value is called.
 pub fn watch_name(what: Watch) -> Text {
     match what {
-        Watch::Analogue(TEMPERATURE) => Text::new("recorder.temperature"),
+        Watch::TEMPERATURE => Text::new("recorder.temperature"),
         Watch::Analogue(channel) => Text::new("recorder.channel").with("channel", format!("{channel:02X}h")),
         Watch::Counter => Text::new("recorder.counter"),
     }
@@ -283,7 +295,7 @@ pub fn watch_name(what: Watch) -> Text {
 /// A watched value as a line.
 fn line_of(what: Watch, group: GroupId) -> Line {
     let (heading, unit) = match what {
-        Watch::Analogue(TEMPERATURE) => ("temperature".to_owned(), "unit.celsius"),
+        Watch::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
         Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
         Watch::Counter => ("counter".to_owned(), "unit.counts"),
     };
@@ -335,3 +347,6 @@ fn scales(geometry: Option<Geometry>) -> [Vec<Scale>; 3] {
         ],
     }
 }
+
+#[cfg(test)]
+mod tests;

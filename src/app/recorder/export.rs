@@ -10,31 +10,44 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
 use super::{GroupId, Line, Recorder};
 use crate::signal::Time;
-use crate::signal::history::Flags;
+use crate::signal::history::{Flags, History};
 use crate::store::{FileError, write_by};
 
 /// Rows of a portion, and portions that wait.
 const ROWS: usize = 16_384;
 const WAITING: usize = 2;
 
-/// A table that is being written.
+/// A table that is being written. When it is dropped before all is handed over, nothing is written.
 #[derive(Debug)]
 pub struct Export {
     /// Where to.
     pub path: PathBuf,
+    number: ExportNumber,
     cancelled: Arc<AtomicBool>,
     written: Arc<AtomicU64>,
     total: u64,
-    sender: Option<Sender<Rows>>,
-    next: Option<Rows>,
+    sender: Option<Sender<Portion>>,
+    next: Option<Portion>,
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
 }
 
+/// Which table it is, of all that were ever written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) struct ExportNumber(u64);
+
+impl ExportNumber {
+    fn new() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        ExportNumber(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
 /// How a table was written.
 #[derive(Debug)]
 pub struct Exported {
+    pub(in crate::app) number: ExportNumber,
     /// Where it is.
     pub path: PathBuf,
     /// Rows in it; `None`: it was given up, and there is none.
@@ -57,7 +70,15 @@ struct Column {
     factor: f64,
 }
 
-/// A portion of the table: for each row a time and as many cells as there are columns.
+/// What is handed over.
+#[derive(Debug)]
+enum Portion {
+    Rows(Rows),
+    /// That was all. Without it the table is not whole.
+    End,
+}
+
+/// A part of the table: for each row a time and as many cells as there are columns.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<Time>,
@@ -74,8 +95,9 @@ struct Cell {
 /// What remains to be done on a thread: writes the table as its rows come.
 pub(in crate::app) struct Writing {
     path: PathBuf,
+    number: ExportNumber,
     headings: Vec<String>,
-    receiver: Receiver<Rows>,
+    receiver: Receiver<Portion>,
     cancelled: Arc<AtomicBool>,
     written: Arc<AtomicU64>,
 }
@@ -128,8 +150,10 @@ impl Recorder {
         let (sender, receiver) = bounded(WAITING);
         let (cancelled, written) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let headings = columns.iter().map(|column: &Column| column.heading.clone()).collect();
+        let number = ExportNumber::new();
         let writing = Writing {
             path: path.to_owned(),
+            number,
             headings,
             receiver,
             cancelled: cancelled.clone(),
@@ -137,6 +161,7 @@ impl Recorder {
         };
         self.export = Some(Export {
             path: path.to_owned(),
+            number,
             cancelled,
             written,
             total,
@@ -150,71 +175,69 @@ impl Recorder {
         Some(writing)
     }
 
-    /// Hands over as many rows as the thread can take, and waits for nothing.
+    /// Hands over some rows, as many as fit between two pictures, and waits for nothing.
     pub(in crate::app) fn feed_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
-        while let Some(sender) = &export.sender {
-            let rows = match export.next.take() {
-                Some(rows) => rows,
-                None => self.rows(&mut export.heads, &export.columns, &mut export.lost),
+        if let Some(sender) = export.sender.clone() {
+            let portion = match export.next.take() {
+                Some(portion) => portion,
+                None => self.portion(&mut export.heads, &export.columns, &mut export.lost),
             };
-            let sent =
-                if rows.times.is_empty() { Err(TrySendError::Disconnected(rows)) } else { sender.try_send(rows) };
-            match sent {
+            let is_end = matches!(portion, Portion::End);
+            match sender.try_send(portion) {
+                Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
-                Err(TrySendError::Full(rows)) => {
-                    export.next = Some(rows);
-                    break;
-                }
-                // All is handed over, or nobody takes it: the thread says why.
+                Err(TrySendError::Full(portion)) => export.next = Some(portion),
+                // Nobody takes it: the thread says why.
                 Err(TrySendError::Disconnected(_)) => export.sender = None,
             }
         }
         self.export = Some(export);
     }
 
-    /// The thread has ended. Gives the samples that were lost on the way.
-    pub(in crate::app) fn end_export(&mut self) -> u64 {
-        self.export.take().map_or(0, |export| export.lost)
+    /// The thread has ended. Gives the samples that were lost on the way; `None`: that was of an earlier table.
+    pub(in crate::app) fn end_export(&mut self, number: ExportNumber) -> Option<u64> {
+        self.export.take_if(|export| export.number == number).map(|export| export.lost)
     }
 
     /// The next rows: the samples of all groups in the order of time, those of the same time in one row.
-    fn rows(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Rows {
-        let mut rows = Rows::default();
-        for head in heads.iter_mut() {
+    fn portion(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
+        // In the order of the heads; a group that was taken away has no samples any more.
+        let histories: Vec<Option<&History>> =
+            heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
+        for (head, history) in heads.iter_mut().zip(&histories) {
             // What was evicted meanwhile is not there any more.
-            let start = self.groups.get(&head.group).map_or(head.end, |group| group.history.all().start.min(head.end));
+            let start = history.map_or(head.end, |history| history.all().start.min(head.end));
             *lost += start.saturating_sub(head.next);
             head.next = head.next.max(start);
         }
+        let mut rows = Rows::default();
+        let mut due = vec![None; heads.len()];
         while rows.times.len() < ROWS {
-            let time = |head: &Head| {
-                let history = &self.groups.get(&head.group)?.history;
-                (head.next < head.end).then(|| history.time(head.next)).flatten()
+            let time = |(head, history): (&Head, &Option<&History>)| {
+                (head.next < head.end).then(|| history.and_then(|history| history.time(head.next))).flatten()
             };
-            let Some(now) = heads.iter().filter_map(time).min() else { break };
-            let due: Vec<bool> = heads.iter().map(|head| time(head) == Some(now)).collect();
+            let Some(now) = heads.iter().zip(&histories).filter_map(time).min() else { break };
+            for ((due, head), history) in due.iter_mut().zip(heads.iter_mut()).zip(&histories) {
+                *due = (time((&*head, history)) == Some(now)).then_some(head.next);
+                head.next += u64::from(due.is_some());
+            }
             rows.times.push(now);
-            for column in columns {
-                let is_due = due.get(column.head).copied().unwrap_or(false);
-                let sample = heads
-                    .get(column.head)
-                    .filter(|_| is_due)
-                    .and_then(|head| self.groups.get(&head.group)?.history.sample(column.column, head.next));
-                rows.cells.push(sample.map_or_else(Cell::default, |sample| {
-                    Cell {
-                        value: Some(sample.value.to_f64() * column.factor)
-                            .filter(|value| value.is_finite() && !sample.flags.contains(Flags::BAD)),
-                        flags: sample.flags,
-                    }
-                }));
-            }
-            for (head, due) in heads.iter_mut().zip(due) {
-                head.next += u64::from(due);
-            }
+            rows.cells.extend(columns.iter().map(|column| cell(column, &histories, &due)));
         }
-        rows
+        if rows.times.is_empty() { Portion::End } else { Portion::Rows(rows) }
     }
+}
+
+fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) -> Cell {
+    let sample = || {
+        let index = (*due.get(column.head)?)?;
+        (*histories.get(column.head)?)?.sample(column.column, index)
+    };
+    let Some(sample) = sample() else { return Cell::default() };
+    let value = sample.value.to_f64() * column.factor;
+    let value = Some(value).filter(|value| value.is_finite() && !sample.flags.contains(Flags::BAD));
+    Cell { value, flags: sample.flags }
 }
 
 /// The name and unit as a column of a table has them, which do not depend on the window's language.
@@ -228,17 +251,22 @@ fn heading(line: &Line) -> String {
 impl Writing {
     /// Writes until all rows have come; `wake` tells that more can be handed over.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> Exported {
-        let rows = write_by(&self.path, |file| self.write(file, wake));
-        let cancelled = self.cancelled.load(Ordering::Relaxed);
+        let mut given_up = false;
+        let rows = write_by(&self.path, |file| {
+            given_up = !self.write(file, wake)?;
+            // What is not whole does not replace what is there.
+            if given_up { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
+        });
         let rows = match rows {
             Ok(()) => Ok(Some(self.written.load(Ordering::Relaxed))),
-            Err(_) if cancelled => Ok(None),
+            Err(_) if given_up => Ok(None),
             Err(error) => Err(error),
         };
-        Exported { path: self.path, rows }
+        Exported { number: self.number, path: self.path, rows }
     }
 
-    fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<()> {
+    /// False: it was given up.
+    fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<bool> {
         let mut text = String::from("time [s]");
         for heading in &self.headings {
             text.push(',');
@@ -247,17 +275,24 @@ impl Writing {
         }
         text.push_str(",remark\n");
         file.write_all(text.as_bytes())?;
-        for rows in &self.receiver {
+        // More can be handed over.
+        wake();
+        for portion in &self.receiver {
             wake();
             if self.cancelled.load(Ordering::Relaxed) {
-                return Err(io::ErrorKind::Interrupted.into());
+                return Ok(false);
             }
+            let rows = match portion {
+                Portion::Rows(rows) => rows,
+                Portion::End => return Ok(true),
+            };
             text.clear();
             rows.text(self.headings.len(), &mut text);
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
-        Ok(())
+        // Whoever handed over is gone.
+        Ok(false)
     }
 }
 

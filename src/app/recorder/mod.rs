@@ -11,6 +11,7 @@ mod trigger;
 mod view;
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use cursors::{Cursor, Measured};
 pub use export::{Export, Exported};
@@ -67,9 +68,21 @@ pub struct GroupId(u32);
 #[derive(Debug)]
 struct Group {
     history: History,
+    stamp: Stamp,
     columns: Vec<Kind>,
     capacity: usize,
     longest_pause: Option<i64>,
+}
+
+/// Tells the samples of one group from all others that there are or were: cleared ones and other recorders' too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp(u64);
+
+impl Stamp {
+    fn new() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Stamp(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
 }
 
 impl Group {
@@ -105,7 +118,8 @@ impl Recorder {
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
-        self.groups.insert(id, Group { history, columns: columns.to_vec(), capacity, longest_pause });
+        let stamp = Stamp::new();
+        self.groups.insert(id, Group { history, stamp, columns: columns.to_vec(), capacity, longest_pause });
         id
     }
 
@@ -145,6 +159,11 @@ impl Recorder {
         history.append(times, parts)?;
         self.look_for_trigger(group, before);
         Ok(())
+    }
+
+    /// Samples are missing before the next ones of every group.
+    pub(in crate::app) fn break_all(&mut self) {
+        self.groups.values_mut().for_each(|group| group.history.break_before_next());
     }
 
     /// Samples are missing before the next ones of a group.
@@ -206,6 +225,11 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
+    /// Whose samples those of a line are.
+    pub fn stamp(&self, line: &Line) -> Option<Stamp> {
+        self.groups.get(&line.group).map(|group| group.stamp)
+    }
+
     /// All lines lie over one axis.
     pub fn has_one_axis(&self) -> bool {
         self.one_axis
@@ -238,9 +262,12 @@ impl Recorder {
 
     /// Forgets the samples; lines, units and the length of the view stay.
     pub(in crate::app) fn clear(&mut self) {
-        for Group { history, columns, capacity, longest_pause } in self.groups.values_mut() {
+        for Group { history, stamp, columns, capacity, longest_pause } in self.groups.values_mut() {
             *history = Group::history(columns, *capacity, *longest_pause);
+            *stamp = Stamp::new();
         }
+        // Of a table that is half written nothing is kept.
+        self.export = None;
         self.cursors = [None; 2];
         self.watch = self.watch.take().map(Watch::again);
         self.lines.iter_mut().for_each(|line| line.range = None);

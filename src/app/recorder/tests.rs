@@ -221,7 +221,7 @@ fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
         }
         written.join().unwrap()
     });
-    assert_eq!(recorder.end_export(), 0);
+    assert_eq!(recorder.end_export(exported.number), Some(0));
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(exported.rows.unwrap(), Some(text.lines().count() as u64 - 1));
     Some(text)
@@ -267,9 +267,32 @@ fn a_long_table_is_whole_and_can_be_given_up() {
     assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
     recorder.act(Action::CancelExport);
     recorder.feed_export();
-    assert!(writing.run(&|| {}).rows.unwrap().is_none());
-    recorder.end_export();
+    let given_up = writing.run(&|| {});
+    assert!(given_up.rows.unwrap().is_none());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
+    assert_eq!(recorder.end_export(given_up.number), Some(0));
     let nowhere = recorder.begin_export(&folder.path().join("no/samples.csv"), false).unwrap();
     assert!(nowhere.run(&|| {}).rows.is_err());
+    assert_eq!(recorder.end_export(given_up.number), None, "that was another table");
+    assert!(recorder.export().is_some());
+}
+
+/// Of what is cut off nothing is kept, and the old file stays as it was.
+#[test]
+fn a_table_whose_samples_go_is_given_up() {
+    for clear in [true, false] {
+        let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
+        ramp(&mut recorder, group, 0, 70_000);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("samples.csv");
+        std::fs::write(&path, "the old one").unwrap();
+        let writing = recorder.begin_export(&path, false).unwrap();
+        recorder.feed_export();
+        if clear {
+            recorder.act(Action::Clear);
+        }
+        drop(recorder);
+        assert!(writing.run(&|| {}).rows.unwrap().is_none());
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
+    }
 }

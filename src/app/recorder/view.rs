@@ -61,7 +61,7 @@ impl Recorder {
     }
 
     pub(super) fn follow(&mut self) {
-        // After everything was shown, a view of hours would follow; what is left out of a held picture stays its length.
+        // As long as what was looked at.
         self.view = View::Follow { span: self.span() };
         self.lines.iter_mut().for_each(|line| line.range = None);
     }

@@ -66,6 +66,11 @@ pub enum Watch {
     Counter,
 }
 
+impl Watch {
+    /// The temperature in °C of every encoder that tells it.
+    pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
+}
+
 /// A watched value as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {

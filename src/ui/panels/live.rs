@@ -41,7 +41,7 @@ fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, ac
         ui.set_max_width(240.0);
         ui.label(skin.heading(&word));
         paragraph(ui, skin.caption(skin.say("live.watch_words")));
-        let usual = [Watch::Analogue(0x48), Watch::Counter];
+        let usual = [Watch::TEMPERATURE, Watch::Counter];
         let more = watched.iter().copied().filter(|own| !usual.contains(own));
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);

@@ -7,11 +7,16 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
-use crate::app::recorder::{Line, LineId, Recorder};
+use crate::app::recorder::{Line, LineId, Recorder, Stamp};
 use crate::signal::history::{Cut, Grid, Picture};
 
 /// Between two lanes, in points.
 const BETWEEN: f32 = 6.0;
+/// Room for the labels of the values at the left, in points: at least, and at most.
+const LEAST: f32 = 44.0;
+const MOST: f32 = 110.0;
+/// Room for the labels of the time at the foot, in points.
+const FOOT: f32 = 18.0;
 /// A character of an axis label, in points: the labels' font has one width.
 const LETTER: f32 = 6.7;
 
@@ -43,9 +48,19 @@ pub(super) struct Layout {
 /// Reduced samples, kept from picture to picture.
 #[derive(Default)]
 pub(super) struct Reduced {
-    cuts: Vec<(Grid, Range<u64>, Cut)>,
-    pub(super) pictures: Vec<(LineId, Picture)>,
-    state: Vec<(LineId, Grid, Range<u64>)>,
+    pictures: Vec<(LineId, Picture)>,
+    /// What each of them was made of.
+    made: Vec<(LineId, Made)>,
+    /// How much room the labels of the values took.
+    gutter: f32,
+}
+
+/// What a picture is made of: when it is the same, so is the picture.
+#[derive(Clone, PartialEq)]
+struct Made {
+    samples: Option<Stamp>,
+    all: Range<u64>,
+    grid: Grid,
 }
 
 impl Reduced {
@@ -54,36 +69,31 @@ impl Reduced {
     }
 
     /// Makes the pictures of what is shown, as far as something has changed.
-    pub(super) fn update(&mut self, recorder: &Recorder, grid: &Grid) {
-        self.cuts.clear();
+    fn update(&mut self, recorder: &Recorder, grid: &Grid) {
         let shown = |id: &LineId| recorder.shown().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
-        self.state.retain(|(id, ..)| shown(id));
+        self.made.retain(|(id, _)| shown(id));
+        let mut cuts: Vec<(Made, Cut)> = Vec::new();
         for line in recorder.shown() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = (line.id, *grid, history.all());
-            if self.state.contains(&wanted) && self.picture(line.id).is_some() {
+            let wanted = Made { samples: recorder.stamp(line), all: history.all(), grid: *grid };
+            if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }
-            let cut = match self.cuts.iter().position(|(own, all, _)| own == grid && *all == wanted.2) {
-                Some(at) => at,
-                None => {
-                    self.cuts.push((*grid, history.all(), history.cut(grid)));
-                    self.cuts.len() - 1
-                }
-            };
-            let at = match self.pictures.iter().position(|(own, _)| *own == line.id) {
-                Some(at) => at,
-                None => {
-                    self.pictures.push((line.id, Picture::default()));
-                    self.pictures.len() - 1
-                }
-            };
-            if let (Some((_, _, cut)), Some((_, picture))) = (self.cuts.get(cut), self.pictures.get_mut(at)) {
+            // Lines whose samples were taken together are cut together.
+            if !cuts.iter().any(|(made, _)| *made == wanted) {
+                cuts.push((wanted.clone(), history.cut(grid)));
+            }
+            if self.picture(line.id).is_none() {
+                self.pictures.push((line.id, Picture::default()));
+            }
+            let cut = cuts.iter().find(|(made, _)| *made == wanted);
+            let picture = self.pictures.iter_mut().find(|(id, _)| *id == line.id);
+            if let (Some((_, cut)), Some((_, picture))) = (cut, picture) {
                 history.picture(line.column(), cut, picture);
             }
-            self.state.retain(|(id, ..)| *id != line.id);
-            self.state.push(wanted);
+            self.made.retain(|(id, _)| *id != line.id);
+            self.made.push((line.id, wanted));
         }
     }
 
@@ -105,33 +115,37 @@ impl Reduced {
 
 /// Lays out what is shown in `rect`.
 pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut Reduced) -> Layout {
-    // How wide the labels are shows only when the values are known, which depends on the width: the widest of the picture
-    // before would make it jump, so that they get the room of what is common.
+    // How wide the labels are shows only when the values are known, which depends on the width: what the picture before
+    // needed is tried first, so that a picture that changes little is made once.
     let (from, to) = recorder.window();
-    let foot = 18.0;
     let groups = groups(recorder);
-    let mut gutter = 44.0;
+    let mut gutter = reduced.gutter.clamp(LEAST, MOST);
     loop {
-        let chart =
-            Rect::from_min_max(pos2(rect.left() + gutter, rect.top()), pos2(rect.right(), rect.bottom() - foot));
-        let chart = chart.intersect(rect);
+        let corner = pos2(rect.left() + gutter, rect.top());
+        let chart = Rect::from_min_max(corner, pos2(rect.right(), rect.bottom() - FOOT)).intersect(rect);
         let pixels = (chart.width() * pixels_per_point).floor().max(1.0);
         let grid = Grid::new(from, to, pixels as usize);
         let scale = f64::from(1.0 / pixels_per_point) / grid.width() as f64;
         let time = TimeAxis { from: grid.edge(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
         let lanes = lanes(chart, &groups, &time, reduced);
-        let wide = |lane: &&Lane| {
-            let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
-            axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
-        };
-        let needed =
-            lanes.iter().filter(|lane| !lane.empty).map(|lane| wide(&lane)).max().unwrap_or(0) as f32 * LETTER + 10.0;
-        if needed <= gutter || gutter >= 110.0 || rect.width() < gutter * 3.0 {
+        let needed = (letters(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
+        if needed <= gutter || rect.width() < gutter * 3.0 {
+            // Given back in the next picture, when it is more than a letter or two: it is not to jump with every sample.
+            reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
             return Layout { lanes, time, chart };
         }
-        gutter = needed.min(110.0);
+        gutter = needed;
     }
+}
+
+/// Letters of the longest label of a value.
+fn letters(lanes: &[Lane]) -> usize {
+    let longest = |lane: &Lane| {
+        let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
+        axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
+    };
+    lanes.iter().filter(|lane| !lane.empty).map(longest).max().unwrap_or(0)
 }
 
 /// The lines of each lane.
@@ -163,4 +177,61 @@ fn range(lines: &[&Line], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Op
     let least = lines.iter().map(|line| 10_f64.powi(-(line.decimals() as i32)) * 8.0).fold(f64::INFINITY, f64::min);
     let (low, high) = all.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))?;
     Some(axes::round_range(low, high, least))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Text;
+    use crate::app::recorder::{Action, Scale};
+    use crate::signal::Time;
+    use crate::signal::history::{Kind, Part};
+
+    /// 1000 samples, a microsecond apart, of one value.
+    fn recorder(value: f64) -> Recorder {
+        let mut recorder = Recorder::new(1_000_000);
+        let group = recorder.add_group(&[Kind::Real], 10_000, None);
+        let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
+        recorder.add_line(Line::of(group, 0, Text::new("recorder.position"), "value", scales));
+        let times: Vec<Time> = (0..1000).map(|at| Time::from_nanoseconds(at * 1000)).collect();
+        recorder.append(group, &times, &[Part::real(&[value; 1000])]).unwrap();
+        recorder
+    }
+
+    fn shown(reduced: &Reduced, recorder: &Recorder) -> f64 {
+        let picture = reduced.picture(recorder.lines()[0].id).unwrap();
+        picture.pixels[0].values.unwrap().first
+    }
+
+    const RECT: Rect = Rect { min: egui::Pos2::ZERO, max: pos2(400.0, 200.0) };
+
+    #[test]
+    fn samples_of_another_recorder_are_not_taken_for_those_before() {
+        let mut reduced = Reduced::default();
+        let (one, mut other) = (recorder(1.0), recorder(2.0));
+        layout(&one, RECT, 1.0, &mut reduced);
+        assert_eq!(shown(&reduced, &one), 1.0);
+        layout(&other, RECT, 1.0, &mut reduced);
+        assert_eq!(shown(&reduced, &other), 2.0, "the same times, other values");
+        other.act(Action::Clear);
+        layout(&other, RECT, 1.0, &mut reduced);
+        let line = other.lines()[0].id;
+        assert!(reduced.picture(line).unwrap().pixels.is_empty());
+    }
+
+    #[test]
+    fn a_picture_with_long_labels_is_made_once() {
+        let mut reduced = Reduced::default();
+        let recorder = recorder(123_456.789_1);
+        layout(&recorder, RECT, 1.0, &mut reduced);
+        let (made, gutter) = (reduced.made.clone(), reduced.gutter);
+        assert!(gutter > LEAST);
+        let chart = layout(&recorder, RECT, 1.0, &mut reduced).chart;
+        assert!(reduced.made == made, "nothing has changed");
+        assert_eq!(chart.left(), RECT.left() + gutter);
+        // Wide labels of an earlier picture do not take the room for ever.
+        let short = self::recorder(1.0);
+        layout(&short, RECT, 1.0, &mut reduced);
+        assert!(layout(&short, RECT, 1.0, &mut reduced).chart.left() < chart.left());
+    }
 }

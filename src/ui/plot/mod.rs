@@ -23,6 +23,8 @@ use crate::app::{Action, Desk};
 /// What a plot remembers while the window is open.
 #[derive(Default)]
 pub struct View {
+    /// Whose plot it was.
+    desk: Option<Desk>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
@@ -75,6 +77,10 @@ pub fn plot_ui(
     empty: &str,
     actions: &mut Vec<Action>,
 ) {
+    if view.desk.replace(desk).is_some_and(|before| before != desk) {
+        // What was being dragged and typed was another's.
+        *view = View { desk: view.desk, large: view.large, ..View::default() };
+    }
     let context = &mut Context { skin, recorder, desk, actions };
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
@@ -110,7 +116,10 @@ fn chart_ui(
     let word = skin.say("recorder.chart");
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &word));
     ui.painter().rect_filled(rect, skin.radius, skin.palette.sunken);
-    if recorder.is_empty() || recorder.shown().next().is_none() || size.x < 80.0 {
+    if size.x < 80.0 {
+        return None;
+    }
+    if recorder.is_empty() || recorder.shown().next().is_none() {
         let words = if recorder.is_empty() { empty.to_owned() } else { skin.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));

@@ -123,7 +123,9 @@ fn hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layou
     if !dragging && cursor_at(context, layout, place).is_some() {
         ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
     }
-    let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta(), input.zoom_delta()));
+    let zoom = ui.input(egui::InputState::zoom_delta);
+    // Taken: the page around the plot is not to move as well.
+    let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {
         context.act(Action::Zoom(layout.time.time(place.x), factor));

@@ -1,0 +1,120 @@
+//! What is recorded of positions whose times and values are known, over hours.
+
+use std::time::Duration;
+
+use super::*;
+
+/// 32 steps a period, 4096 a turn; 4096 turns.
+const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
+const RANGE: i64 = 4096 * 4096;
+
+fn moment(microseconds: u64) -> Moment {
+    Moment::after_start(Duration::from_micros(microseconds))
+}
+
+fn position(microseconds: u64, steps: i64) -> Sample {
+    let raw = u32::try_from(steps.rem_euclid(RANGE)).unwrap();
+    let position = Some(SKM36.position(raw));
+    Sample::Position(PositionReading { at: moment(microseconds), raw, position, valid: true, codes: Vec::new() })
+}
+
+fn watched(microseconds: u64, value: i64) -> Sample {
+    let (at, what) = (moment(microseconds), Watch::TEMPERATURE);
+    Sample::Watched(WatchedReading { at, what, value: Ok(value), codes: Vec::new() })
+}
+
+fn line<'a>(record: &'a Record, heading: &str) -> &'a Line {
+    record.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
+}
+
+/// Time in nanoseconds, value in the samples' own unit, flags.
+fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
+    let line = line(record, heading);
+    let history = record.recorder.history(line).unwrap();
+    let sample = |index| history.sample(line.column(), index).unwrap();
+    history.all().map(sample).map(|own| (own.time.nanoseconds(), own.value.to_f64(), own.flags)).collect()
+}
+
+#[test]
+fn a_position_read_on_its_own_does_not_push_the_samples_before_it_away() {
+    let mut record = Record::default();
+    record.add((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
+    // It was read in between, and is told after those.
+    record.add(vec![position(550_000, 550)], 0, Some(SKM36));
+    record.add((11..=20).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
+    let positions = samples(&record, "position");
+    assert_eq!(positions.len(), 21);
+    assert!(
+        positions.iter().enumerate().all(|(at, own)| *own == (at as i64 * 100_000_000, at as f64 * 100.0, Flags::NONE))
+    );
+    // 100 steps in 100 ms, from a quarter of a second on.
+    assert!(samples(&record, "speed").iter().skip(3).all(|own| own.1 == 1000.0));
+    assert_eq!(record.last().unwrap().raw, 2000);
+}
+
+#[test]
+fn nothing_is_joined_across_what_is_missing() {
+    let mut record = Record::default();
+    record.watch(&[Watch::TEMPERATURE]);
+    record.add(vec![position(0, 0), watched(0, 40), position(100_000, 1), watched(500_000, 41)], 0, Some(SKM36));
+    record.add(vec![position(600_000, 2), watched(1_000_000, 42)], 7, Some(SKM36));
+    let breaks =
+        |heading| -> Vec<bool> { samples(&record, heading).iter().map(|own| own.2.contains(Flags::BREAK)).collect() };
+    assert_eq!(breaks("position"), [false, false, true]);
+    assert_eq!(breaks("temperature"), [false, false, true]);
+    assert_eq!(record.dropped(), 7);
+    // The cable was out for an hour.
+    let began: Zoned = "2026-03-01T10:00:00[UTC]".parse().unwrap();
+    let mut record = Record::default();
+    record.watch(&[Watch::TEMPERATURE]);
+    record.begin(&began);
+    record.add(vec![position(0, 5), watched(0, 40)], 0, Some(SKM36));
+    record.begin(&"2026-03-01T11:00:00[UTC]".parse().unwrap());
+    record.add(vec![position(0, 6), watched(0, 30)], 0, Some(SKM36));
+    let hour = 3_600_000_000_000;
+    assert_eq!(samples(&record, "position"), [(0, 5.0, Flags::NONE), (hour, 6.0, Flags::BREAK)]);
+    assert_eq!(samples(&record, "temperature"), [(0, 40.0, Flags::NONE), (hour, 30.0, Flags::BREAK)]);
+    // A wall clock that was set back does not turn time round.
+    record.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
+    record.add(vec![position(0, 7)], 0, Some(SKM36));
+    assert_eq!(samples(&record, "position").last().unwrap().0, hour + 1);
+}
+
+/// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand samples.
+#[test]
+fn a_long_run_misses_no_break_and_no_wrap() {
+    let mut record = Record::default();
+    let (mut microseconds, mut expected) = (0, Vec::new());
+    let start = RANGE - 1_000_000;
+    let steps = |microseconds: u64| start + microseconds as i64 * 40_960 / 1_000_000;
+    let mut batch = Vec::new();
+    for number in 0..600_000 {
+        let paused = number > 0 && number % 10_000 == 0;
+        microseconds += if paused { 3_000_000 } else { 1_000 };
+        expected.push((microseconds as i64 * 1_000, steps(microseconds), paused));
+        batch.push(position(microseconds, steps(microseconds)));
+        if batch.len() == 1_000 {
+            record.add(std::mem::take(&mut batch), 0, Some(SKM36));
+        }
+    }
+    let recorder = &record.recorder;
+    let own = line(&record, "position");
+    let history = recorder.history(own).unwrap();
+    assert_eq!(history.all(), 0..600_000);
+    for (index, (time, steps, broken)) in expected.into_iter().enumerate() {
+        let sample = history.sample(0, index as u64).unwrap();
+        assert_eq!((sample.time.nanoseconds(), sample.value.to_f64() as i64), (time, steps), "{index}");
+        assert_eq!(sample.flags.contains(Flags::BREAK), broken, "{index}");
+    }
+    let speed = history.statistics(1, history.all()).unwrap();
+    let rpm = 60.0 / 4096.0;
+    // A step is 1/4096 of a turn, over a quarter of a second.
+    assert!(
+        (speed.min.to_f64() * rpm - 600.0).abs() < 0.1 && (speed.max.to_f64() * rpm - 600.0).abs() < 0.1,
+        "{speed:?}"
+    );
+    // After each pause nothing is said until a quarter of a second is over.
+    assert_eq!(speed.bad, 60 * 250);
+    // Four columns of eight bytes, and a third more for the pyramid and the block being filled.
+    assert!(recorder.memory() < 600_000 * 32 * 4 / 3, "{}", recorder.memory());
+}
