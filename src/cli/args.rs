@@ -240,7 +240,8 @@ pub(super) struct Analyse {
     /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
     #[arg(value_name = "FILE.csv")]
     pub(super) file: PathBuf,
-    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS.
+    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS. Then, where there are such
+    /// columns, reference=N (mechanical degrees) and absolute=N (steps of 1/32 period).
     #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
     pub(super) columns: Option<Columns>,
     /// Volts in one unit of the sine and cosine columns.
@@ -288,23 +289,33 @@ impl FromStr for Code {
 }
 
 fn parse_columns(text: &str) -> Result<Columns, String> {
-    let numbers: Vec<usize> = text
-        .split(',')
-        .map(|word| word.trim().parse().ok().filter(|n| *n > 0))
-        .collect::<Option<_>>()
-        .unwrap_or_default();
-    let columns = match *numbers.as_slice() {
-        [time, sine, cosine] => Columns { time: Some(time), sine, cosine, references: None },
-        [time, sine, refsin, cosine, refcos] => {
-            Columns { time: Some(time), sine, cosine, references: Some((refsin, refcos)) }
+    let number = |word: &str| word.trim().parse().ok().filter(|number: &usize| *number > 0);
+    let mut numbers: Vec<usize> = Vec::new();
+    let (mut reference_angle, mut absolute) = (None, None);
+    for word in text.split(',') {
+        let place = match word.split_once('=') {
+            None => &mut None,
+            Some(("reference", _)) => &mut reference_angle,
+            Some(("absolute", _)) => &mut absolute,
+            Some((name, _)) => return Err(format!("{name} is no column; there are reference= and absolute=")),
+        };
+        let column = number(word.split_once('=').map_or(word, |(_, number)| number));
+        *place = Some(column.ok_or("columns are numbers from 1, as in 1,2,3 or 1,2,3,reference=4")?);
+        if !word.contains('=') {
+            numbers.extend(column);
         }
+    }
+    let (time, sine, cosine, references) = match *numbers.as_slice() {
+        [time, sine, cosine] => (Some(time), sine, cosine, None),
+        [time, sine, refsin, cosine, refcos] => (Some(time), sine, cosine, Some((refsin, refcos))),
         _ => return Err("three or five column numbers from 1 are needed, as in 1,2,3".to_owned()),
     };
+    numbers.extend(reference_angle.into_iter().chain(absolute));
     let different: std::collections::BTreeSet<&usize> = numbers.iter().collect();
     if different.len() < numbers.len() {
         return Err("a column stands there twice".to_owned());
     }
-    Ok(columns)
+    Ok(Columns { time, sine, cosine, references, reference_angle, absolute })
 }
 
 fn parse_factor(text: &str) -> Result<f64, String> {

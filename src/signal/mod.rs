@@ -20,6 +20,7 @@ pub mod nonlinearity;
 pub mod outliers;
 pub mod position_error;
 pub mod quality;
+pub mod revolution;
 pub mod spectrum;
 pub mod synchronise;
 mod time;

@@ -8,7 +8,9 @@ use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
 use crate::signal::diagnosis::{Finding, Stuck, What};
 use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
+use crate::signal::nonlinearity::NonlinearityError;
 use crate::signal::quality::{Finding as Parameter, Verdict};
+use crate::signal::revolution::RevolutionError;
 use crate::signal::spectrum::SpectrumError;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
@@ -34,6 +36,9 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
         }
         CaptureError::NotANumber { row, column, text: found } => {
             text("signal.not_a_number").with("row", row).with("column", column).with("text", format!("{found:?}"))
+        }
+        CaptureError::NotWhole { row, column, text: found } => {
+            text("signal.not_whole").with("row", row).with("column", column).with("text", found)
         }
         CaptureError::NotFinite { row, column, text: found } => {
             text("signal.not_finite").with("row", row).with("column", column).with("text", found)
@@ -74,6 +79,20 @@ pub fn spectrum(error: &SpectrumError) -> Text {
         SpectrumError::TooFew { samples } => Text::new("spectrum.few").with("samples", samples),
         SpectrumError::Uneven { index } => Text::new("spectrum.uneven").with("sample", index + 1),
         SpectrumError::NotFinite => Text::new("spectrum.not_finite"),
+    }
+}
+
+/// Why a reference tells no deviation over the revolution.
+pub fn revolution(error: &RevolutionError) -> Text {
+    match error {
+        RevolutionError::Periods { found, given } => {
+            Text::new("revolution.periods").with_number("found", *found, 1).with("given", given)
+        }
+        RevolutionError::Nonlinearity(NonlinearityError::NotMonotonic { index }) => {
+            Text::new("revolution.turns_back").with("number", index + 1)
+        }
+        RevolutionError::Nonlinearity(NonlinearityError::TooLittle) => Text::new("revolution.too_little"),
+        RevolutionError::Nonlinearity(NonlinearityError::NotFinite) => Text::new("revolution.no_number"),
     }
 }
 

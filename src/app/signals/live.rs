@@ -264,6 +264,7 @@ impl Recent {
             sine_v: wires.sine_v(),
             cosine_v: wires.cosine_v(),
             references_v: Some((wires.refsin_v, wires.refcos_v)),
+            ..Capture::default()
         })
     }
 }

@@ -138,6 +138,7 @@ mod tests {
             sine_v: vec![0.3, 0.0, -0.3],
             cosine_v: vec![0.4, 0.5, 0.4],
             references_v: Some((vec![2.5; 3], vec![2.4; 3])),
+            ..Capture::default()
         };
         let scope = Scope::of(&capture);
         assert_eq!(names(&scope), ["scope.sine", "scope.cosine", "scope.vector"]);

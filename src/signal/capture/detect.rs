@@ -2,8 +2,8 @@
 //! as SICK 8010701 names them.
 
 use super::CaptureError;
-use super::header::{Columns, TimeUnit, VoltUnit, unit_of};
-use super::import::{Number, number};
+use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
+use super::import::{Number, number, whole};
 
 /// So many bytes from the beginning are looked at.
 pub const HEAD: usize = 64 << 10;
@@ -96,7 +96,8 @@ impl Layout {
         let first_row = data.first().map_or(1, |line| line.row);
         let header = header(before, width);
         let names = header.first().cloned().unwrap_or_default();
-        let columns = match (wishes.columns, Columns::named(&names)) {
+        let named = Columns::named(&names).map(|columns| fitting(columns, data.first(), decimal_comma));
+        let columns = match (wishes.columns, named) {
             (Some(columns), _) | (None, Some(columns)) => columns,
             (None, None) if width >= 3 => Columns::PLAIN,
             (None, None) if width == 1 => return Err(CaptureError::OneColumn),
@@ -118,6 +119,18 @@ impl Layout {
             volts_per_unit: wishes.volts_per_unit.unwrap_or(volt_unit.factor()),
         })
     }
+}
+
+/// A column that is taken by its name only holds what its name says: a position in metres is no absolute position.
+fn fitting(columns: Columns, first: Option<&Line>, decimal_comma: bool) -> Columns {
+    let read = |column: usize| {
+        let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
+        field.map_or(Number::Text, |field| number(field, decimal_comma))
+    };
+    let angle = columns.reference_angle.filter(|column| matches!(read(*column), Number::Finite(_)));
+    let absolute =
+        columns.absolute.filter(|column| matches!(read(*column), Number::Finite(value) if whole(value).is_some()));
+    Columns { reference_angle: angle, absolute, ..columns }
 }
 
 /// Without a line that is cut off at the end of the head.
@@ -220,10 +233,6 @@ fn header(before: &[Line], width: usize) -> Vec<Vec<String>> {
         names.truncate(width.max(names.len()));
     }
     found
-}
-
-fn is_unit(text: &str) -> bool {
-    TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some()
 }
 
 /// A lone B5h is a µ in the encoding of older programs; a leading # or % marks a comment.

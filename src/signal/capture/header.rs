@@ -12,6 +12,10 @@ pub struct Columns {
     pub cosine: usize,
     /// REFSIN and REFCOS against ground, where sine and cosine are not differences already.
     pub references: Option<(usize, usize)>,
+    /// The shaft's angle by a reference encoder in degrees.
+    pub reference_angle: Option<usize>,
+    /// The absolute position in whole steps of 1/32 period.
+    pub absolute: Option<usize>,
 }
 
 /// Unit of a time column.
@@ -42,12 +46,14 @@ pub enum VoltUnit {
 
 impl Columns {
     /// Time, sine, cosine in this order.
-    pub const PLAIN: Columns = Columns { time: Some(1), sine: 2, cosine: 3, references: None };
+    pub const PLAIN: Columns =
+        Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
     /// The last column that is needed.
     pub fn last(&self) -> usize {
         let (refsin, refcos) = self.references.unwrap_or_default();
-        [self.time.unwrap_or_default(), self.sine, self.cosine, refsin, refcos].into_iter().max().unwrap_or_default()
+        let others = [self.time, self.reference_angle, self.absolute].map(Option::unwrap_or_default);
+        [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
     /// The columns that names tell; `None` where sine or cosine is not among them.
@@ -63,6 +69,10 @@ impl Columns {
             sine: find(&["sin", "sine", "sinus", "sin+", "+sin", "sinplus"])?,
             cosine: find(&["cos", "cosine", "cosinus", "kosinus", "cos+", "+cos", "cosplus"])?,
             references,
+            // A reference in volts is none of an angle.
+            reference_angle: find(&["reference", "referenz", "ref", "angle", "winkel", "mechanical angle"])
+                .filter(|at| !names.get(at - 1).is_some_and(|name| is_in_volts(name))),
+            absolute: find(&["absolute", "absolut", "abs", "absolute position", "position", "pos"]),
         })
     }
 }
@@ -112,6 +122,20 @@ impl VoltUnit {
     }
 }
 
+/// A unit of angles, as a header writes it.
+fn is_degrees(text: &str) -> bool {
+    ["deg", "degree", "degrees", "\u{b0}", "grad"].contains(&text)
+}
+
+fn is_in_volts(name: &str) -> bool {
+    unit_of(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
+}
+
+/// A unit of times, voltages or angles, in small letters.
+pub(super) fn is_unit(text: &str) -> bool {
+    TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some() || is_degrees(text)
+}
+
 /// The name without its unit, in small letters: `Time [ms]` is `time`.
 fn bare_name(name: &str) -> String {
     let name = name.trim().to_lowercase();
@@ -128,7 +152,7 @@ pub(super) fn unit_of(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);
     let (_, unit) = inside.rsplit_once(['[', '(', '/', '_', ' '])?;
-    (TimeUnit::parse(unit).is_some() || VoltUnit::parse(unit).is_some()).then_some(unit)
+    is_unit(unit).then_some(unit)
 }
 
 #[cfg(test)]
@@ -145,10 +169,10 @@ mod tests {
         for names in ["time|sin|cos", "Time [ms]|Sine (V)|Cosine (V)", "t/s|SIN_mV|COS_mV", "Zeit|Sinus|Kosinus"] {
             assert_eq!(named(names), plain, "{names}");
         }
-        let expected = Columns { time: Some(5), sine: 1, cosine: 3, references: Some((2, 4)) };
+        let expected = Columns { time: Some(5), sine: 1, cosine: 3, references: Some((2, 4)), ..Columns::PLAIN };
         assert_eq!(named("SIN|REFSIN|COS|REFCOS|t"), Some(expected));
         assert_eq!(expected.last(), 5);
-        let untimed = Columns { time: None, sine: 2, cosine: 1, references: None };
+        let untimed = Columns { time: None, sine: 2, cosine: 1, ..Columns::PLAIN };
         assert_eq!(named("cos|sin"), Some(untimed));
         for names in ["a|b|c", "time|sin|x", ""] {
             assert_eq!(named(names), None, "{names}");

@@ -64,8 +64,12 @@ impl Import {
             volts: layout.volts_per_unit,
             comma: layout.decimal_comma,
         };
-        let capture =
-            Capture { references_v: layout.columns.references.map(|_| (Vec::new(), Vec::new())), ..Capture::default() };
+        let capture = Capture {
+            references_v: layout.columns.references.map(|_| (Vec::new(), Vec::new())),
+            reference_deg: layout.columns.reference_angle.map(|_| Vec::new()),
+            absolute: layout.columns.absolute.map(|_| Vec::new()),
+            ..Capture::default()
+        };
         Import {
             reader: ReaderBuilder::new().delimiter(layout.delimiter.byte()).build(),
             layout,
@@ -165,6 +169,14 @@ impl Taken {
             kept.0.push(refsin);
             kept.1.push(refcos);
         }
+        if let (Some(column), Some(kept)) = (self.columns.reference_angle, &mut capture.reference_deg) {
+            kept.push(value(column)?);
+        }
+        if let (Some(column), Some(kept)) = (self.columns.absolute, &mut capture.absolute) {
+            let steps = value(column)?;
+            let not_whole = || CaptureError::NotWhole { row: line, column, text: steps.to_string() };
+            kept.push(whole(steps).ok_or_else(not_whole)?);
+        }
         capture.time_s.extend(time.map(|time| time * self.seconds));
         capture.sine_v.push(sine);
         capture.cosine_v.push(cosine);
@@ -183,6 +195,12 @@ impl Taken {
             Number::Text => Err(CaptureError::NotANumber { row: line, column, text: shown(field) }),
         }
     }
+}
+
+/// The whole number that a value is; nothing beyond 2⁵³, where not every number can be told from the next.
+pub(super) fn whole(value: f64) -> Option<i64> {
+    const MOST: f64 = (1_i64 << 53) as f64;
+    (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
 /// Reads a field without spaces around it.

@@ -2,13 +2,15 @@
 //! out from the first lines and can be corrected. Files are read elsewhere; here bytes are handed in, piece by piece.
 //!
 //! The columns are those that SICK 8010701 names: SIN, REFSIN, COS, REFCOS against ground, or sine and cosine as the
-//! differences.
+//! differences; and beside them what belongs to the same moment: the angle of a reference encoder, the absolute position.
 
 mod detect;
+mod export;
 mod header;
 mod import;
 
 pub use detect::{Delimiter, HEAD, Layout, Wishes};
+pub use export::Export;
 pub use header::{Columns, TimeUnit, VoltUnit};
 pub use import::Import;
 
@@ -23,6 +25,10 @@ pub struct Capture {
     pub cosine_v: Vec<f64>,
     /// REFSIN and REFCOS in volts, where the table has them.
     pub references_v: Option<(Vec<f64>, Vec<f64>)>,
+    /// The shaft's angle by a reference encoder in degrees, where the table has it: wrapped at a turn or running on.
+    pub reference_deg: Option<Vec<f64>>,
+    /// Absolute positions in steps of 1/32 period, where the table has them.
+    pub absolute: Option<Vec<i64>>,
 }
 
 /// Why a table is no capture.
@@ -61,6 +67,16 @@ pub enum CaptureError {
         /// The column, from 1.
         column: usize,
         /// What stands there, shortened.
+        text: String,
+    },
+    /// An absolute position is no whole number of steps.
+    #[error("row {row}, column {column}: {text} is no whole number")]
+    NotWhole {
+        /// The line in the file, from 1.
+        row: u64,
+        /// The column, from 1.
+        column: usize,
+        /// What stands there.
         text: String,
     },
     /// A number is NaN or infinite.

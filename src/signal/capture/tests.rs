@@ -2,7 +2,7 @@
 
 use super::super::import::Import;
 use super::*;
-use crate::signal::capture::Capture;
+use crate::signal::capture::{Capture, Export};
 
 fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Capture), CaptureError> {
     let mut import = Import::begin(text, wishes)?;
@@ -71,7 +71,7 @@ fn what_was_found_out_is_told_and_can_be_corrected() {
     };
     assert_eq!(layout, expected);
     let wishes = Wishes {
-        columns: Some(Columns { time: None, sine: 3, cosine: 2, references: None }),
+        columns: Some(Columns { time: None, sine: 3, cosine: 2, ..Columns::PLAIN }),
         volts_per_unit: Some(2.0),
         ..Wishes::default()
     };
@@ -118,4 +118,70 @@ fn a_table_longer_than_the_head_keeps_its_row_numbers() {
     text.push_str("0,?,0\n");
     let expected = CaptureError::NotANumber { row: 20_001, column: 2, text: "?".to_owned() };
     assert_eq!(read_in(4096, text.as_bytes(), &Wishes::default()).unwrap_err(), expected);
+}
+
+#[test]
+fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
+    let both = (Some(vec![359.5, 0.25]), Some(vec![7_i64, -8]));
+    let cases: [(&str, _); 7] = [
+        ("t,sin,cos,reference,absolute\n0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", both.clone()),
+        ("absolut;t;angle [deg];sin;cos\n7;0;359,5;0,1;0,2\n-8;1;0,25;0,1;0,2\n", both.clone()),
+        ("t,sin,cos,ref_deg,Position\n0,.1,.2,359.5,7.0\n1,.1,.2,0.25,-8\n", both.clone()),
+        ("t [s],sin [V],cos [V],Winkel (\u{b0}),abs\n0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", both.clone()),
+        ("t,sin,cos,ref [V],position\n0,.1,.2,2.5,7.5\n1,.1,.2,2.5,-8\n", (None, None)),
+        ("t,sin,cos,angle,position\n0,.1,.2,,left\n1,.1,.2,1,1\n", (None, None)),
+        ("0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", (None, None)),
+    ];
+    for (text, expected) in cases {
+        let (layout, capture) = read(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((capture.reference_deg, capture.absolute), expected, "{text}");
+        assert_eq!(layout.columns.reference_angle.is_some(), expected.0.is_some(), "{text}");
+    }
+    let wishes = Wishes {
+        columns: Some(Columns { reference_angle: Some(4), absolute: Some(5), ..Columns::PLAIN }),
+        ..Wishes::default()
+    };
+    let (_, capture) = read_in(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", &wishes).unwrap();
+    assert_eq!((capture.reference_deg, capture.absolute), both);
+    let error = read_in(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8.5\n", &wishes).unwrap_err();
+    assert_eq!(error, CaptureError::NotWhole { row: 2, column: 5, text: "-8.5".to_owned() });
+    let error = read("t,sin,cos,reference\n0,1,2,3\n1,1,2\n").unwrap_err();
+    assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
+}
+
+fn exported(capture: &Capture, decimal_comma: bool) -> String {
+    let export = Export::of(capture, decimal_comma);
+    let mut text = export.header();
+    (0..export.rows()).for_each(|row| export.row(row, &mut text));
+    text
+}
+
+#[test]
+fn what_is_written_is_read_again_exactly() {
+    let plain = Capture {
+        time_s: vec![0.0, 1e-6, 0.1 + 0.2],
+        sine_v: vec![0.25, -0.3, 1.0 / 3.0],
+        cosine_v: vec![0.5, 0.4, -1e-9],
+        ..Capture::default()
+    };
+    let full = Capture {
+        references_v: Some((vec![2.5, 2.25, 2.0], vec![2.5, 2.75, 3.0])),
+        // What a difference of two doubles gives back.
+        sine_v: vec![0.25, -0.5, 0.125],
+        cosine_v: vec![0.5, 0.25, -0.125],
+        reference_deg: Some(vec![359.9, 0.1, 123.456]),
+        absolute: Some(vec![0, -1, 1 << 40]),
+        ..plain.clone()
+    };
+    let untimed = Capture { time_s: vec![], ..plain.clone() };
+    for (label, capture) in [("plain", &plain), ("full", &full), ("untimed", &untimed)] {
+        for decimal_comma in [false, true] {
+            let text = exported(capture, decimal_comma);
+            let (layout, back) = read(&text).unwrap_or_else(|error| panic!("{label}: {error}: {text}"));
+            assert_eq!(&back, capture, "{label}: {text}");
+            assert_eq!(layout.decimal_comma, decimal_comma, "{label}");
+        }
+    }
+    assert!(exported(&plain, true).starts_with("time [s];sine [V];cosine [V]\n0;0,25;0,5\n"));
+    assert!(exported(&plain, false).starts_with("time [s],sine [V],cosine [V]\n0,0.25,0.5\n0.000001,-0.3,0.4\n"));
 }
