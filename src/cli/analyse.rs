@@ -7,13 +7,14 @@ use serde_json::{Value as Json, json};
 use super::args::Analyse;
 use super::output::{Lines, Output};
 use super::runner::{Bar, failed};
-use super::{Done, Result};
+use super::{Done, Failure, Result};
 use crate::app::explain;
 use crate::signal::analysis::Analysis;
-use crate::signal::capture::Wishes;
-use crate::signal::diagnosis::{Record, diagnose};
+use crate::signal::capture::{Capture, Wishes};
+use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
 use crate::signal::position_error::{Basis, Samples, harmonics};
 use crate::signal::quality::Family;
+use crate::signal::revolution::Revolution;
 use crate::store::read_capture;
 
 pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
@@ -26,40 +27,152 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     drop(bar);
     let (_, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
-    let analysis = Analysis::of(samples).map_err(|error| failed(&explain::signal::analysis(path, &error)))?;
     let references_v = capture.references_v.as_ref().map(|(refsin, refcos)| (refsin.as_slice(), refcos.as_slice()));
-    let record = Record { samples, references_v, periods: None };
-    let diagnosis = diagnose(&record, Ok(&analysis), &Family::Hiperface.limits());
+    let record = Record { samples, references_v, periods: arguments.periods };
+    let family = arguments.limits.family();
+    let analysis = Analysis::of(samples);
+    let diagnosis = diagnose(&record, analysis.as_ref(), &family.limits());
     let findings: Vec<String> =
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal()).collect();
-    output.show(&json(&analysis, &findings), &text(&analysis, &findings))?;
+    let analysis = analysis.map_err(|error| {
+        let told = explain::signal::analysis(path, &error).terminal();
+        // Levels of the wires say more about what is wrong than that there is no ellipse.
+        let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
+        Failure::Failed(std::iter::once(told).chain(more).collect())
+    })?;
+    let revolution = revolution(output, &capture, &analysis, arguments.periods);
+    let told = Told {
+        family,
+        analysis: &analysis,
+        diagnosis: &diagnosis,
+        findings: &findings,
+        revolution,
+        periods: arguments.periods,
+    };
+    output.show(&told.json(), &told.text())?;
     Ok(Done::Well)
 }
 
-fn json(analysis: &Analysis, findings: &[String]) -> Json {
-    let Analysis { ellipse, coverage, error, .. } = analysis;
-    let (least, most) = coverage.vector_v;
-    json!({
-        "samples": analysis.samples,
-        "left_out": analysis.outliers.as_ref().map_or(0, |outliers| outliers.count),
-        "periods": coverage.periods,
-        "frequency_hz": analysis.frequency_hz(),
-        "amplitude_v": ellipse.amplitude_v,
-        "offset_sin_v": ellipse.offset_sine_v,
-        "offset_cos_v": ellipse.offset_cosine_v,
-        "gain_ratio": ellipse.gain_ratio,
-        "phase_error_deg": ellipse.phase_error_deg(),
-        "residual_rms": coverage.residual_rms,
-        "octants": coverage.octants,
-        "vector_min_v": least,
-        "vector_max_v": most,
-        "error_pp_deg_raw": error.raw_pp_deg(),
-        "error_pp_deg_corrected": error.corrected_pp_deg,
-        "error_basis": basis(error.basis),
-        "harmonics_deg_raw": harmonics(&error.raw_deg),
-        "harmonics_deg_corrected": harmonics(&error.corrected_deg),
-        "findings": findings,
-    })
+/// DNL and INL, where there are a reference and the number of periods; why there are none is a remark.
+fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
+    let reference = capture.reference_deg.as_ref()?;
+    let Some(periods) = periods else {
+        output.remark("The table has the angle of a reference encoder: with --periods N, DNL and INL are told.");
+        return None;
+    };
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let told = Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+    told.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
+}
+
+/// All that is told of a capture.
+struct Told<'a> {
+    family: Family,
+    analysis: &'a Analysis,
+    diagnosis: &'a Diagnosis,
+    findings: &'a [String],
+    revolution: Option<Revolution>,
+    periods: Option<u32>,
+}
+
+impl Told<'_> {
+    fn speed_rpm(&self) -> Option<f64> {
+        Some(self.analysis.frequency_hz()? * 60.0 / f64::from(self.periods?))
+    }
+
+    fn json(&self) -> Json {
+        let Analysis { ellipse, coverage, error, .. } = self.analysis;
+        let (least, most) = coverage.vector_v;
+        let lines: Option<Vec<Json>> = self.diagnosis.interference.as_ref().map(|lines| {
+            lines.iter().map(|line| json!({"frequency_hz": line.frequency_hz, "amplitude_v": line.volts})).collect()
+        });
+        let mut json = json!({
+            "samples": self.analysis.samples,
+            "left_out": self.analysis.outliers.as_ref().map_or(0, |outliers| outliers.count),
+            "periods": coverage.periods,
+            "frequency_hz": self.analysis.frequency_hz(),
+            "speed_rpm": self.speed_rpm(),
+            "amplitude_v": ellipse.amplitude_v,
+            "offset_sin_v": ellipse.offset_sine_v,
+            "offset_cos_v": ellipse.offset_cosine_v,
+            "gain_ratio": ellipse.gain_ratio,
+            "phase_error_deg": ellipse.phase_error_deg(),
+            "residual_rms": coverage.residual_rms,
+            "octants": coverage.octants,
+            "vector_min_v": least,
+            "vector_max_v": most,
+            "error_pp_deg_raw": error.raw_pp_deg(),
+            "error_pp_deg_corrected": error.corrected_pp_deg,
+            "error_basis": basis(error.basis),
+            "harmonics_deg_raw": harmonics(&error.raw_deg),
+            "harmonics_deg_corrected": harmonics(&error.corrected_deg),
+            "noise_rms_v": self.diagnosis.noise_v,
+            "interference": lines,
+            "limits": self.family.name(),
+            "findings": self.findings,
+        });
+        if let (Some(Revolution { raw, corrected }), Some(object)) = (&self.revolution, json.as_object_mut()) {
+            for (key, value) in [
+                ("inl_deg", raw.integral_deg),
+                ("dnl_deg", raw.differential_deg),
+                ("inl_deg_corrected", corrected.integral_deg),
+                ("dnl_deg_corrected", corrected.differential_deg),
+                ("revolutions", raw.revolutions),
+            ] {
+                object.insert(key.to_owned(), json!(value));
+            }
+        }
+        json
+    }
+
+    fn text(&self) -> String {
+        let Analysis { ellipse, coverage, error, .. } = self.analysis;
+        let (least, most) = coverage.vector_v;
+        let share =
+            |volts: f64| format!("{volts:+.4} V ({:+.1} % of the amplitude)", 100.0 * volts / ellipse.amplitude_v);
+        let left_out = self.analysis.outliers.as_ref().map_or_else(String::new, |outliers| {
+            format!(", {} of them left out: up to {:.3} V off the ellipse", outliers.count, outliers.farthest_v)
+        });
+        let mut lines = Lines::default();
+        lines
+            .add("samples", format!("{}{left_out}", self.analysis.samples))
+            .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
+        if let Some(frequency) = self.analysis.frequency_hz() {
+            let speed = self.speed_rpm().map_or_else(String::new, |speed| format!(", {speed:.3} 1/min"));
+            lines.add("frequency", format!("{frequency:.3} Hz{speed}"));
+        }
+        lines
+            .add(
+                "amplitude",
+                format!("{:.4} V cosine, {:.4} V sine (peak)", ellipse.amplitude_v, ellipse.amplitude_sine_v()),
+            )
+            .add("vector", format!("{least:.4} … {most:.4} V"))
+            .add("offset sine", share(ellipse.offset_sine_v))
+            .add("offset cosine", share(ellipse.offset_cosine_v))
+            .add("gain ratio", format!("{:.4} (cosine over sine)", ellipse.gain_ratio))
+            .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
+            .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
+            .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_pp_deg()))
+            .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_words(error.basis)));
+        if let Some(Revolution { raw, corrected }) = &self.revolution {
+            let both = |raw: f64, corrected: f64| {
+                format!("±{:.1}″ as measured, ±{:.1}″ corrected (mechanical)", raw * 3_600.0, corrected * 3_600.0)
+            };
+            lines
+                .add("DNL", both(raw.differential_deg, corrected.differential_deg))
+                .add("INL", both(raw.integral_deg, corrected.integral_deg));
+            if raw.revolutions < 1.0 {
+                lines.add("", format!("over {:.2} of a revolution only", raw.revolutions));
+            }
+        }
+        if self.findings.is_empty() {
+            lines.add("verdict", format!("within the limits of {}", self.family.name()));
+        }
+        for (at, finding) in self.findings.iter().enumerate() {
+            lines.add(if at == 0 { "verdict" } else { "" }, finding);
+        }
+        lines.text()
+    }
 }
 
 fn basis(basis: Basis) -> &'static str {
@@ -67,42 +180,6 @@ fn basis(basis: Basis) -> &'static str {
         Basis::Motion { .. } => "motion",
         Basis::Ellipse => "ellipse",
     }
-}
-
-fn text(analysis: &Analysis, findings: &[String]) -> String {
-    let Analysis { ellipse, coverage, error, .. } = analysis;
-    let (least, most) = coverage.vector_v;
-    let share = |volts: f64| format!("{volts:+.4} V ({:+.1} % of the amplitude)", 100.0 * volts / ellipse.amplitude_v);
-    let mut lines = Lines::default();
-    let left_out = analysis.outliers.as_ref().map_or_else(String::new, |outliers| {
-        format!(", {} of them left out: up to {:.3} V off the ellipse", outliers.count, outliers.farthest_v)
-    });
-    lines
-        .add("samples", format!("{}{left_out}", analysis.samples))
-        .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
-    if let Some(frequency) = analysis.frequency_hz() {
-        lines.add("frequency", format!("{frequency:.3} Hz"));
-    }
-    lines
-        .add(
-            "amplitude",
-            format!("{:.4} V cosine, {:.4} V sine (peak)", ellipse.amplitude_v, ellipse.amplitude_sine_v()),
-        )
-        .add("vector", format!("{least:.4} … {most:.4} V"))
-        .add("offset sine", share(ellipse.offset_sine_v))
-        .add("offset cosine", share(ellipse.offset_cosine_v))
-        .add("gain ratio", format!("{:.4} (cosine over sine)", ellipse.gain_ratio))
-        .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
-        .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
-        .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_pp_deg()))
-        .add("corrected", format!("{:.3}° peak to peak, {}", error.corrected_pp_deg, basis_words(error.basis)));
-    if findings.is_empty() {
-        lines.add("verdict", "within the limits of HIPERFACE");
-    }
-    for (at, finding) in findings.iter().enumerate() {
-        lines.add(if at == 0 { "verdict" } else { "" }, finding);
-    }
-    lines.text()
 }
 
 fn basis_words(basis: Basis) -> String {

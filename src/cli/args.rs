@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 use crate::signal::capture::Columns;
+use crate::signal::quality::Family;
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
 /// window.
@@ -99,9 +100,12 @@ pub(super) struct Find {
 #[derive(Args)]
 pub(super) struct Position {
     pub(super) device: DeviceKind,
-    /// Number of lines.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
-    pub(super) count: u64,
+    /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) count: Option<u64>,
+    /// Print a table (CSV): a header once, then a line a reading.
+    #[arg(long, conflicts_with = "json")]
+    pub(super) csv: bool,
     /// Time between two readings in milliseconds; 0: as fast as the line allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
@@ -247,6 +251,34 @@ pub(super) struct Analyse {
     /// Volts in one unit of the sine and cosine columns.
     #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
     pub(super) volts_per_unit: Option<f64>,
+    /// The encoders by whose limits the signal is judged.
+    #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
+    pub(super) limits: Limits,
+    /// Signal periods in a revolution: for the speed, for what repeats with the revolution, and with a reference for DNL
+    /// and INL.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    pub(super) periods: Option<u32>,
+}
+
+/// Families of encoders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Limits {
+    /// 0.9 … 1.1 V peak to peak, references at 2.0 … 3.0 V.
+    Hiperface,
+    /// 0.8 … 1.2 V peak to peak, references at 2.25 … 2.75 V.
+    AfsAfm60,
+    /// 0.9 … 1.1 V peak to peak, references at 2.375 … 2.625 V.
+    Ttk70,
+}
+
+impl Limits {
+    pub(super) fn family(self) -> Family {
+        match self {
+            Limits::Hiperface => Family::Hiperface,
+            Limits::AfsAfm60 => Family::AfsAfm60,
+            Limits::Ttk70 => Family::Ttk70,
+        }
+    }
 }
 
 #[derive(Args)]

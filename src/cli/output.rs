@@ -34,7 +34,11 @@ impl Output {
 
     /// Prints a result in the form that was asked for.
     pub(super) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
-        let printed = if self.json { format!("{json}\n") } else { visible(text) };
+        if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
+    }
+
+    /// Prints lines as they are, and lets nothing of them wait.
+    pub(super) fn print(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),

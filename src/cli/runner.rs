@@ -89,7 +89,7 @@ impl Runner {
     pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
         self.codes_met.clear();
         let id = self.worker.submit(job).map_err(|_| Ended::Worker)?;
-        if self.interrupted.load(Ordering::SeqCst) {
+        if self.is_interrupted() {
             // It came before the job, for which it is meant as well.
             self.worker.stop();
         }
@@ -125,8 +125,13 @@ impl Runner {
         }
     }
 
+    /// Ctrl-C was pressed.
+    pub(super) fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::SeqCst)
+    }
+
     fn check_interrupt(&self) -> std::result::Result<(), Ended> {
-        if self.interrupted.load(Ordering::SeqCst) { Err(Ended::Interrupted) } else { Ok(()) }
+        if self.is_interrupted() { Err(Ended::Interrupted) } else { Ok(()) }
     }
 }
 

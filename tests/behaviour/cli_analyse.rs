@@ -191,6 +191,13 @@ fn wrong_usage_is_status_2() {
     for columns in ["1,2", "0,1,2", "1,2,2", "a,b,c", "", "1,2,3,4"] {
         bench.run(&["analyse", &file, "--columns", columns]).fails(2, &["--columns"]);
     }
+    for columns in ["1,2,3,reference=0", "1,2,3,reference=x", "1,2,3,angle=4", "1,2,3,absolute=3", "reference=4"] {
+        bench.run(&["analyse", &file, "--columns", columns]).fails(2, &["--columns"]);
+    }
+    for periods in ["0", "-16", "x", "1.5", "10000000"] {
+        bench.run(&["analyse", &file, "--periods", periods]).fails(2, &["--periods"]);
+    }
+    bench.run(&["analyse", &file, "--limits", "some"]).fails(2, &["--limits", "afs-afm60"]);
     for factor in ["0", "-1", "x", "nan", "inf"] {
         bench.run(&["analyse", &file, "--volts-per-unit", factor]).fails(2, &["--volts-per-unit"]);
     }
@@ -222,4 +229,82 @@ fn the_captures_that_ship_are_a_good_one_and_a_bad_one() {
         near(&told, key, value, tolerance);
     }
     assert!(told["findings"].as_array().unwrap().len() >= 4, "{told}");
+}
+
+/// Made with Python: 5000 rows of 0.05 ms, `turn = 1.25·i/5000`, `true = turn + 120/1296000·sin(2π·turn)`, θ = 2π·16·true,
+/// cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms of noise from `random.Random(16).gauss`, four
+/// decimals; reference `360·turn mod 360`, absolute `floor(32·16·true − 0.5) mod 512`; decimal commas.
+#[test]
+fn the_revolution_that_ships_tells_its_eccentricity() {
+    let bench = Bench::new();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals/revolution-with-reference.csv");
+    let path = path.to_str().unwrap();
+    let ran = bench.run(&["analyse", path, "--json", "--periods", "16"]);
+    assert_eq!(ran.err, "");
+    let told = ran.json();
+    // 1.25 revolutions in 250 ms are 300 1/min; a parameter scatters by 0.3 mV·√(2/5000) = 6 µV.
+    near(&told, "speed_rpm", 300.0, 0.1);
+    near(&told, "periods", 20.0, 0.01);
+    near(&told, "amplitude_v", 0.49, 4e-5);
+    near(&told, "offset_cos_v", 0.010, 4e-5);
+    near(&told, "offset_sin_v", -0.015, 4e-5);
+    near(&told, "gain_ratio", 1.04, 2e-4);
+    near(&told, "phase_error_deg", 2.0, 0.01);
+    // The mean over a 16th of a revolution lessens 120″ by (π/16)²/6 = 0.6 %.
+    near(&told, "inl_deg", 119.2 / 3600.0, 0.4 / 3600.0);
+    near(&told, "inl_deg_corrected", 119.2 / 3600.0, 0.4 / 3600.0);
+    // Python: half of peak to peak of the errors of this ellipse, 5.801567° electrical, in 16 periods; noise of 0.035° comes
+    // up to four times that far on either side.
+    near(&told, "dnl_deg", 0.181_3, 0.008);
+    near(&told, "dnl_deg_corrected", 0.0, 0.012);
+    let text = bench.run(&["analyse", path, "--periods", "16"]).out;
+    assert!(
+        text.contains("INL") && text.contains("300.0") && text.contains("within the limits of HIPERFACE"),
+        "{text}"
+    );
+
+    // Without the number of periods there is a hint, with a wrong one the right one is told.
+    let ran = bench.run(&["analyse", path, "--json"]);
+    assert!(ran.json().get("inl_deg").is_none() && ran.err.contains("--periods"), "{ran:?}");
+    let ran = bench.run(&["analyse", path, "--json", "--periods", "32"]);
+    assert!(ran.json().get("inl_deg").is_none() && ran.err.contains("16.0 periods"), "{ran:?}");
+    let columns = "1,2,3,reference=4,absolute=5";
+    near(
+        &bench.run(&["analyse", path, "--json", "--periods", "16", "--columns", columns]).json(),
+        "inl_deg",
+        0.0331,
+        2e-4,
+    );
+    bench.run(&["analyse", path, "--columns", "1,2,3,absolute=4"]).fails(1, &["row 3", "column 4", "0.09"]);
+}
+
+#[test]
+fn limits_are_those_of_the_family_that_is_named() {
+    let bench = Bench::new();
+    let weak = Signal { amplitude: 0.43, offset_cosine: 0.0, offset_sine: 0.0, ratio: 1.0, phase_deg: 0.0 };
+    let file = bench.write("weak.csv", table("t,sin,cos\n", &rows(&weak, 400, 0.0, 3.0)));
+    let verdict = |limits: &str| bench.run(&["analyse", &file, "--limits", limits]).out;
+    assert!(verdict("hiperface").contains("outside 0.9 … 1.1 V"));
+    assert!(verdict("ttk70").contains("outside 0.9 … 1.1 V"));
+    assert!(verdict("afs-afm60").contains("within the limits of AFS/AFM60"));
+}
+
+#[test]
+fn a_drive_and_a_broken_wire_are_told() {
+    let bench = Bench::new();
+    let good = rows(&REFERENCE, 20_000, 0.0, 400.0);
+    let disturbed: Vec<[f64; 3]> =
+        good.iter().map(|[t, sine, cosine]| [*t, sine + 0.01 * (TAU * 8_000.0 * t).sin(), *cosine]).collect();
+    let file = bench.write("drive.csv", table("t,sin,cos\n", &disturbed));
+    let told = bench.run(&["analyse", &file, "--json"]).json();
+    near(&told["interference"][0], "frequency_hz", 8_000.0, 2.0);
+    near(&told["interference"][0], "amplitude_v", 0.01, 1e-4);
+    assert!(told["findings"].to_string().contains("Interference at 8000 Hz"), "{told}");
+    // COS lies on ground, beside its reference of 2.5 V.
+    let wires = good.iter().fold("t,SIN,REFSIN,COS,REFCOS\n".to_owned(), |mut text, [t, sine, _]| {
+        writeln!(text, "{t:.6},{:.6},2.5,0.02,2.5", sine + 2.5).unwrap();
+        text
+    });
+    let file = bench.write("wire.csv", wires);
+    bench.run(&["analyse", &file]).fails(1, &["cosine channel is dead", "COS is at ground"]);
 }

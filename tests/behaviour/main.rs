@@ -12,6 +12,7 @@ mod cli_consent;
 mod cli_faults;
 mod cli_offline;
 mod cli_ports;
+mod cli_position;
 mod cli_simulate;
 mod cli_status;
 mod foreign;

@@ -7,14 +7,16 @@ use serde_json::{Value as Json, json};
 use crate::app::explain;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Find, Position};
+use crate::cli::hiperface::table::Table;
 use crate::cli::output::{Lines, Output};
 use crate::cli::runner::{Ended, Runner, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Identity, PositionReading};
 use crate::profile::hiperface::Item;
-use crate::protocol::hiperface::{EncoderTypes, KIND, LineSettings, StatusCode};
-use crate::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError, Value};
+use crate::protocol::hiperface::{EncoderTypes, Geometry, KIND, LineSettings, StatusCode};
+use crate::worker::Device as _;
+use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     let mut runner = Runner::open(common)?;
@@ -185,22 +187,54 @@ pub(in crate::cli) fn position(common: &Common, output: &Output, position: &Posi
             identity.label.encoder_type
         ));
     }
+    let table = position.csv.then(|| Table::of(identity.geometry));
+    if let Some(table) = &table {
+        output.print(table.header())?;
+    }
+    readings(&mut runner, output, position, identity.geometry, table.as_ref())
+}
+
+fn readings(
+    runner: &mut Runner,
+    output: &Output,
+    position: &Position,
+    geometry: Option<Geometry>,
+    table: Option<&Table>,
+) -> Result {
     // A code that the encoder announced while it was identified is about this position too.
-    let mut spoilt_before = runner.codes_met.iter().any(|code| code.spoils_position());
+    let mut codes_before = std::mem::take(&mut runner.codes_met);
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
-    for line in 0..position.count {
+    // A table of no certain length is ended by Ctrl-C: then it is done.
+    let endless = position.csv && position.count.is_none();
+    let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
+    for line in 0..count {
         if line > 0 {
             next = (next + interval).max(Instant::now());
-            runner.pause(next.saturating_duration_since(Instant::now()))?;
+            let paused = runner.pause(next.saturating_duration_since(Instant::now()));
+            if endless && runner.is_interrupted() {
+                return Ok(Done::Well);
+            }
+            paused?;
         }
-        match runner.try_run(HiperfaceJob::Position(identity.geometry)) {
+        match runner.try_run(HiperfaceJob::Position(geometry)) {
             Ok(HiperfaceOutput::Position(mut reading)) => {
-                reading.valid &= !std::mem::take(&mut spoilt_before);
-                show_position(output, &reading)?;
+                reading.valid &= !codes_before.iter().any(|code| code.spoils_position());
+                reading.codes = codes_before.drain(..).chain(reading.codes).collect();
+                match table {
+                    Some(table) => output.print(&table.row(&reading))?,
+                    None => show_position(output, &reading)?,
+                }
             }
             Ok(other) => return Err(unexpected(&other)),
-            Err(Ended::Job(error)) if error.means_no_position() => show_no_position(output, &error)?,
+            Err(Ended::Job(error)) if error.means_no_position() => match table {
+                Some(table) => {
+                    output.remark(&no_position(&error));
+                    output.print(&table.row_without_position(&runner.codes_met))?;
+                }
+                None => show_no_position(output, &error)?,
+            },
+            Err(Ended::Job(error)) if endless && Hiperface::is_cancelled(&error) => break,
             Err(ended) => return Err(ended.into_failure()),
         }
     }
@@ -226,8 +260,12 @@ fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  {:08X}h  {words}{flag}\n", reading.raw))
 }
 
+fn no_position(error: &JobError) -> String {
+    explain::hiperface::job(error).iter().map(|text| text.terminal()).collect()
+}
+
 fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
-    output.remark(&explain::hiperface::job(error).iter().map(|text| text.terminal()).collect::<String>());
+    output.remark(&no_position(error));
     let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
     output.show(&json, "no position\n")
 }

@@ -4,6 +4,7 @@ mod act;
 mod decode;
 mod inspect;
 mod profiles;
+mod table;
 mod write;
 
 pub(super) use act::act;
