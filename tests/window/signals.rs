@@ -426,7 +426,7 @@ fn what_became_worse_since_the_kept_capture_is_told() {
             What::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
             _ => false,
         };
-        studio.signals.worse().iter().any(rose)
+        studio.signals.changes().is_some_and(|own| own.worse.iter().any(rose))
     });
     let measurement = desk.studio.signals.measurement().unwrap();
     let peak = measurement.spectra.as_ref().unwrap().sine.peaks[1];

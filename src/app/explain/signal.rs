@@ -6,7 +6,7 @@ use super::file;
 use crate::app::Text;
 use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
-use crate::signal::diagnosis::{Finding, Stuck, What};
+use crate::signal::diagnosis::{Finding, Stuck, Untold, What};
 use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::signal::nonlinearity::NonlinearityError;
 use crate::signal::quality::{Finding as Parameter, Verdict};
@@ -161,6 +161,15 @@ pub fn diagnosis(finding: &Finding) -> Text {
         }
         What::AmplitudeChanged { from_v, to_v } => changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3),
     }
+}
+
+/// What cannot be told of two captures.
+pub fn untold(untold: Untold) -> Text {
+    Text::new(match untold {
+        Untold::NoEllipseBefore => "compare.no_ellipse_before",
+        Untold::NoEllipseAfter => "compare.no_ellipse_after",
+        Untold::NoSpectrum => "compare.no_spectrum",
+    })
 }
 
 fn hertz(text: Text, frequency_hz: f64) -> Text {

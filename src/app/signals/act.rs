@@ -10,7 +10,7 @@ use crate::app::recorder;
 use crate::app::services::Services;
 use crate::app::{Action as StudioAction, Severity, Text, explain};
 use crate::signal::capture::Wishes;
-use crate::signal::diagnosis::{Finding, compare};
+use crate::signal::diagnosis::{Changes, Finding, compare};
 use crate::signal::quality::Family;
 use crate::store::ReadCaptureError;
 
@@ -99,10 +99,11 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// What is worse than in the capture that it is compared with.
-    pub fn worse(&self) -> Vec<Finding> {
-        let both = self.comparison.as_ref().zip(self.measurement.as_ref());
-        both.map_or_else(Vec::new, |(kept, own)| compare(&kept.diagnosis, &own.diagnosis))
+    /// What changed since the capture that it is compared with, both judged by the same limits.
+    pub fn changes(&self) -> Option<Changes> {
+        let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
+        let before = kept.diagnosis.by_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
+        Some(compare(&before, &own.diagnosis))
     }
 
     /// There is something to stop.

@@ -1,38 +1,141 @@
-//! Two captures of one signal, as with the drive off and on: what became worse.
+//! Two captures of one signal, as with the drive off and on: what became worse, what only changed, and what nobody can tell.
+//! Both have to be judged by the same limits.
+
+use std::mem::discriminant;
 
 use super::lines::Interference;
-use super::{Diagnosis, Finding, LEAST_LINE, Severity, What, severity};
+use super::{Diagnosis, Finding, LEAST_LINE, OutOfLimits, Severity, What, severity};
 
-/// Noise or a line is more when it is more by this factor.
+/// What changed from one capture to another.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Changes {
+    /// What became worse or came up, the worst first.
+    pub worse: Vec<Finding>,
+    /// What is another without being worse.
+    pub changed: Vec<Finding>,
+    /// What cannot be compared.
+    pub untold: Vec<Untold>,
+}
+
+/// Something that cannot be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Untold {
+    /// Anything about the ellipse: the first capture has none.
+    NoEllipseBefore,
+    /// Likewise: the second has none.
+    NoEllipseAfter,
+    /// Hum, interference and noise: one of them has no spectrum.
+    NoSpectrum,
+}
+
+/// A disturbance is more when it is more by this factor.
 const MORE: f64 = 1.5;
+/// A parameter of the ellipse is further out of its limits when it is by this factor.
+const FURTHER: f64 = 1.1;
 /// And by this share of the amplitude, for noise.
 const LEAST_NOISE: f64 = 0.001;
-/// An amplitude is another when it differs by this share; from the second on it is a warning.
-const AMPLITUDE: (f64, f64) = (0.02, 0.1);
+/// An amplitude is another when it differs by this share.
+const AMPLITUDE: f64 = 0.02;
 
-/// What is worse in `after` than in `before`; nothing where that cannot be told.
-pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let (Some(from_v), Some(to_v)) = (before.amplitude_v, after.amplitude_v) else { return findings };
-    let changed = (to_v / from_v - 1.0).abs();
-    if changed >= AMPLITUDE.0 {
-        let severity = if changed >= AMPLITUDE.1 { Severity::Warning } else { Severity::Notice };
-        findings.push(Finding { severity, what: What::AmplitudeChanged { from_v, to_v } });
+/// What is worse, and what is another, in `after` than in `before`.
+pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
+    let mut changes = Changes::default();
+    let is_worse = |finding: &&Finding| is_worse(finding, before, after);
+    changes.worse.extend(after.findings.iter().filter(is_worse));
+    match (before.amplitude_v, after.amplitude_v) {
+        (Some(from_v), Some(to_v)) => {
+            if (to_v / from_v - 1.0).abs() >= AMPLITUDE {
+                // One that left its limits is among what is worse as well.
+                let what = What::AmplitudeChanged { from_v, to_v };
+                changes.changed.push(Finding { severity: Severity::Notice, what });
+            }
+            disturbances(before, after, to_v, &mut changes);
+        }
+        (None, _) => changes.untold.push(Untold::NoEllipseBefore),
+        (Some(_), None) => changes.untold.push(Untold::NoEllipseAfter),
     }
-    let amplitude = to_v;
+    changes.worse.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    changes
+}
+
+/// Noise and the lines of the spectrum, which are compared by their size.
+fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
+    let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
+        changes.untold.push(Untold::NoSpectrum);
+        return;
+    };
     if let (Some(from_v), Some(to_v)) = (before.noise_v, after.noise_v)
         && to_v >= MORE * from_v
         && to_v - from_v >= LEAST_NOISE * amplitude
     {
-        findings.push(Finding { severity: severity(to_v / amplitude), what: What::NoiseRose { from_v, to_v } });
+        let what = What::NoiseRose { from_v, to_v };
+        changes.worse.push(Finding { severity: severity(to_v / amplitude), what });
     }
-    if let (Some(earlier), Some(later)) = (&before.interference, &after.interference) {
-        let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
-        let found = later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude));
-        findings.extend(found);
+    let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
+    changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
+}
+
+/// A finding of the second capture is new, or more than in the first.
+fn is_worse(finding: &Finding, before: &Diagnosis, after: &Diagnosis) -> bool {
+    match finding.what {
+        // Without an ellipse to compare with, only these can be told.
+        What::Still | What::Same | What::Dead { .. } | What::Level { .. } => {}
+        _ if before.amplitude_v.is_none() => return false,
+        // Compared by their size.
+        What::Hum { .. } | What::Interference { .. } | What::Noise { .. } => return false,
+        // Something else may have explained it in the first.
+        What::Limit(OutOfLimits::Residual(_)) => {
+            return match (before.residual, after.residual) {
+                (Some(before), Some(after)) => after >= FURTHER * before,
+                _ => false,
+            };
+        }
+        _ => {}
     }
-    findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
-    findings
+    let same = |other: &&Finding| covers(&other.what, &finding.what);
+    let Some(earlier) = before.findings.iter().find(same) else { return true };
+    let factor = if matches!(finding.what, What::Limit(_) | What::Level { .. }) { FURTHER } else { MORE };
+    let comparable = discriminant(&earlier.what) == discriminant(&finding.what);
+    finding.severity > earlier.severity || comparable && amount(&finding.what) >= factor * amount(&earlier.what)
+}
+
+/// The first finding is of the kind of the second, or a worse form of it.
+fn covers(earlier: &What, later: &What) -> bool {
+    match (earlier, later) {
+        (What::Limit(earlier), What::Limit(later)) => discriminant(earlier) == discriminant(later),
+        (What::Half { .. }, What::Limit(OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_)))
+        | (What::LetsGo { .. }, What::Spikes { .. }) => true,
+        (
+            What::Dead { channel: earlier, .. } | What::Half { channel: earlier, .. },
+            What::Half { channel: later, .. },
+        )
+        | (What::Dead { channel: earlier, .. }, What::Dead { channel: later, .. })
+        | (What::Clipping { channel: earlier, .. }, What::Clipping { channel: later, .. }) => earlier == later,
+        (What::Level { wire: earlier, .. }, What::Level { wire: later, .. }) => earlier == later,
+        (earlier, later) => discriminant(earlier) == discriminant(later),
+    }
+}
+
+/// How much of it there is, to be compared with another of its kind.
+fn amount(what: &What) -> f64 {
+    let beyond = |value: f64, (least, most): (f64, f64)| (least - value).max(value - most).max(0.0);
+    match *what {
+        What::Limit(OutOfLimits::Amplitude { volts, ok_v, .. }) => beyond(volts, ok_v),
+        What::Limit(
+            OutOfLimits::OffsetSine(value)
+            | OutOfLimits::OffsetCosine(value)
+            | OutOfLimits::PhaseError(value)
+            | OutOfLimits::Residual(value),
+        ) => value.abs(),
+        What::Limit(OutOfLimits::GainRatio(ratio)) => ratio.ln().abs(),
+        What::Level { volts, ok_v, .. } => beyond(volts, ok_v),
+        What::Harmonics { share, .. } | What::Modulation { share } => share,
+        What::Clipping { samples, .. } => samples,
+        What::Spikes { count, .. } | What::LetsGo { count, .. } => count as f64,
+        What::Half { share, .. } => 1.0 / share,
+        // Where they are, they are: nothing makes them more.
+        _ => f64::NAN,
+    }
 }
 
 fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitude: f64) -> Option<Finding> {

@@ -9,7 +9,7 @@ mod compare;
 mod lines;
 mod shape;
 
-pub use compare::compare;
+pub use compare::{Changes, Untold, compare};
 pub use lines::Interference;
 
 use super::analysis::{Analysis, AnalysisError};
@@ -219,13 +219,17 @@ pub struct Diagnosis {
     pub interference: Option<Vec<Interference>>,
     /// Distance of two lines of that spectrum in hertz.
     pub spacing_hz: Option<f64>,
+    /// Distance of the samples from the ellipse, rms, as a share of the amplitude.
+    pub residual: Option<f64>,
+    /// Other findings explain that distance.
+    explained: bool,
 }
 
 /// Looks at a capture and at what its analysis gave.
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
     let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
-    levels(record, limits, &mut say);
+    levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
     match analysis {
         Err(error) => without_ellipse(record, error, &mut say),
         Ok(analysis) => {
@@ -237,14 +241,13 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             let harmonics = shape::harmonics(&record.samples, analysis);
             let modulation = record.periods.and_then(|periods| shape::modulation(&record.samples, analysis, periods));
             shapes(record, analysis, harmonics, modulation, &mut say);
-            // A residual whose causes are told needs no words of its own.
             let by_lines =
                 seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
             let by_shape = [harmonics.map(|(_, share)| share), modulation].into_iter().flatten();
             let explained = by_lines + by_shape.map(|share| share * share / 2.0).sum::<f64>();
-            if explained >= EXPLAINED * analysis.coverage.residual_rms.powi(2) {
-                diagnosis.findings.retain(|finding| !matches!(finding.what, What::Limit(OutOfLimits::Residual(_))));
-            }
+            diagnosis.explained = explained >= EXPLAINED * analysis.coverage.residual_rms.powi(2);
+            diagnosis.leave_out_explained();
+            diagnosis.residual = Some(analysis.coverage.residual_rms);
             diagnosis.amplitude_v = Some(amplitude);
             diagnosis.noise_v = Some(noise_v);
             diagnosis.spacing_hz = seen.as_ref().map(|seen| seen.spacing_hz);
@@ -256,15 +259,47 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
     diagnosis
 }
 
+impl Diagnosis {
+    /// The same by other limits, without the samples: what depends on limits is judged again by the analysis and the mean
+    /// levels of REFSIN and REFCOS in volts that belong to it.
+    #[must_use]
+    pub fn by_limits(
+        &self,
+        analysis: Result<&Analysis, &AnalysisError>,
+        levels_v: Option<(f64, f64)>,
+        limits: &Limits,
+    ) -> Self {
+        let mut diagnosis = self.clone();
+        let depends = |what: &What| matches!(what, What::Limit(_) | What::Level { .. } | What::Half { .. });
+        diagnosis.findings.retain(|finding| !depends(&finding.what));
+        let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
+        levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
+        if let Ok(analysis) = analysis {
+            parameters(analysis, limits, &mut say);
+        }
+        diagnosis.leave_out_explained();
+        diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+        diagnosis
+    }
+
+    /// A residual whose causes are told needs no words of its own.
+    fn leave_out_explained(&mut self) {
+        if self.explained {
+            self.findings.retain(|finding| !matches!(finding.what, What::Limit(OutOfLimits::Residual(_))));
+        }
+    }
+}
+
 fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-fn levels(record: &Record<'_>, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
-    let Some((refsin, refcos)) = record.references_v else { return };
+/// Mean levels of REFSIN and REFCOS in volts.
+fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
+    let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;
-    for (wire, values) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
-        if let Some(volts) = mean(values)
+    for (wire, level) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
+        if let Some(volts) = level
             && !within(volts, ok_v)
         {
             say(Severity::Warning, What::Level { wire, volts, ok_v });

@@ -296,9 +296,9 @@ fn of_two_captures_it_is_told_what_became_worse() {
         })
         .diagnosed()
     };
-    assert_eq!(compare(&off, &off), []);
-    assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), [], "what is gone is not worse");
-    let on = compare(&hum(0.004, 0.0, 1.0), &hum(0.004, 0.02, 1.0));
+    assert_eq!(compare(&off, &off), Changes::default());
+    assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), Changes::default(), "what is gone is not worse");
+    let on = compare(&hum(0.004, 0.0, 1.0), &hum(0.004, 0.02, 1.0)).worse;
     let [
         Finding {
             severity: Severity::Warning,
@@ -311,24 +311,103 @@ fn of_two_captures_it_is_told_what_became_worse() {
     near(*frequency_hz, 8_000.0, 0.5);
     assert_eq!(*from_v, 0.0);
     near(*to_v, 0.02, 5e-5);
-    let weaker = compare(&off, &hum(0.0, 0.0, 0.95));
-    let [Finding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] = weaker.as_slice()
-    else {
-        panic!("{weaker:?}")
-    };
-    near(*from_v, 0.5, 1e-4);
-    near(*to_v, 0.475, 1e-4);
     let mut noisy = made(steady, |_, _, signal| signal);
     let mut random = fastrand::Rng::with_seed(5);
     noisy.sine.iter_mut().chain(&mut noisy.cosine).for_each(|value| *value += 0.01 * (random.f64() - 0.5));
-    let rose = compare(&off, &noisy.diagnosed());
+    let rose = compare(&off, &noisy.diagnosed()).worse;
     let [Finding { severity: Severity::Notice, what: What::NoiseRose { to_v, .. } }] = rose.as_slice() else {
         panic!("{rose:?}")
     };
     // Even numbers over 10 mV deviate by 10/√12 mV.
     near(*to_v, (0.01 * 0.01 / 12.0 + 5e-4 * 5e-4_f64).sqrt(), 6e-5);
-    let dead = Diagnosis::default();
-    assert_eq!(compare(&dead, &off), []);
+}
+
+/// Amplitude, offset of the sine, phase error in radians.
+fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
+    made(steady, move |_, angle, (_, cosine)| (amplitude * 0.5 * (angle - phase).sin() + offset, amplitude * cosine))
+}
+
+#[test]
+fn an_amplitude_that_changes_is_worse_only_where_it_leaves_its_limits() {
+    let at = |amplitude| ellipse(amplitude, 0.0, 0.0).diagnosed();
+    for (from, to, worse) in [(1.0, 0.95, 0), (0.8, 1.0, 0), (1.0, 0.8, 1), (0.8, 0.7, 1), (0.7, 0.8, 0)] {
+        let changes = compare(&at(from), &at(to));
+        assert_eq!(changes.worse.len(), worse, "{from} {to}: {changes:?}");
+        let [Finding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] =
+            changes.changed.as_slice()
+        else {
+            panic!("{changes:?}")
+        };
+        near(*from_v, 0.5 * from, 1e-4);
+        near(*to_v, 0.5 * to, 1e-4);
+    }
+}
+
+#[test]
+fn what_comes_up_is_worse_whatever_it_is() {
+    let good = made(steady, |_, _, signal| signal);
+    let mut spikes = ellipse(1.0, 0.0, 0.0);
+    (0..20).for_each(|at| spikes.sine[2_000 * at + 77] = 2.0);
+    let mut contact = ellipse(1.0, 0.0, 0.0);
+    for at in 24_000..24_300 {
+        (contact.sine[at], contact.cosine[at]) = (0.0, 0.0);
+    }
+    let mut levels = ellipse(1.0, 0.0, 0.0);
+    levels.references = Some((vec![2.5; COUNT], vec![3.2; COUNT]));
+    let third =
+        |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
+    let mut cut = made(steady, |_, _, signal| signal);
+    cut.cosine.iter_mut().for_each(|value| *value = value.min(0.45));
+    for (label, after) in [
+        ("offset", ellipse(1.0, 0.05, 0.0)),
+        ("phase", ellipse(1.0, 0.0, 0.12)),
+        ("gain", made(steady, |_, _, (sine, cosine)| (0.96 * sine, 1.06 * cosine))),
+        ("harmonics", made(steady, third)),
+        ("clipping", cut),
+        ("level", levels),
+        ("spikes", spikes),
+        ("contact", contact),
+    ] {
+        let after = after.diagnosed();
+        assert!(!compare(&good.diagnosed(), &after).worse.is_empty(), "{label}: {after:?}");
+        let back = compare(&after, &good.diagnosed());
+        assert_eq!((back.worse, back.untold), (vec![], vec![]), "{label}");
+    }
+    let more = compare(&ellipse(1.0, 0.03, 0.0).diagnosed(), &ellipse(1.0, 0.06, 0.0).diagnosed());
+    let [Finding { what: What::Limit(OutOfLimits::OffsetSine(share)), .. }] = more.worse.as_slice() else {
+        panic!("{more:?}")
+    };
+    near(*share, 0.12, 1e-3);
+}
+
+#[test]
+fn what_cannot_be_compared_is_told() {
+    let good = made(steady, |_, _, signal| signal).diagnosed();
+    let mut timeless = ellipse(1.0, 0.0, 0.0);
+    timeless.time.clear();
+    let timeless = timeless.diagnosed();
+    assert_eq!(compare(&good, &timeless).untold, [Untold::NoSpectrum]);
+    assert_eq!(compare(&timeless, &good), Changes { untold: vec![Untold::NoSpectrum], ..Changes::default() });
+    let dead = made(steady, |_, _, (sine, _)| (sine, 0.0)).diagnosed();
+    let died = compare(&good, &dead);
+    assert_eq!(died.untold, [Untold::NoEllipseAfter]);
+    assert!(matches!(died.worse.as_slice(), [Finding { what: What::Dead { .. }, .. }]), "{died:?}");
+    // Nobody knows the offset that the first had.
+    let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
+    assert_eq!(mended, Changes { untold: vec![Untold::NoEllipseBefore], ..Changes::default() });
+}
+
+#[test]
+fn other_limits_are_judged_by_without_the_samples() {
+    let mut capture = ellipse(0.84, 0.03, 0.0);
+    capture.references = Some((vec![2.25; COUNT], vec![2.5; COUNT]));
+    let record = capture.record();
+    let analysis = Analysis::of(record.samples);
+    let by = |limits| diagnose(&record, analysis.as_ref(), limits);
+    let again = by(&Limits::HIPERFACE).by_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::TTK70);
+    assert_eq!(again, by(&Limits::TTK70));
+    assert_ne!(again, by(&Limits::HIPERFACE));
+    assert_eq!(again.by_limits(analysis.as_ref(), Some((2.25, 2.5)), &Limits::AFS_AFM60), by(&Limits::AFS_AFM60));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::{View, numbers, source};
 use crate::app::signals::{Action as Signals_, Measurement, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
-use crate::signal::diagnosis::{Finding, Severity};
+use crate::signal::diagnosis::{Changes, Finding, Severity};
 use crate::signal::lissajous::Square;
 use crate::signal::quality::Family;
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
@@ -166,31 +166,46 @@ fn finding_ui(ui: &mut Ui, skin: &Skin, finding: &Finding) {
 
 /// What is wrong, in words.
 fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement) {
-    if measurement.analysis.is_err() {
-        refused_ui(ui, skin, measurement);
-        return;
-    }
     card(ui, skin, "quality.findings", |ui| {
         let findings = signals.findings();
-        if findings.is_empty() {
-            line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("quality.good"));
+        match measurement.refusal(skin.language) {
+            Some(why) => line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why)),
+            None if findings.is_empty() => {
+                line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("quality.good"));
+            }
+            None => {}
         }
         for finding in findings {
             finding_ui(ui, skin, finding);
         }
-        if let Some(kept) = signals.comparison() {
-            ui.add_space(skin.space.inside);
-            let text = Text::new("compare.worse").with_text("name", kept.origin.name());
-            ui.label(skin.caption(skin.words(&text)));
-            let worse = signals.worse();
-            if worse.is_empty() {
-                line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("compare.nothing"));
-            }
-            for finding in &worse {
-                finding_ui(ui, skin, finding);
-            }
+        if let Some((kept, changes)) = signals.comparison().zip(signals.changes()) {
+            changes_ui(ui, skin, &kept.origin.name(), &changes);
         }
     });
+}
+
+/// What changed since another capture. That nothing became worse is said only where everything could be compared.
+fn changes_ui(ui: &mut Ui, skin: &Skin, name: &Text, changes: &Changes) {
+    let under = |ui: &mut Ui, id| {
+        ui.add_space(skin.space.inside);
+        ui.label(skin.caption(skin.words(&Text::new(id).with_text("name", name.clone()))));
+    };
+    under(ui, "compare.worse");
+    if changes.worse.is_empty() && changes.untold.is_empty() {
+        line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("compare.nothing"));
+    }
+    for finding in &changes.worse {
+        finding_ui(ui, skin, finding);
+    }
+    for untold in &changes.untold {
+        line(ui, icons::QUESTION, skin.palette.muted, skin.words(&explain::signal::untold(*untold)));
+    }
+    if !changes.changed.is_empty() {
+        under(ui, "compare.changed");
+    }
+    for finding in &changes.changed {
+        finding_ui(ui, skin, finding);
+    }
 }
 
 fn values(
