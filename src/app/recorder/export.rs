@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
-use super::{GroupId, Line, Recorder};
+use super::{GroupId, Line, Recorder, SAMPLE};
 use crate::signal::Time;
 use crate::signal::history::{Flags, History};
 use crate::store::{FileError, write_by};
@@ -96,6 +96,7 @@ struct Cell {
 pub(in crate::app) struct Writing {
     path: PathBuf,
     number: ExportNumber,
+    counts: bool,
     headings: Vec<String>,
     receiver: Receiver<Portion>,
     cancelled: Arc<AtomicBool>,
@@ -154,6 +155,7 @@ impl Recorder {
         let writing = Writing {
             path: path.to_owned(),
             number,
+            counts: self.counts,
             headings,
             receiver,
             cancelled: cancelled.clone(),
@@ -267,7 +269,7 @@ impl Writing {
 
     /// False: it was given up.
     fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<bool> {
-        let mut text = String::from("time [s]");
+        let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {
             text.push(',');
             // No heading has a quote; a comma in one would be another column.
@@ -287,7 +289,7 @@ impl Writing {
                 Portion::End => return Ok(true),
             };
             text.clear();
-            rows.text(self.headings.len(), &mut text);
+            rows.text(self.headings.len(), self.counts, &mut text);
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
@@ -297,14 +299,18 @@ impl Writing {
 }
 
 impl Rows {
-    fn text(&self, columns: usize, text: &mut String) {
+    fn text(&self, columns: usize, counts: bool, text: &mut String) {
         use std::fmt::Write as _;
         for (time, cells) in self.times.iter().zip(self.cells.chunks(columns.max(1))) {
             let nanoseconds = time.nanoseconds();
             let sign = if nanoseconds < 0 { "-" } else { "" };
             let whole = nanoseconds.unsigned_abs();
             // Writing into a text cannot fail.
-            let _ = write!(text, "{sign}{}.{:09}", whole / 1_000_000_000, whole % 1_000_000_000);
+            let _ = if counts {
+                write!(text, "{}", nanoseconds.div_euclid(SAMPLE))
+            } else {
+                write!(text, "{sign}{}.{:09}", whole / 1_000_000_000, whole % 1_000_000_000)
+            };
             let mut flags = Flags::NONE;
             for cell in cells {
                 flags |= cell.flags;

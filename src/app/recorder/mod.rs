@@ -61,6 +61,9 @@ pub enum Action {
     CancelExport,
 }
 
+/// Nanoseconds that stand for the distance of two samples where nobody knows how far they are apart.
+pub const SAMPLE: i64 = 1_000;
+
 /// Samples that are taken together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
@@ -102,6 +105,7 @@ pub struct Recorder {
     lines: Vec<Line>,
     next: u32,
     view: View,
+    counts: bool,
     one_axis: bool,
     cursors: [Option<Time>; 2],
     watch: Option<Watch>,
@@ -112,6 +116,17 @@ impl Recorder {
     /// Nothing is recorded yet; this many nanoseconds are shown while it follows.
     pub fn new(span: i64) -> Self {
         Recorder { view: View::Follow { span: span.max(1) }, ..Recorder::default() }
+    }
+
+    /// The same for samples of which nobody knows when they were taken: their times are their numbers times
+    /// [`SAMPLE`]; so many of them are shown while it follows.
+    pub fn counting(samples: i64) -> Self {
+        Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
+    }
+
+    /// Its times are numbers of samples.
+    pub fn counts(&self) -> bool {
+        self.counts
     }
 
     /// Samples of these columns, of which so many are kept; those further apart than so many nanoseconds are not joined.

@@ -253,6 +253,23 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
 }
 
 #[test]
+fn samples_without_times_are_counted() {
+    let mut recorder = Recorder::counting(100);
+    let group = recorder.add_group(&[Kind::Real], 100, None);
+    recorder.add_line(Line::of(
+        group,
+        0,
+        Text::new("recorder.position"),
+        "sine",
+        vec![Scale::new("unit.steps", 1.0, 0)],
+    ));
+    let times: Vec<Time> = (0..3).map(|sample| Time::from_nanoseconds(sample * SAMPLE)).collect();
+    recorder.append(group, &times, &[Part::real(&[0.5, 1.5, 2.5])]).unwrap();
+    assert_eq!(recorder.span(), 100 * SAMPLE);
+    assert_eq!(exported(&mut recorder, false).unwrap(), "sample,sine [steps],remark\n0,0.5,\n1,1.5,\n2,2.5,\n");
+}
+
+#[test]
 fn a_long_table_is_whole_and_can_be_given_up() {
     let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
     ramp(&mut recorder, group, 0, 70_000);

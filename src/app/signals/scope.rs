@@ -2,7 +2,7 @@
 //! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
 use crate::app::Text;
-use crate::app::recorder::{self, GroupId, Line, Recorder, Scale};
+use crate::app::recorder::{self, GroupId, Line, Recorder, SAMPLE, Scale};
 use crate::signal::Time;
 use crate::signal::capture::Capture;
 use crate::signal::history::{Kind, Part, Refused};
@@ -14,8 +14,6 @@ use crate::worker::stream::Batch;
 pub struct Scope {
     /// The recorder.
     pub recorder: Recorder,
-    /// Its times are numbers of samples: the capture has none.
-    pub counts: bool,
     /// The capture's times go back, so that there is nothing to draw.
     pub refused: bool,
     group: GroupId,
@@ -37,14 +35,15 @@ const WIRES: [(&str, &str); 4] =
 impl Scope {
     /// Nothing yet; for samples that come.
     pub(super) fn live() -> Self {
-        Scope::new(true, KEPT, SPAN)
+        Scope::new(true, KEPT, Recorder::new(SPAN))
     }
 
     /// All of a capture.
     pub(super) fn of(capture: &Capture) -> Self {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
-        let mut scope = Scope::new(capture.references_v.is_some(), count.max(1), SPAN);
-        scope.counts = capture.time_s.len() < count;
+        let counts = capture.time_s.len() < count;
+        let recorder = if counts { Recorder::counting(1) } else { Recorder::new(SPAN) };
+        let mut scope = Scope::new(capture.references_v.is_some(), count.max(1), recorder);
         let mut from = 0;
         while from < count && !scope.refused {
             let to = (from + PORTION).min(count);
@@ -58,9 +57,8 @@ impl Scope {
         scope
     }
 
-    fn new(with_wires: bool, capacity: usize, span: i64) -> Self {
+    fn new(with_wires: bool, capacity: usize, mut recorder: Recorder) -> Self {
         let wires = if with_wires { &WIRES[..] } else { &[] };
-        let mut recorder = Recorder::new(span);
         let columns = vec![Kind::Real; DIFFERENCES.len() + wires.len()];
         let group = recorder.add_group(&columns, capacity, None);
         for (column, (name, heading)) in DIFFERENCES.iter().chain(wires).enumerate() {
@@ -70,14 +68,14 @@ impl Scope {
             let line = if derived { line.derived() } else { line };
             recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });
         }
-        Scope { recorder, counts: false, refused: false, group }
+        Scope { recorder, refused: false, group }
     }
 
     fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), Refused> {
         let part = |column: &[f64]| column.get(range.clone()).unwrap_or_default().to_vec();
         let times = range.clone().map(|at| match capture.time_s.get(at) {
-            Some(seconds) if !self.counts => Time::from_nanoseconds((seconds * 1e9).round() as i64),
-            _ => Time::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(1_000_000_000)),
+            Some(seconds) if !self.recorder.counts() => Time::from_nanoseconds((seconds * 1e9).round() as i64),
+            _ => Time::from_nanoseconds(i64::try_from(at).unwrap_or(i64::MAX).saturating_mul(SAMPLE)),
         });
         let times: Vec<Time> = times.collect();
         let (sine, cosine) = (part(&capture.sine_v), part(&capture.cosine_v));
@@ -147,14 +145,14 @@ mod tests {
         for (line, expected) in [0.3, 0.4, 0.5, 2.8, 2.5, 2.8, 2.4].into_iter().enumerate() {
             assert!((value(&scope, line, -1_000) - expected).abs() < 1e-12, "{line}");
         }
-        assert!(!scope.counts && !scope.refused);
+        assert!(!scope.recorder.counts() && !scope.refused);
     }
 
     #[test]
     fn without_times_samples_are_counted_and_times_that_go_back_are_refused() {
         let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
         let scope = Scope::of(&capture);
-        assert!(scope.counts && (value(&scope, 0, 2_000_000_000) - 3.0).abs() < 1e-12);
+        assert!(scope.recorder.counts() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);
         assert_eq!(scope.recorder.lines().len(), 3);
         capture.time_s = vec![0.0, 2.0, 1.0];
         let scope = Scope::of(&capture);

@@ -2,6 +2,7 @@
 
 use crate::app::Language;
 use crate::app::decimal;
+use crate::app::recorder::SAMPLE;
 use crate::signal::Time;
 
 /// A step that is 1, 2 or 5 times a power of ten, so that `span` has at most so many of it.
@@ -89,6 +90,14 @@ pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) 
         }
     }
     TimeTicks { ticks, base: coarse.map(|base| clock(base, 1, language)) }
+}
+
+/// Ticks at numbers of samples instead.
+pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
+    let number = |time: Time| time.nanoseconds() as f64 / SAMPLE as f64;
+    let step = step(number(to) - number(from), most as f64).max(1.0);
+    let tick = |value: f64| (Time::from_nanoseconds((value * SAMPLE as f64) as i64), decimal(value, 0, language));
+    TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
 /// A second, minute or hour before `from`.
@@ -268,6 +277,14 @@ mod tests {
             (found, base),
             (["+30 µs", "+31 µs", "+32 µs", "+33 µs"].map(ToOwned::to_owned).to_vec(), Some("1:00:00.0".to_owned()))
         );
+    }
+
+    #[test]
+    fn samples_are_counted() {
+        let at = |sample: i64| Time::from_nanoseconds(sample * 1_000);
+        let ticks = |from, to| sample_ticks(at(from), at(to), 4, Language::English).ticks;
+        assert_eq!(ticks(0, 1000).into_iter().map(|own| own.1).collect::<Vec<_>>(), ["0", "500", "1000"]);
+        assert_eq!(ticks(7, 9), [(at(7), "7".to_owned()), (at(8), "8".to_owned()), (at(9), "9".to_owned())]);
     }
 
     #[test]

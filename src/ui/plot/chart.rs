@@ -25,7 +25,7 @@ pub(super) fn paint(
 ) {
     let skin = context.skin;
     let font = FontId::monospace(skin.sizes.caption);
-    time_axis(painter, skin, layout, &font);
+    time_axis(painter, context, layout, &font);
     for lane in &layout.lanes {
         value_axis(painter, skin, lane, &font);
         lines(painter, context, layout, lane, reduced);
@@ -43,11 +43,12 @@ pub(super) fn paint(
     }
 }
 
-fn time_axis(painter: &Painter, skin: &Skin, layout: &Layout, font: &FontId) {
-    let chart = layout.chart;
+fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
+    let (skin, chart) = (context.skin, layout.chart);
     let most = (chart.width() / 76.0).max(1.0) as usize;
     let (from, to) = (layout.time.time(chart.left()), layout.time.time(chart.right()));
-    let ticks = axes::time_ticks(from, to, most, skin.language);
+    let ticks = if context.recorder.counts() { axes::sample_ticks } else { axes::time_ticks };
+    let ticks = ticks(from, to, most, skin.language);
     let grid = Stroke::new(1.0, skin.palette.line);
     let foot = chart.bottom() + 3.0;
     let mut free = chart.left() - 30.0;

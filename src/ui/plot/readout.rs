@@ -3,7 +3,7 @@
 use egui::{RichText, Sense, Ui, vec2};
 
 use super::{Context, axes, chart};
-use crate::app::recorder::{Line, Measured};
+use crate::app::recorder::{Line, Measured, SAMPLE};
 use crate::signal::Time;
 use crate::signal::history::{Flags, Sample};
 use crate::ui::Skin;
@@ -17,8 +17,11 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     ui.spacing_mut().interact_size.y = 16.0;
     if let Some(between) = recorder.between_cursors() {
         ui.horizontal_wrapped(|ui| {
-            let length = axes::duration(between, skin.language);
-            figure(ui, skin, "Δt", &length);
+            if recorder.counts() {
+                figure(ui, skin, "Δn", &(between / SAMPLE).to_string());
+                return;
+            }
+            figure(ui, skin, "Δt", &axes::duration(between, skin.language));
             if between != 0 {
                 let hertz = 1e9 / between.abs() as f64;
                 figure(ui, skin, "1/Δt", &format!("{} Hz", skin.number(hertz, if hertz < 100.0 { 3 } else { 1 })));

@@ -73,6 +73,10 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
 /// How long a stretch is shown: one of those to choose from, or what zooming made of it.
 fn span(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
+    if context.recorder.counts() {
+        // Seconds mean nothing here; zooming chooses how many.
+        return;
+    }
     let (skin, span) = (context.skin, context.recorder.span());
     let mut chosen = span;
     let mut options: Vec<(i64, String)> =

@@ -43,7 +43,7 @@ fn trace(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut ScopeView, acti
             let empty = skin.say(if scope.refused { "scope.refused" } else { "scope.nothing" });
             plot::plot_ui(ui, skin, &scope.recorder, Desk::Signals, &mut view.plot, &empty, actions);
         });
-        if scope.counts {
+        if scope.recorder.counts() {
             paragraph(ui, skin.caption(skin.say("scope.counts")));
         }
     });
