@@ -81,9 +81,12 @@ impl<T: Number> Series<T> {
         !(first..=last).any(flagged)
     }
 
+    /// What the samples of `range` have, together.
     pub(super) fn flags(&self, range: Range<u64>) -> Flags {
-        if self.is_plain(range.clone()) {
-            return Flags::NONE;
+        let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
+        // Mostly a single sample, or some of one block.
+        if first == last && range.start >= self.first && !range.is_empty() {
+            return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().within(from..to + 1));
         }
         self.parts(range).fold(Flags::NONE, |all, (_, block, range)| all | block.flags().within(range))
     }
@@ -94,12 +97,25 @@ impl<T: Number> Series<T> {
 
     /// The first sample in `range` that has a value.
     pub(super) fn first_good(&self, range: Range<u64>) -> Option<u64> {
+        if !range.is_empty() && self.is_surely_good(range.start) {
+            return Some(range.start);
+        }
         self.parts(range).find_map(|(start, block, range)| Some(start + block.first_good(range)? as u64))
     }
 
     /// The last sample in `range` that has a value.
     pub(super) fn last_good(&self, range: Range<u64>) -> Option<u64> {
+        if !range.is_empty() && self.is_surely_good(range.end - 1) {
+            return Some(range.end - 1);
+        }
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
+    }
+
+    /// The sample `index` is there and has a value: a quick look, which may miss that it has.
+    fn is_surely_good(&self, index: u64) -> bool {
+        let (block, at) = self.place(index);
+        let has_it = |block: &&Block<T>| index >= self.first && at < block.len();
+        self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
     }
 
     /// Bytes on the heap.
