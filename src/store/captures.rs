@@ -6,8 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file_error::{FileError, FileProblem, FileTask};
-use super::write_by;
-use crate::signal::capture::{Capture, CaptureError, Export, HEAD, Import, Layout, Wishes};
+use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Layout, Wishes};
 
 /// Why a capture could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -87,32 +86,6 @@ pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(head)
 }
 
-/// Writes a capture as a table that [`read_capture`] takes as it is; a file that is there is replaced when all is written.
-/// True when it was; false when `cancel` was set, and nothing has changed.
-///
-/// # Errors
-/// [`FileError`]: the folder cannot be written, the disk is full.
-pub fn write_capture(path: &Path, export: &Export<'_>, cancel: &AtomicBool) -> Result<bool, FileError> {
-    /// Rows of a portion.
-    const ROWS: usize = 4096;
-    let mut text = export.header();
-    let written = write_by(path, |file| {
-        for start in (0..export.rows()).step_by(ROWS) {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(io::ErrorKind::Interrupted.into());
-            }
-            (start..export.rows().min(start + ROWS)).for_each(|row| export.row(row, &mut text));
-            file.write_all(text.as_bytes())?;
-            text.clear();
-        }
-        file.write_all(text.as_bytes())
-    });
-    match written {
-        Err(_) if cancel.load(Ordering::Relaxed) => Ok(false),
-        written => written.map(|()| true),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,33 +121,6 @@ mod tests {
         fs::write(&path, "0,1,2\n".repeat(20_000)).unwrap();
         let head = capture_head(&path).unwrap();
         assert_eq!((head.len(), &head[..12]), (65_536, &b"0,1,2\n0,1,2\n"[..]));
-    }
-
-    #[test]
-    fn what_was_written_is_read_again_and_what_was_given_up_is_not_there() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("c.csv");
-        let wave = |at: i32| (f64::from(at) * 0.01).sin();
-        let capture = Capture {
-            time_s: (0..20_000).map(|at| f64::from(at) * 1e-5).collect(),
-            sine_v: (0..20_000).map(wave).collect(),
-            cosine_v: (0..20_000).map(|at| wave(at + 157)).collect(),
-            reference_deg: Some((0..20_000).map(|at| f64::from(at % 360)).collect()),
-            ..Capture::default()
-        };
-        for decimal_comma in [false, true] {
-            let export = Export::of(&capture, decimal_comma);
-            assert_eq!(write_capture(&path, &export, &AtomicBool::new(false)), Ok(true));
-            let back = read_capture(&path, &Wishes::default(), &AtomicBool::new(false), &mut |_, _| ()).unwrap().1;
-            assert!(back == capture);
-        }
-        let before = fs::metadata(&path).unwrap().len();
-        let empty = Capture { sine_v: vec![0.0; 9], cosine_v: vec![0.0; 9], ..Capture::default() };
-        assert_eq!(write_capture(&path, &Export::of(&empty, false), &AtomicBool::new(true)), Ok(false));
-        assert_eq!(fs::metadata(&path).unwrap().len(), before);
-        let nowhere = folder.path().join("none/c.csv");
-        let error = write_capture(&nowhere, &Export::of(&empty, false), &AtomicBool::new(false)).unwrap_err();
-        assert_eq!(error.problem, FileProblem::NoFolder);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 
 pub use backups::{Backup, Backups};
-pub use captures::{OnProgress, ReadCaptureError, capture_head, read_capture, write_capture};
+pub use captures::{OnProgress, ReadCaptureError, capture_head, read_capture};
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder};

@@ -5,12 +5,10 @@
 //! differences; and beside them what belongs to the same moment: the angle of a reference encoder, the absolute position.
 
 mod detect;
-mod export;
 mod header;
 mod import;
 
 pub use detect::{Delimiter, HEAD, Layout, Wishes};
-pub use export::Export;
 pub use header::{Columns, TimeUnit, VoltUnit};
 pub use import::Import;
 

@@ -2,7 +2,7 @@
 
 use super::super::import::Import;
 use super::*;
-use crate::signal::capture::{Capture, Export};
+use crate::signal::capture::Capture;
 
 fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Capture), CaptureError> {
     let mut import = Import::begin(text, wishes)?;
@@ -147,41 +147,4 @@ fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
     assert_eq!(error, CaptureError::NotWhole { row: 2, column: 5, text: "-8.5".to_owned() });
     let error = read("t,sin,cos,reference\n0,1,2,3\n1,1,2\n").unwrap_err();
     assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
-}
-
-fn exported(capture: &Capture, decimal_comma: bool) -> String {
-    let export = Export::of(capture, decimal_comma);
-    let mut text = export.header();
-    (0..export.rows()).for_each(|row| export.row(row, &mut text));
-    text
-}
-
-#[test]
-fn what_is_written_is_read_again_exactly() {
-    let plain = Capture {
-        time_s: vec![0.0, 1e-6, 0.1 + 0.2],
-        sine_v: vec![0.25, -0.3, 1.0 / 3.0],
-        cosine_v: vec![0.5, 0.4, -1e-9],
-        ..Capture::default()
-    };
-    let full = Capture {
-        references_v: Some((vec![2.5, 2.25, 2.0], vec![2.5, 2.75, 3.0])),
-        // What a difference of two doubles gives back.
-        sine_v: vec![0.25, -0.5, 0.125],
-        cosine_v: vec![0.5, 0.25, -0.125],
-        reference_deg: Some(vec![359.9, 0.1, 123.456]),
-        absolute: Some(vec![0, -1, 1 << 40]),
-        ..plain.clone()
-    };
-    let untimed = Capture { time_s: vec![], ..plain.clone() };
-    for (label, capture) in [("plain", &plain), ("full", &full), ("untimed", &untimed)] {
-        for decimal_comma in [false, true] {
-            let text = exported(capture, decimal_comma);
-            let (layout, back) = read(&text).unwrap_or_else(|error| panic!("{label}: {error}: {text}"));
-            assert_eq!(&back, capture, "{label}: {text}");
-            assert_eq!(layout.decimal_comma, decimal_comma, "{label}");
-        }
-    }
-    assert!(exported(&plain, true).starts_with("time [s];sine [V];cosine [V]\n0;0,25;0,5\n"));
-    assert!(exported(&plain, false).starts_with("time [s],sine [V],cosine [V]\n0,0.25,0.5\n0.000001,-0.3,0.4\n"));
 }
