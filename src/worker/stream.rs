@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-pub use analogue::Analogue;
+pub use analogue::{Analogue, Forgotten};
 
 use super::has_ended;
 use super::thread::Never;

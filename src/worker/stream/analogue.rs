@@ -1,7 +1,6 @@
 //! The virtual sine/cosine source as a producer: paced by the clock, like a real one. What it did not come to while the
 //! machine was busy or asleep is made up for up to a quarter of a second; what is older is lost and counted.
 
-use std::convert::Infallible;
 use std::time::Duration;
 
 use super::{Batch, Producer};
@@ -15,6 +14,11 @@ use crate::units::Moment;
 const BATCH_NS: i64 = 10_000_000;
 /// What is made up for.
 const LATE_NS: i64 = 250_000_000;
+
+/// Settings of samples that are due are forgotten: the source was changed too often meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the settings of samples that are due are forgotten")]
+pub struct Forgotten;
 
 /// The virtual source on a clock.
 #[derive(Debug)]
@@ -33,15 +37,15 @@ impl Analogue {
 impl Producer for Analogue {
     type Wish = Checked;
     type Samples = Wires;
-    type Error = Infallible;
+    type Error = Forgotten;
 
     fn change(&mut self, wish: Checked) {
         self.source.change(self.next, wish);
     }
 
-    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, Infallible> {
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, Forgotten> {
         let (Some(settings), Some(time)) = (self.source.settings(), self.source.time(self.next)) else {
-            return Ok(None);
+            return Err(Forgotten);
         };
         let period_ns = settings.period_ns();
         let now = clock.now();
@@ -57,8 +61,8 @@ impl Producer for Analogue {
         let most = (LATE_NS / period_ns).max(1).unsigned_abs();
         let (lost, count) = (due.saturating_sub(most), due.min(most));
         let first = self.next + lost;
+        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).ok_or(Forgotten)?;
         self.next = first + count;
-        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).unwrap_or_default();
         let time = time.plus(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
         Ok(Some(Batch { first, time, period_ns, lost, samples }))
     }
