@@ -140,7 +140,7 @@ impl Studio {
         }
         for encoder in &mut self.encoders {
             encoder.pump(&mut self.services);
-            self.signals.synchronise.follow(encoder);
+            self.signals.follow(encoder);
         }
         self.signals.pump(&mut self.services);
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {

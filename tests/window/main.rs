@@ -16,6 +16,7 @@ mod remembering;
 mod screen;
 mod signals;
 mod signals_calculators;
+mod signals_live;
 mod signals_widgets;
 mod state;
 mod support;

@@ -96,25 +96,25 @@ fn both_positions_are_read_from_the_encoder_that_is_shown() {
     screen.click("page.synchronise");
     for count in [1, 2] {
         screen.click("synchronise.read");
-        screen.until("it is read", |studio| studio.signals.synchronise.readings() == count);
+        screen.until("it is read", |studio| studio.signals.synchronise().readings() == count);
     }
-    let form = &screen.studio().signals.synchronise.form;
+    let form = &screen.studio().signals.synchronise().form;
     assert_eq!((form.absolute.as_str(), form.periods.as_str(), form.turns.as_str()), ("0xC98", "128", "4096"));
     assert_eq!((form.sine_v.as_str(), form.cosine_v.as_str()), ("-0.5010", "-0.0024"));
     // 24 − 32 · 0.749 224 = 0.0248
     assert!(screen.shows("100.74924") && screen.shows("0.02/32"));
     screen.click("synchronise.use");
-    assert_eq!(screen.studio().signals.synchronise.form.offset, "0.02");
+    assert_eq!(screen.studio().signals.synchronise().form.offset, "0.02");
     screen.click("synchronise.forget");
-    assert_eq!(screen.studio().signals.synchronise.readings(), 0);
+    assert_eq!(screen.studio().signals.synchronise().readings(), 0);
 }
 
 #[test]
 fn a_shaft_that_turns_is_no_reading() {
     let mut desk = Desk::begun("rpm=60");
     desk.ask(Hiperface::ReadRest);
-    desk.until("it is told", |studio| studio.signals.synchronise.problem.is_some());
-    let state = &desk.studio.signals.synchronise;
+    desk.until("it is told", |studio| studio.signals.synchronise().problem.is_some());
+    let state = desk.studio.signals.synchronise();
     assert_eq!((state.problem.as_ref().unwrap().id(), state.readings()), ("encoder.moving", 0));
     assert!(desk.encoder().commutation.problem.is_none(), "it was not asked there");
 }

@@ -121,12 +121,12 @@ fn periods_are_typed_and_refused_in_words() {
         screen.key(Key::Enter);
     };
     type_in(&mut screen, "512");
-    assert_eq!(screen.studio().signals.periods, 512);
+    assert_eq!(screen.studio().signals.periods(), 512);
     type_in(&mut screen, "0");
-    assert_eq!(screen.studio().signals.periods, 512);
+    assert_eq!(screen.studio().signals.periods(), 512);
     assert!(screen.shows("Periods: 0 is not possible."));
     type_in(&mut screen, "64");
-    assert_eq!(screen.studio().signals.periods, 64);
+    assert_eq!(screen.studio().signals.periods(), 64);
     assert!(!screen.shows("is not possible"));
 }
 

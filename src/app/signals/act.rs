@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
-use super::{Action, Done, Judge, Measurement, Place, Read, Scope, Source, Table, forms};
-use crate::app::action::Done as StudioDone;
+use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Scope, Source, Table, forms, promise};
+use crate::app::hiperface::Encoder;
 use crate::app::recorder;
 use crate::app::services::Services;
-use crate::app::{Action as StudioAction, Severity, Text, explain};
+use crate::app::{Severity, Text, explain};
 use crate::signal::capture::Wishes;
 use crate::signal::diagnosis::{Changes, Finding, compare};
 use crate::signal::quality::Family;
@@ -16,14 +16,11 @@ use crate::store::ReadCaptureError;
 
 /// All that the Signals tab knows.
 pub struct Signals {
-    /// By whose limits is judged.
-    pub family: Family,
-    /// Signal periods in a revolution.
-    pub periods: u32,
+    family: Family,
+    periods: u32,
     /// The virtual encoder.
     pub(super) source: Source,
-    /// Absolute and analogue position brought together.
-    pub synchronise: Synchronise,
+    synchronise: Synchronise,
     /// The signals over time.
     pub(super) scope: Scope,
     measurement: Option<Arc<Measurement>>,
@@ -55,6 +52,26 @@ impl Default for Signals {
 }
 
 impl Signals {
+    /// By whose limits is judged.
+    pub fn family(&self) -> Family {
+        self.family
+    }
+
+    /// Signal periods in a revolution, at least 1.
+    pub fn periods(&self) -> u32 {
+        self.periods
+    }
+
+    /// Absolute and analogue position brought together.
+    pub fn synchronise(&self) -> &Synchronise {
+        &self.synchronise
+    }
+
+    /// Takes what an encoder has read at rest for this tab.
+    pub(in crate::app) fn follow(&mut self, encoder: &mut Encoder) {
+        self.synchronise.follow(encoder);
+    }
+
     /// The capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
@@ -117,6 +134,21 @@ impl Signals {
         self.give_up();
     }
 
+    /// Another number of periods a revolution: what is shown is judged again.
+    pub(super) fn set_periods(&mut self, periods: u32, services: &mut Services) {
+        self.periods = periods.clamp(1, forms::MOST_PERIODS);
+        if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
+            self.judge_again(services);
+        }
+    }
+
+    /// What is being read will not come any more.
+    pub(super) fn forget_reading(&mut self) {
+        if let Some(reading) = self.reading.take() {
+            self.table.clone_from(&reading.settled);
+        }
+    }
+
     fn give_up(&self) {
         if let Some(reading) = &self.reading {
             reading.cancel();
@@ -151,10 +183,7 @@ impl Signals {
             Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
             Action::DropComparison => self.comparison = None,
             Action::Synchronise(action) => self.synchronise.act(action),
-            Action::SetPeriods(periods) => {
-                self.periods = periods.clamp(1, forms::MOST_PERIODS);
-                self.judge_again(services);
-            }
+            Action::SetPeriods(periods) => self.set_periods(periods, services),
         }
     }
 
@@ -172,8 +201,23 @@ impl Signals {
                     self.measurement = Some(Arc::new(*measurement));
                 }
             }
-            Done::Measured { number, measurement } => self.measured(number, *measurement),
+            Done::Measured { number, measurement } => self.measured(number, *measurement, services),
+            Done::Failed(failed) => self.failed(failed, services),
         }
+    }
+
+    /// A task has come back with nothing.
+    fn failed(&mut self, failed: Failed, services: &mut Services) {
+        let what = match failed {
+            Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
+                self.forget_reading();
+                "signals.reading_failed"
+            }
+            Failed::Measure(number) if self.not_measured(number) => "signals.measuring_failed",
+            Failed::Judge => "signals.judging_failed",
+            Failed::Read(_) | Failed::Measure(_) => return,
+        };
+        services.tell(Severity::Error, vec![Text::new(what)], None);
     }
 
     /// Other samples: a table of those before that is still being written cannot be ended.
@@ -247,13 +291,13 @@ impl Signals {
     }
 
     /// Judges what is shown by what is set now.
-    fn judge_again(&mut self, services: &mut Services) {
+    pub(super) fn judge_again(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());
-        services.tasks.run("judge", move || {
-            let measurement = Box::new(measurement.judged(judge));
-            StudioAction::Done(StudioDone::Signals(Done::Judged { number, measurement }))
+        promise::run(&services.tasks, "judge", Done::Failed(Failed::Judge), move || Done::Judged {
+            number,
+            measurement: Box::new(measurement.judged(judge)),
         });
     }
 
@@ -264,9 +308,9 @@ impl Signals {
         let (reading, progress) = Reading::new(number, place.clone(), settled);
         self.reading = Some(reading);
         let judge = self.judge();
-        services.tasks.run("capture", move || {
-            let read = Box::new(reading::read(place, wishes, judge, &progress));
-            StudioAction::Done(StudioDone::Signals(Done::Read { number, read }))
+        promise::run(&services.tasks, "capture", Done::Failed(Failed::Read(number)), move || Done::Read {
+            number,
+            read: Box::new(reading::read(place, wishes, judge, &progress)),
         });
     }
 }

@@ -65,6 +65,19 @@ pub enum Done {
         /// What came of it.
         measurement: Box<Measurement>,
     },
+    /// A task could not be started, or broke off.
+    Failed(Failed),
+}
+
+/// What did not come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failed {
+    /// The capture of this attempt.
+    Read(u32),
+    /// What is shown, judged by something else.
+    Judge,
+    /// The measurement of this start.
+    Measure(u32),
 }
 
 /// What came of reading a table.

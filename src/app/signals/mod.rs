@@ -8,15 +8,17 @@ pub mod input_circuit;
 pub mod interpolation;
 mod live;
 mod measurement;
+mod promise;
 mod quantities;
 mod reading;
+mod recent;
 mod scope;
 mod spectra;
 pub mod synchronise;
 mod table;
 
 pub use act::Signals;
-pub use action::{Action, Done, Read};
+pub use action::{Action, Done, Failed, Read};
 pub use live::{Source, SourceAction};
 pub use measurement::{Judge, Measurement, Origin, Place};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};

@@ -93,16 +93,26 @@ impl Scope {
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
 
-    /// Samples that have come.
-    pub(super) fn add(&mut self, batch: &Batch<Wires>) {
+    /// What comes next does not join what is there: something in between is not recorded.
+    pub(super) fn interrupt(&mut self) {
+        self.recorder.break_before_next(self.group);
+    }
+
+    /// Samples that have come; how many of them could not be taken.
+    pub(super) fn add(&mut self, batch: &Batch<Wires>) -> u64 {
         if batch.lost > 0 {
-            self.recorder.break_before_next(self.group);
+            self.interrupt();
         }
         let count = i64::try_from(batch.samples.len()).unwrap_or(0);
         let times: Vec<Time> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
         let (sine, cosine) = (batch.samples.sine_v(), batch.samples.cosine_v());
-        // The times of one source only grow: nothing is refused.
-        let _ = self.append(&times, &sine, &cosine, Some(&batch.samples));
+        match self.append(&times, &sine, &cosine, Some(&batch.samples)) {
+            Ok(()) => 0,
+            Err(_) => {
+                self.interrupt();
+                times.len() as u64
+            }
+        }
     }
 
     fn append(&mut self, times: &[Time], sine: &[f64], cosine: &[f64], wires: Option<&Wires>) -> Result<(), Refused> {
@@ -118,6 +128,7 @@ impl Scope {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::history::Flags;
 
     fn names(scope: &Scope) -> Vec<&'static str> {
         scope.recorder.shown().map(|line| line.name.id()).collect()
@@ -146,6 +157,37 @@ mod tests {
             assert!((value(&scope, line, -1_000) - expected).abs() < 1e-12, "{line}");
         }
         assert!(!scope.recorder.counts() && !scope.refused);
+    }
+
+    fn batch(first: i64, count: usize) -> Batch<Wires> {
+        let column = vec![1.0; count];
+        let samples = Wires {
+            sin_v: column.clone(),
+            refsin_v: column.clone(),
+            cos_v: column.clone(),
+            refcos_v: column,
+            reference_deg: Vec::new(),
+        };
+        Batch { first: 0, time: Time::from_nanoseconds(first), period_ns: 10, lost: 0, samples }
+    }
+
+    #[test]
+    fn what_is_not_recorded_leaves_a_break_and_what_is_refused_is_counted() {
+        let mut scope = Scope::live();
+        let broken = |scope: &Scope| {
+            let history = scope.recorder.history(&scope.recorder.lines()[0]).unwrap();
+            let all = history.all();
+            let is_break = |at: &u64| history.sample(0, *at).unwrap().flags.contains(Flags::BREAK);
+            all.filter(is_break).collect::<Vec<u64>>()
+        };
+        assert_eq!(scope.add(&batch(0, 3)), 0);
+        let before = broken(&scope);
+        scope.interrupt();
+        assert_eq!(scope.add(&batch(100, 3)), 0);
+        assert_eq!(broken(&scope), [before.clone(), vec![3]].concat());
+        assert_eq!(scope.add(&batch(50, 4)), 4, "time went back");
+        assert_eq!(scope.add(&batch(200, 1)), 0);
+        assert_eq!(broken(&scope), [before, vec![3, 6]].concat());
     }
 
     #[test]

@@ -32,9 +32,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
                 quality::periods_ui(ui, skin, signals, periods, actions);
                 ui.add_space(skin.space.inside);
                 let of =
-                    |own: &Measurement| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods));
+                    |own: &Measurement| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
                 let others = compared.and_then(|own| of(own));
-                let own = error_quantities(analysis, signals.periods);
+                let own = error_quantities(analysis, signals.periods());
                 numbers::rows_ui(ui, skin, "error.numbers", &own, others.as_deref());
                 ui.add_space(skin.space.inside);
                 paragraph(ui, skin.caption(skin.words(&basis(analysis.error.basis))));

@@ -116,7 +116,7 @@ pub(super) fn page_ui(
                     error::page_ui(ui, skin, signals, view, actions);
                 }
             }
-            Page::Synchronise => synchronise::page_ui(ui, skin, &signals.synchronise, encoder, actions),
+            Page::Synchronise => synchronise::page_ui(ui, skin, signals.synchronise(), encoder, actions),
             Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
         });
     });

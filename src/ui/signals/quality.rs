@@ -53,7 +53,7 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
         }
     };
     card_with(ui, skin, "quality.lissajous", aside, |ui| {
-        let limits = signals.family.limits();
+        let limits = signals.family().limits();
         let (least, most) = limits.ok_v;
         let value = match analysed {
             Some(analysis) => Text::new("quality.lissajous_value")
@@ -218,7 +218,7 @@ fn values(
 ) {
     card(ui, skin, "quality.numbers", |ui| {
         let word = skin.say("quality.family");
-        let mut family = signals.family;
+        let mut family = signals.family();
         entry(ui, skin, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
             if choice(ui, &word, &mut family, families) {
@@ -227,7 +227,7 @@ fn values(
         });
         periods_ui(ui, skin, signals, &mut view.periods, actions);
         ui.add_space(skin.space.inside);
-        let of = |own: &Measurement| quantities(own, signals.family, signals.periods);
+        let of = |own: &Measurement| quantities(own, signals.family(), signals.periods());
         let others = signals.comparison().map(|own| of(own));
         numbers::rows_ui(ui, skin, "quality.numbers", &of(measurement), others.as_deref());
     });
@@ -243,14 +243,14 @@ pub(super) fn periods_ui(
 ) {
     let word = skin.say("quality.periods_per_turn");
     entry(ui, skin, &word, |ui| {
-        settled_entry(ui, draft, &signals.periods.to_string(), 72.0, &word, |text| {
+        settled_entry(ui, draft, &signals.periods().to_string(), 72.0, &word, |text| {
             actions.push(Action::Signals(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });
         let usual = skin.say("quality.periods_usual");
         let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
             for periods in USUAL_PERIODS {
-                if ui.selectable_label(signals.periods == periods, periods.to_string()).clicked() {
+                if ui.selectable_label(signals.periods() == periods, periods.to_string()).clicked() {
                     *draft = None;
                     actions.push(Action::Signals(Signals_::SetPeriods(periods)));
                     ui.close();

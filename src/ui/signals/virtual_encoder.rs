@@ -3,10 +3,10 @@
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::app::signals::{Action as Signals, Source, SourceAction};
-use crate::app::{Action, explain};
+use crate::app::{Action, Text, explain};
 use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
-use crate::ui::controls::{LABELS, button, card_with, choice, entry, problem, two_columns};
+use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
 use crate::ui::{Skin, icons};
 
 /// A setting that is slid: where its slider ends (more can be typed), and its decimals.
@@ -142,4 +142,8 @@ fn window(ui: &mut Ui, skin: &Skin, source: &Source, ask: &mut impl FnMut(Source
             ask(SourceAction::SetWindow(window));
         }
     });
+    if let Some(ms) = source.shortened_ms() {
+        let text = Text::new("virtual.shortened").with_number("ms", ms, 0);
+        paragraph(ui, skin.caption(skin.words(&text)));
+    }
 }

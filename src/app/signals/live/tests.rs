@@ -1,0 +1,108 @@
+//! What comes late, breaks off or was asked for otherwise: on the state itself, where a window could only hope for it.
+
+use std::time::{Duration, Instant};
+
+use super::*;
+use crate::app::services::World;
+use crate::app::signals::{Action, Judge};
+use crate::signal::capture::Capture;
+use crate::signal::quality::Family;
+use crate::store::Store;
+
+fn services() -> (Services, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    (Services::new(World::real(Store::at(folder.path())), Arc::new(|| ())), folder)
+}
+
+fn started(services: &mut Services) -> Signals {
+    let mut signals = Signals::default();
+    signals.act(Action::Source(SourceAction::Start), services);
+    assert!(signals.source.is_running());
+    signals
+}
+
+fn measurement(judge: Judge) -> Measurement {
+    let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
+    let capture = Capture {
+        sine_v: (0..1000).map(|at| 0.42 * angle(at).sin()).collect(),
+        cosine_v: (0..1000).map(|at| 0.42 * angle(at).cos()).collect(),
+        ..Capture::default()
+    };
+    Measurement::of(Origin::Virtual, Arc::new(capture), judge)
+}
+
+/// Lets tasks come back until it is so.
+#[track_caller]
+fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Signals) -> bool) {
+    let began = Instant::now();
+    while !condition(signals) {
+        assert!(began.elapsed() < Duration::from_secs(20), "never");
+        while let Some(action) = services.tasks.next() {
+            if let crate::app::Action::Done(crate::app::action::Done::Signals(done)) = action {
+                signals.done(done, services);
+            }
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn told(services: &Services) -> Vec<&'static str> {
+    services.log.notices().flat_map(|notice| notice.texts.iter().map(Text::id)).collect()
+}
+
+#[test]
+fn a_window_that_cannot_be_as_long_as_set_says_how_long_it_is() {
+    let mut source = Source { window_ms: 5_000, ..Source::default() };
+    // 500 000 samples at 100 kHz and at 1 MHz.
+    assert_eq!(source.shortened_ms(), None);
+    source.settings.rate_hz = 1e6;
+    assert_eq!(source.shortened_ms(), Some(500.0));
+}
+
+#[test]
+fn what_was_measured_by_other_limits_is_judged_again() {
+    let (mut services, _folder) = services();
+    let mut signals = started(&mut services);
+    let before = signals.judge();
+    signals.act(Action::SetFamily(Family::AfsAfm60), &mut services);
+    // 0.84 V are too little for HIPERFACE alone.
+    signals.measured(signals.source.runs, measurement(before), &mut services);
+    assert!(!signals.findings().is_empty());
+    signals.act(Action::Source(SourceAction::Stop), &mut services);
+    until(&mut signals, &mut services, |signals| signals.findings().is_empty());
+}
+
+#[test]
+fn a_source_that_ends_by_itself_is_told_and_runs_no_more() {
+    let (mut services, _folder) = services();
+    let mut signals = started(&mut services);
+    signals.source.live.as_ref().unwrap().stream.stop();
+    let began = Instant::now();
+    while signals.source.is_running() {
+        assert!(began.elapsed() < Duration::from_secs(20), "it runs for ever");
+        signals.pump(&mut services);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert_eq!(told(&services), ["virtual.ended"]);
+}
+
+#[test]
+fn a_task_that_fails_is_told_and_nothing_waits_for_it() {
+    let (mut services, _folder) = services();
+    let mut signals = started(&mut services);
+    signals.source.live.as_mut().unwrap().measuring = true;
+    signals.done(Done::Failed(Failed::Measure(signals.source.runs + 1)), &mut services);
+    assert!(signals.source.is_running(), "of an earlier start");
+    signals.done(Done::Failed(Failed::Measure(signals.source.runs)), &mut services);
+    assert!(!signals.source.is_running());
+    signals.act(Action::Open("/nowhere/at.all.csv".into()), &mut services);
+    let number = signals.reading().unwrap().number;
+    signals.done(Done::Failed(Failed::Read(number + 1)), &mut services);
+    assert!(signals.reading().is_some(), "of another attempt");
+    signals.done(Done::Failed(Failed::Read(number)), &mut services);
+    assert!(signals.reading().is_none());
+    signals.done(Done::Failed(Failed::Judge), &mut services);
+    let expected = ["signals.measuring_failed", "signals.reading_failed", "signals.judging_failed"];
+    let told = told(&services);
+    assert!(told.len() == 3 && expected.iter().all(|id| told.contains(id)), "{told:?}");
+}

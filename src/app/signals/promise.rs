@@ -1,0 +1,70 @@
+//! Tasks of the Signals tab. Each comes back, also one that could not be started or broke off: nothing waits for ever.
+
+use super::Done;
+use crate::app::action::{Action, Done as StudioDone};
+use crate::app::tasks::{Mailbox, Tasks};
+
+/// What is told when the task does not come back by itself.
+struct Promise {
+    mailbox: Mailbox,
+    failed: Option<Done>,
+}
+
+impl Promise {
+    /// It has come back.
+    fn kept(mut self) {
+        self.failed = None;
+    }
+}
+
+impl Drop for Promise {
+    fn drop(&mut self) {
+        if let Some(failed) = self.failed.take() {
+            self.mailbox.send(action(failed));
+        }
+    }
+}
+
+fn action(done: Done) -> Action {
+    Action::Done(StudioDone::Signals(done))
+}
+
+/// Runs something on a thread; `failed` comes back instead of what it gives where it gives nothing.
+pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
+    let promise = Promise { mailbox: tasks.mailbox(), failed: Some(failed) };
+    tasks.run(name, move || {
+        let done = task();
+        promise.kept();
+        action(done)
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::Failed;
+    use super::*;
+
+    fn next(tasks: &Tasks) -> Option<Failed> {
+        let began = std::time::Instant::now();
+        loop {
+            match tasks.next() {
+                Some(Action::Done(StudioDone::Signals(Done::Failed(failed)))) => return Some(failed),
+                Some(_) => {}
+                None if began.elapsed().as_secs() > 20 => return None,
+                None => std::thread::sleep(std::time::Duration::from_millis(1)),
+            }
+        }
+    }
+
+    #[test]
+    fn a_task_that_breaks_off_comes_back_as_failed_and_one_that_ends_does_not() {
+        let tasks = Tasks::new(Arc::new(|| ()));
+        run(&tasks, "ends", Done::Failed(Failed::Judge), || Done::Failed(Failed::Measure(1)));
+        assert_eq!(next(&tasks), Some(Failed::Measure(1)));
+        run(&tasks, "breaks off", Done::Failed(Failed::Read(7)), || std::panic::resume_unwind(Box::new(())));
+        assert_eq!(next(&tasks), Some(Failed::Read(7)));
+        assert!(tasks.next().is_none());
+    }
+}

@@ -1,0 +1,167 @@
+//! The newest samples of a running source, without a gap and without being copied: the batches as they came, shared with
+//! whoever measures them.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use crate::signal::Time;
+use crate::signal::capture::Capture;
+use crate::signal::wires::Wires;
+use crate::worker::stream::Batch;
+
+/// The newest samples without a gap.
+#[derive(Default)]
+pub(super) struct Recent {
+    chunks: VecDeque<Arc<Wires>>,
+    /// Samples in them.
+    count: usize,
+    /// When the last of them was taken.
+    newest: Option<Time>,
+    period_ns: i64,
+}
+
+/// The newest samples of some milliseconds.
+pub(super) struct Window {
+    chunks: Vec<Arc<Wires>>,
+    /// Samples of the first chunk that are too old.
+    skip: usize,
+    period_ns: i64,
+}
+
+/// Most samples that are measured at once.
+pub(super) const MOST: usize = 500_000;
+/// From one measurement to the next, in nanoseconds.
+const EVERY_NS: i64 = 250_000_000;
+
+impl Recent {
+    pub(super) fn add(&mut self, batch: Batch<Wires>) {
+        if batch.lost > 0 || batch.period_ns != self.period_ns {
+            (self.chunks, self.count) = (VecDeque::new(), 0);
+        }
+        self.period_ns = batch.period_ns;
+        let count = i64::try_from(batch.samples.len()).unwrap_or(0);
+        self.newest = Some(batch.time.plus((count - 1).max(0).saturating_mul(batch.period_ns)));
+        self.count += batch.samples.len();
+        self.chunks.push_back(Arc::new(batch.samples));
+        while let Some(oldest) = self.chunks.front().map(|chunk| chunk.len())
+            && self.count - oldest >= MOST
+        {
+            self.chunks.pop_front();
+            self.count -= oldest;
+        }
+    }
+
+    /// When the last sample was taken.
+    pub(super) fn newest(&self) -> Option<Time> {
+        self.newest
+    }
+
+    /// Enough is new since the last measurement.
+    pub(super) fn is_due(&self, measured: Option<Time>) -> bool {
+        match (self.newest, measured) {
+            (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,
+            (newest, None) => newest.is_some(),
+            (None, Some(_)) => false,
+        }
+    }
+
+    /// The newest samples of so many milliseconds, [`MOST`] at most; `None` while there are fewer.
+    pub(super) fn window(&self, milliseconds: u32) -> Option<Window> {
+        let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
+        let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
+        let mut skip = self.count.checked_sub(count)?;
+        let too_old = |chunk: &&Arc<Wires>| {
+            let is_too_old = chunk.len() <= skip;
+            skip -= if is_too_old { chunk.len() } else { 0 };
+            is_too_old
+        };
+        let chunks = self.chunks.iter().skip_while(too_old).cloned().collect();
+        Some(Window { chunks, skip, period_ns: self.period_ns })
+    }
+}
+
+impl Window {
+    /// As a capture whose times begin at zero; copies the samples.
+    pub(super) fn capture(&self) -> Capture {
+        let column = |of: fn(&Wires) -> &Vec<f64>| -> Vec<f64> {
+            self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
+        };
+        let wires = Wires {
+            sin_v: column(|own| &own.sin_v),
+            refsin_v: column(|own| &own.refsin_v),
+            cos_v: column(|own| &own.cos_v),
+            refcos_v: column(|own| &own.refcos_v),
+            reference_deg: Vec::new(),
+        };
+        let period_s = self.period_ns as f64 * 1e-9;
+        Capture {
+            time_s: (0..wires.len()).map(|at| at as f64 * period_s).collect(),
+            sine_v: wires.sine_v(),
+            cosine_v: wires.cosine_v(),
+            references_v: Some((wires.refsin_v, wires.refcos_v)),
+            ..Capture::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<Wires> {
+        let column = |at: f64| (0..count).map(|own| (first as f64 + own as f64) * at).collect();
+        let samples = Wires {
+            sin_v: column(2.0),
+            refsin_v: column(1.0),
+            cos_v: column(4.0),
+            refcos_v: column(1.0),
+            reference_deg: Vec::new(),
+        };
+        Batch { first, time: Time::from_nanoseconds(first as i64 * period_ns), period_ns, lost, samples }
+    }
+
+    #[test]
+    fn a_window_is_the_newest_samples_without_a_gap() {
+        let mut recent = Recent::default();
+        assert!(recent.window(10).is_none() && !recent.is_due(None));
+        recent.add(batch(0, 5, 1_000_000, 0));
+        recent.add(batch(5, 6, 1_000_000, 0));
+        // Ten milliseconds are ten samples, 1 to 10; sine is 2n − n, cosine 4n − n.
+        let window = recent.window(10).unwrap().capture();
+        assert_eq!((window.sine_v.len(), window.sine_v[0], window.cosine_v[9]), (10, 1.0, 30.0));
+        assert!((window.time_s[9] - 0.009).abs() < 1e-12);
+        // Five milliseconds lie in the second batch alone.
+        let window = recent.window(5).unwrap();
+        assert_eq!((window.chunks.len(), window.capture().sine_v), (1, vec![6.0, 7.0, 8.0, 9.0, 10.0]));
+        recent.add(batch(20, 4, 1_000_000, 9));
+        assert!(recent.window(10).is_none(), "what is before the gap does not belong to it");
+        recent.add(batch(24, 4, 500_000, 0));
+        assert_eq!(recent.count, 4, "another rate is another signal");
+    }
+
+    #[test]
+    fn nothing_is_copied_and_no_more_is_kept_than_is_measured() {
+        let mut recent = Recent::default();
+        for at in 0..70 {
+            recent.add(batch(at * 10_000, 10_000, 1_000, 0));
+        }
+        assert_eq!((recent.count, recent.chunks.len()), (MOST, 50));
+        let window = recent.window(10_000).unwrap();
+        assert!(Arc::ptr_eq(&window.chunks[0], &recent.chunks[0]));
+        // Half a second at 1 MHz is the most: samples 200 000 to 699 999.
+        let capture = window.capture();
+        assert_eq!((capture.sine_v.len(), capture.sine_v[0]), (MOST, 200_000.0));
+    }
+
+    #[test]
+    fn it_is_measured_four_times_a_second() {
+        let mut recent = Recent::default();
+        recent.add(batch(0, 100, 1_000_000, 0));
+        assert!(recent.is_due(None));
+        let measured = recent.newest;
+        recent.add(batch(100, 249, 1_000_000, 0));
+        assert!(!recent.is_due(measured));
+        recent.add(batch(349, 1, 1_000_000, 0));
+        assert!(recent.is_due(measured));
+    }
+}

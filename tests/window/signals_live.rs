@@ -1,0 +1,102 @@
+//! The virtual encoder without drawing: held, stopped, set anew and started while something else is under way.
+
+use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction};
+use encoder_studio::app::{Action, Desk as Of, Studio};
+use encoder_studio::signal::history::Flags;
+use encoder_studio::signal::quality::Family;
+use encoder_studio::sim::sine_cosine::Quantity;
+
+use crate::signals::circle;
+use crate::support::Desk;
+
+/// Samples in the scope, and which of them do not join the one before.
+fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
+    let recorder = studio.recorder(Of::Signals).unwrap();
+    let history = recorder.history(&recorder.lines()[0]).unwrap();
+    let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
+    (history.all().end, history.all().filter(is_break).collect())
+}
+
+#[test]
+fn what_passed_while_it_was_held_is_a_gap_in_the_scope() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Source(SourceAction::Start));
+    desk.until("samples come", |studio| recorded(studio).0 > 1_000);
+    desk.signals(Signals::Source(SourceAction::Hold(true)));
+    let (count, breaks) = recorded(&desk.studio);
+    let began = std::time::Instant::now();
+    desk.until("some time passes", |_| began.elapsed().as_millis() > 200);
+    assert_eq!(recorded(&desk.studio).0, count);
+    desk.signals(Signals::Source(SourceAction::Hold(false)));
+    desk.until("it goes on", |studio| recorded(studio).0 > count);
+    let after = recorded(&desk.studio).1;
+    assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
+}
+
+#[test]
+fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Source(SourceAction::Start));
+    desk.until("it is measured", |studio| studio.signals.measurement().is_some());
+    desk.signals(Signals::Source(SourceAction::Stop));
+    let judged = |studio: &Studio| studio.signals.measurement().and_then(|own| own.judge.periods);
+    desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, 512.0)));
+    desk.until("it is judged again", |studio| judged(studio) == Some(512));
+    desk.signals(Signals::SetPeriods(16));
+    desk.until("it is judged again", |studio| judged(studio) == Some(16));
+    desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, -1.0)));
+    assert_eq!(desk.studio.signals.periods(), 16, "what is refused changes nothing");
+    desk.signals(Signals::Source(SourceAction::Reset));
+    assert_eq!(desk.studio.signals.source().settings().periods, 1024.0);
+    assert_eq!(desk.studio.signals.periods(), 1024);
+    desk.until("it is judged again", |studio| judged(studio) == Some(1024));
+}
+
+#[test]
+fn lost_samples_are_told_until_the_next_start() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000_000.0)));
+    desk.signals(Signals::Source(SourceAction::Start));
+    let began = std::time::Instant::now();
+    while desk.studio.signals.source().lost() == 0 && began.elapsed() < crate::support::LONG {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    desk.signals(Signals::Source(SourceAction::Stop));
+    assert!(desk.studio.signals.source().lost() > 0);
+    desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000.0)));
+    desk.signals(Signals::Source(SourceAction::Start));
+    assert_eq!(desk.studio.signals.source().lost(), 0);
+}
+
+#[test]
+fn a_file_that_is_being_read_does_not_take_the_place_of_a_source_started_meanwhile() {
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("large.csv");
+    std::fs::write(&path, circle(2_000)).unwrap();
+    desk.act(Action::Open(path));
+    assert!(desk.studio.signals.reading().is_some());
+    desk.signals(Signals::Source(SourceAction::Start));
+    assert!(desk.studio.signals.reading().is_none());
+    let began = std::time::Instant::now();
+    desk.until("a file would have been read", |studio| {
+        assert!(studio.signals.source().is_running());
+        began.elapsed().as_secs() >= 2 && studio.signals.measurement().is_some()
+    });
+    assert_eq!(desk.studio.signals.measurement().unwrap().origin, Origin::Virtual);
+}
+
+#[test]
+fn a_kept_capture_is_judged_by_the_limits_that_are_chosen() {
+    let mut desk = Desk::fresh("");
+    // 0.84 V: too little for HIPERFACE, good for AFS/AFM60.
+    desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));
+    desk.signals(Signals::SetFamily(Family::AfsAfm60));
+    desk.signals(Signals::Source(SourceAction::Start));
+    desk.until("it is measured", |studio| studio.signals.measurement().is_some());
+    desk.signals(Signals::Keep);
+    desk.signals(Signals::Source(SourceAction::Stop));
+    desk.signals(Signals::SetFamily(Family::Hiperface));
+    desk.until("it is judged again", |studio| !studio.signals.findings().is_empty());
+    let changes = desk.studio.signals.changes().unwrap();
+    assert!(changes.worse.is_empty(), "it is the same capture: {changes:?}");
+}
