@@ -9,6 +9,9 @@ use super::{Context, axes};
 use crate::app::recorder::{Cursor, Line, TriggerState};
 use crate::ui::Skin;
 
+/// Height of a lane in points below which there is no room for names in it.
+const LOW: f32 = 40.0;
+
 /// The colour of a line.
 pub(super) fn colour(skin: &Skin, line: &Line) -> Color32 {
     let series = &skin.palette.series;
@@ -110,6 +113,10 @@ fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane,
 /// The name and unit of each line of a lane, in its colour.
 fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let skin = context.skin;
+    if lane.rect.height() < LOW {
+        // They would cover the line; the numbers below have them too.
+        return;
+    }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
     for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
         let unit = line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default();

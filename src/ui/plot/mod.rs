@@ -88,11 +88,11 @@ pub fn plot_ui(
     // The readout stands below the chart and takes what it took in the picture before.
     let readout_id = ui.scope_id().with("readout");
     let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
-    let height = (below - readout - ui.spacing().item_spacing.y).max(60.0);
+    // In a low panel the numbers scroll: the chart keeps half of the room.
+    let height = (below - readout.min(below * 0.5) - ui.spacing().item_spacing.y).max(60.0);
     let hovered = chart_ui(ui, context, view, height, empty);
-    let before = ui.cursor().top();
-    readout::readout_ui(ui, context, hovered);
-    let used = ui.cursor().top() - before;
+    let numbers = egui::ScrollArea::vertical().id_salt("readout").auto_shrink([false, true]);
+    let used = numbers.show(ui, |ui| readout::readout_ui(ui, context, hovered)).content_size.y;
     if (used - readout).abs() > 0.5 {
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();

@@ -28,42 +28,109 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
             }
         });
     }
+    let measured = recorder.shown().any(|line| recorder.measure(line).is_some());
+    if measured && ui.available_width() > WIDE {
+        table(ui, context, hovered);
+        return;
+    }
     for line in recorder.shown() {
         ui.horizontal_wrapped(|ui| {
-            let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-            ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(skin, line));
-            ui.label(skin.caption(skin.words(&line.name)));
-            let sample = hovered.map_or_else(|| newest(context, line), |time| recorder.nearest(line, time));
-            ui.label(small(skin, sample.map_or_else(|| "–".to_owned(), |sample| value(skin, line, &sample))));
-            let unit = line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default();
-            ui.label(skin.caption(unit));
-            if let Some(remark) = &line.remark {
-                ui.label(RichText::new(skin.words(remark)).size(skin.sizes.caption).color(skin.palette.warn));
-            }
-            if let Some(measured) = recorder.measure(line) {
-                measured_ui(ui, skin, line, &measured);
+            name(ui, skin, line);
+            ui.label(small(skin, now(context, line, hovered)));
+            ui.label(skin.caption(line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
+            remarks(ui, skin, line, recorder.measure(line).as_ref());
+            for (label, value) in recorder.measure(line).map(|own| figures(skin, line, &own)).unwrap_or_default() {
+                figure(ui, skin, &label, &value);
             }
         });
     }
 }
 
-fn measured_ui(ui: &mut Ui, skin: &Skin, line: &Line, measured: &Measured) {
+/// Width in points from which the numbers of all lines stand below each other.
+const WIDE: f32 = 640.0;
+
+/// A row a line, a column a number.
+fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+    let (skin, recorder) = (context.skin, context.recorder);
+    let right = |ui: &mut Ui, words: RichText| {
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(words));
+    };
+    egui::Grid::new("measured").num_columns(11).spacing(vec2(skin.space.groups, 2.0)).show(ui, |ui| {
+        let rows: Vec<(&Line, Measured)> =
+            recorder.shown().filter_map(|line| recorder.measure(line).map(|own| (line, own))).collect();
+        let longest = rows.iter().map(|(line, own)| figures(skin, line, own)).max_by_key(Vec::len).unwrap_or_default();
+        (0..3).for_each(|_| {
+            ui.label("");
+        });
+        let row = |ui: &mut Ui, cells: Vec<RichText>| {
+            let last = cells.len().saturating_sub(1);
+            for (at, words) in cells.into_iter().enumerate() {
+                // The last column has no edge at the right to lean on.
+                if at == last {
+                    ui.label(words);
+                } else {
+                    right(ui, words);
+                }
+            }
+        };
+        row(ui, longest.into_iter().map(|(label, _)| skin.caption(label)).collect());
+        ui.end_row();
+        for (line, measured) in rows {
+            ui.horizontal(|ui| name(ui, skin, line));
+            right(ui, small(skin, now(context, line, hovered)));
+            ui.label(skin.caption(line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
+            row(ui, figures(skin, line, &measured).into_iter().map(|(_, value)| small(skin, value)).collect());
+            remarks(ui, skin, line, Some(&measured));
+            ui.end_row();
+        }
+    });
+}
+
+fn name(ui: &mut Ui, skin: &Skin, line: &Line) {
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(skin, line));
+    ui.label(skin.caption(skin.words(&line.name)));
+}
+
+/// The raw sample under the pointer, or the newest.
+fn now(context: &Context<'_>, line: &Line, hovered: Option<Time>) -> String {
+    let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.nearest(line, time));
+    sample.map_or_else(|| "–".to_owned(), |sample| value(context.skin, line, &sample))
+}
+
+/// What the cursors tell of a line: names and values.
+fn figures(skin: &Skin, line: &Line, measured: &Measured) -> Vec<(String, String)> {
     let decimals = line.decimals();
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| skin.number(value, decimals));
-    figure(ui, skin, "A", &number(measured.a));
-    figure(ui, skin, "B", &number(measured.b));
-    figure(ui, skin, "Δ", &number(measured.difference));
+    let mut figures = vec![
+        ("A".to_owned(), number(measured.a)),
+        ("B".to_owned(), number(measured.b)),
+        ("Δ".to_owned(), number(measured.difference)),
+    ];
     if let Some(between) = &measured.between {
-        figure(ui, skin, &skin.say("recorder.mean"), &number(Some(between.mean)));
-        figure(ui, skin, &skin.say("recorder.min"), &number(Some(between.min)));
-        figure(ui, skin, &skin.say("recorder.max"), &number(Some(between.max)));
-        // Noise is smaller than what is measured.
-        figure(ui, skin, "σ", &skin.number(between.deviation, decimals + 1));
-        figure(ui, skin, "n", &between.count.to_string());
-        if between.bad > 0 && !line.derived {
-            let words = RichText::new(format!("{} {}", between.bad, skin.say("recorder.bad")));
-            ui.label(words.size(skin.sizes.caption).color(skin.palette.bad));
-        }
+        figures.extend([
+            (skin.say("recorder.mean"), number(Some(between.mean))),
+            (skin.say("recorder.min"), number(Some(between.min))),
+            (skin.say("recorder.max"), number(Some(between.max))),
+            // Noise is smaller than what is measured.
+            ("σ".to_owned(), skin.number(between.deviation, decimals + 1)),
+            ("n".to_owned(), between.count.to_string()),
+        ]);
+    }
+    figures
+}
+
+/// Why there are no samples, and how many were not to be believed.
+fn remarks(ui: &mut Ui, skin: &Skin, line: &Line, measured: Option<&Measured>) {
+    let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(skin.sizes.caption).color(colour);
+    if let Some(remark) = &line.remark {
+        ui.label(caption(skin.words(remark), skin.palette.warn));
+    }
+    if let Some(between) = measured.and_then(|measured| measured.between.as_ref())
+        && between.bad > 0
+        && !line.derived
+    {
+        ui.label(caption(format!("{} {}", between.bad, skin.say("recorder.bad")), skin.palette.bad));
     }
 }
 
