@@ -3,9 +3,9 @@
 //! sine/cosine reference.
 
 use super::forms::MOST_PERIODS;
-use crate::app::Text;
 use crate::app::hiperface::Encoder;
 use crate::app::number::{number_or_hex, whole, within};
+use crate::app::{SessionId, Text};
 use crate::device::hiperface::{Rest, Signals as Volts};
 use crate::protocol::hiperface::Geometry;
 use crate::signal::arctan::{Phase, exact};
@@ -70,6 +70,16 @@ pub struct Synchronise {
     pub problem: Option<Text>,
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
+    /// Whose they are.
+    whose: Option<Whose>,
+}
+
+/// An encoder in a session; its serial number where it was read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Whose {
+    session: SessionId,
+    serial_number: Option<String>,
+    geometry: Option<Geometry>,
 }
 
 /// What the entries come to.
@@ -231,14 +241,23 @@ impl Synchronise {
     /// Takes what an encoder has read at rest since the last time.
     pub(in crate::app) fn follow(&mut self, encoder: &mut Encoder) {
         match encoder.take_rest_asked() {
-            Some(Ok(rest)) => self.take(rest, encoder.geometry()),
+            Some(Ok(rest)) => {
+                let serial_number = encoder.identity.as_ref().map(|own| own.serial.serial_number.clone());
+                self.take(rest, Whose { session: encoder.id, serial_number, geometry: encoder.geometry() });
+            }
             Some(Err(why)) => self.problem = Some(why),
             None => {}
         }
     }
 
-    fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
+    fn take(&mut self, rest: Rest, whose: Whose) {
         self.problem = None;
+        let geometry = whose.geometry;
+        if self.whose.as_ref() != Some(&whose) {
+            // Those were another encoder's.
+            self.readings.clear();
+            self.whose = Some(whose);
+        }
         let Some(Volts { sine_v, cosine_v }) = rest.signals else {
             self.form.absolute = rest.raw.to_string();
             self.problem = Some(Text::new("synchronise.no_channels"));
@@ -249,15 +268,10 @@ impl Synchronise {
             return;
         };
         let form = &mut self.form;
-        let before = (form.periods.clone(), form.turns.clone());
         form.absolute = format!("0x{:X}", rest.raw);
         form.told_as = ToldAs::Volts;
         (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
         (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
-        if before != (form.periods.clone(), form.turns.clone()) {
-            // Those were another encoder's.
-            self.readings.clear();
-        }
         let length = sine_v.hypot(cosine_v);
         match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude(length) != Verdict::Fault) {
             Some(phase) if rest.valid => self.readings.push((rest.raw.into(), phase)),
@@ -378,9 +392,14 @@ mod tests {
         };
         assert_eq!(page.measured(), None);
         // Step 10 at 8 steps (90°), and step 31 at 28 steps (315°).
-        page.take(at(10, 90.0), geometry);
+        let whose = |number, serial: &str| Whose {
+            session: SessionId(number),
+            serial_number: Some(serial.to_owned()),
+            geometry,
+        };
+        page.take(at(10, 90.0), whose(1, "A"));
         assert_eq!((page.readings(), page.measured()), (1, None));
-        page.take(at(95, 315.0), geometry);
+        page.take(at(95, 315.0), whose(1, "A"));
         assert!((page.measured().unwrap() - 2.5).abs() < 1e-9);
         page.act(Action::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
@@ -388,10 +407,14 @@ mod tests {
         let told = page.form.told().unwrap();
         assert!((told.difference_steps - 3.0).abs() < 0.01);
         assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);
-        page.take(Rest { signals: None, ..at(10, 0.0) }, geometry);
+        page.take(Rest { signals: None, ..at(10, 0.0) }, whose(1, "A"));
         assert_eq!(page.problem.as_ref().unwrap().id(), "synchronise.no_channels");
-        page.take(at(10, 90.0), Some(Geometry::Rotary { periods: 16, turns: 1 }));
-        assert_eq!(page.readings(), 1, "another encoder begins anew");
+        assert_eq!(page.readings(), 2);
+        let small = Whose { geometry: Some(Geometry::Rotary { periods: 16, turns: 1 }), ..whose(1, "A") };
+        for other in [small, whose(1, "A"), whose(1, "B"), whose(2, "B")] {
+            page.take(at(10, 90.0), other);
+            assert_eq!(page.readings(), 1, "another encoder begins anew");
+        }
         page.act(Action::Forget);
         assert_eq!(page.readings(), 0);
     }
