@@ -27,7 +27,7 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     drop(bar);
     let (_, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
-    let references_v = capture.references_v.as_ref().map(|(refsin, refcos)| (refsin.as_slice(), refcos.as_slice()));
+    let references_v = capture.references_v();
     let record = Record { samples, references_v, periods: arguments.periods };
     let family = arguments.limits.family();
     let analysis = Analysis::of(samples);

@@ -108,7 +108,7 @@ impl Measurement {
         Measurement {
             diagnosis: diagnosis(&capture, &analysis, judge),
             judge,
-            levels_v: capture.references_v.as_ref().map(|(sine, cosine)| (mean(sine), mean(cosine))),
+            levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
             raw: density(samples, None),
             corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
@@ -136,7 +136,7 @@ fn samples(capture: &Capture) -> Samples<'_> {
 }
 
 fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judge: Judge) -> Diagnosis {
-    let references_v = capture.references_v.as_ref().map(|(sine, cosine)| (sine.as_slice(), cosine.as_slice()));
+    let references_v = capture.references_v();
     let record = Record { samples: samples(capture), references_v, periods: judge.periods };
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
 }

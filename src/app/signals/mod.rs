@@ -23,6 +23,6 @@ pub use live::{Source, SourceAction};
 pub use measurement::{Judge, Measurement, Origin, Place};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
-pub use scope::Scope;
+pub use scope::{NoTimes, Scope};
 pub use spectra::{ChannelSpectrum, Spectra, dbv};
 pub use table::{Column, Table};

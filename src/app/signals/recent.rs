@@ -93,13 +93,15 @@ impl Window {
             refcos_v: column(|own| &own.refcos_v),
             reference_deg: Vec::new(),
         };
+        let reference_deg = column(|own| &own.reference_deg);
         let period_s = self.period_ns as f64 * 1e-9;
         Capture {
             time_s: (0..wires.len()).map(|at| at as f64 * period_s).collect(),
             sine_v: wires.sine_v(),
             cosine_v: wires.cosine_v(),
-            references_v: Some((wires.refsin_v, wires.refcos_v)),
-            ..Capture::default()
+            reference_deg: (!reference_deg.is_empty()).then_some(reference_deg),
+            wires: Some(wires),
+            absolute: None,
         }
     }
 }
@@ -115,7 +117,7 @@ mod tests {
             refsin_v: column(1.0),
             cos_v: column(4.0),
             refcos_v: column(1.0),
-            reference_deg: Vec::new(),
+            reference_deg: column(0.5),
         };
         Batch { first, time: Time::from_nanoseconds(first as i64 * period_ns), period_ns, lost, samples }
     }
@@ -130,6 +132,7 @@ mod tests {
         let window = recent.window(10).unwrap().capture();
         assert_eq!((window.sine_v.len(), window.sine_v[0], window.cosine_v[9]), (10, 1.0, 30.0));
         assert!((window.time_s[9] - 0.009).abs() < 1e-12);
+        assert_eq!((window.wires.unwrap().cos_v[9], window.reference_deg.unwrap()[9]), (40.0, 5.0));
         // Five milliseconds lie in the second batch alone.
         let window = recent.window(5).unwrap();
         assert_eq!((window.chunks.len(), window.capture().sine_v), (1, vec![6.0, 7.0, 8.0, 9.0, 10.0]));

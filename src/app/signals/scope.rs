@@ -14,10 +14,22 @@ use crate::worker::stream::Batch;
 pub struct Scope {
     /// The recorder.
     pub recorder: Recorder,
-    /// The capture's times go back, so that there is nothing to draw.
-    pub refused: bool,
+    /// Why there is nothing to draw.
+    pub refused: Option<NoTimes>,
     group: GroupId,
 }
+
+/// Why the times of a capture are no axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoTimes {
+    /// They go back.
+    GoBack,
+    /// They are further from zero than nanoseconds can be counted: 292 years. Milliseconds read as seconds are.
+    TooFar,
+}
+
+/// Seconds beyond which nanoseconds cannot be counted.
+const FARTHEST_S: f64 = 9.2e9;
 
 /// Samples of the virtual encoder that are kept: five seconds at 100 kHz.
 const KEPT: usize = 500_000;
@@ -43,14 +55,17 @@ impl Scope {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
         let counts = capture.time_s.len() < count;
         let recorder = if counts { Recorder::counting(1) } else { Recorder::new(SPAN) };
-        let mut scope = Scope::new(capture.references_v.is_some(), count.max(1), recorder);
+        let mut scope = Scope::new(capture.wires.is_some(), count.max(1), recorder);
         let mut from = 0;
-        while from < count && !scope.refused {
+        if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > FARTHEST_S) {
+            scope.refused = Some(NoTimes::TooFar);
+        }
+        while from < count && scope.refused.is_none() {
             let to = (from + PORTION).min(count);
-            scope.refused = scope.add_capture(capture, from..to).is_err();
+            scope.refused = scope.add_capture(capture, from..to).err().map(|_| NoTimes::GoBack);
             from = to;
         }
-        if scope.refused {
+        if scope.refused.is_some() {
             scope.recorder.clear();
         }
         scope.recorder.act(recorder::Action::Fit);
@@ -68,7 +83,7 @@ impl Scope {
             let line = if derived { line.derived() } else { line };
             recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });
         }
-        Scope { recorder, refused: false, group }
+        Scope { recorder, refused: None, group }
     }
 
     fn add_capture(&mut self, capture: &Capture, range: std::ops::Range<usize>) -> Result<(), Refused> {
@@ -79,16 +94,12 @@ impl Scope {
         });
         let times: Vec<Time> = times.collect();
         let (sine, cosine) = (part(&capture.sine_v), part(&capture.cosine_v));
-        let wires = capture.references_v.as_ref().map(|(refsin, refcos)| {
-            let (refsin, refcos) = (part(refsin), part(refcos));
-            let sum = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a + b).collect();
-            Wires {
-                sin_v: sum(&sine, &refsin),
-                cos_v: sum(&cosine, &refcos),
-                refsin_v: refsin,
-                refcos_v: refcos,
-                reference_deg: Vec::new(),
-            }
+        let wires = capture.wires.as_ref().map(|wires| Wires {
+            sin_v: part(&wires.sin_v),
+            refsin_v: part(&wires.refsin_v),
+            cos_v: part(&wires.cos_v),
+            refcos_v: part(&wires.refcos_v),
+            reference_deg: Vec::new(),
         });
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
@@ -146,17 +157,24 @@ mod tests {
             time_s: vec![-1e-6, 0.0, 1e-6],
             sine_v: vec![0.3, 0.0, -0.3],
             cosine_v: vec![0.4, 0.5, 0.4],
-            references_v: Some((vec![2.5; 3], vec![2.4; 3])),
+            wires: Some(Wires {
+                // As they were measured, whatever the differences are.
+                sin_v: vec![2.9, 2.5, 2.2],
+                refsin_v: vec![2.5; 3],
+                cos_v: vec![2.8, 2.9, 2.8],
+                refcos_v: vec![2.4; 3],
+                reference_deg: Vec::new(),
+            }),
             ..Capture::default()
         };
         let scope = Scope::of(&capture);
         assert_eq!(names(&scope), ["scope.sine", "scope.cosine", "scope.vector"]);
         assert_eq!(scope.recorder.lines().len(), 7);
-        // The vector of 0.3 and 0.4 is 0.5; SIN is 0.3 V above 2.5 V, COS 0.4 V above 2.4 V.
-        for (line, expected) in [0.3, 0.4, 0.5, 2.8, 2.5, 2.8, 2.4].into_iter().enumerate() {
+        // The vector of 0.3 and 0.4 is 0.5.
+        for (line, expected) in [0.3, 0.4, 0.5, 2.9, 2.5, 2.8, 2.4].into_iter().enumerate() {
             assert!((value(&scope, line, -1_000) - expected).abs() < 1e-12, "{line}");
         }
-        assert!(!scope.recorder.counts() && !scope.refused);
+        assert!(!scope.recorder.counts() && scope.refused.is_none());
     }
 
     fn batch(first: i64, count: usize) -> Batch<Wires> {
@@ -198,7 +216,13 @@ mod tests {
         assert_eq!(scope.recorder.lines().len(), 3);
         capture.time_s = vec![0.0, 2.0, 1.0];
         let scope = Scope::of(&capture);
-        assert!(scope.refused && scope.recorder.is_empty());
+        assert!(scope.refused == Some(NoTimes::GoBack) && scope.recorder.is_empty());
+        // Milliseconds since 1970 read as seconds.
+        capture.time_s = vec![1.7e12, 1.7e12 + 1.0, 1.7e12 + 2.0];
+        let scope = Scope::of(&capture);
+        assert!(scope.refused == Some(NoTimes::TooFar) && scope.recorder.is_empty());
+        capture.time_s = vec![1.7e9, 1.7e9 + 1.0, 1.7e9 + 2.0];
+        assert_eq!(Scope::of(&capture).refused, None);
         assert!(Scope::of(&Capture::default()).recorder.is_empty());
     }
 }

@@ -5,7 +5,7 @@ use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::detect::{HEAD, Layout, Wishes};
 use super::header::Columns;
-use super::{Capture, CaptureError};
+use super::{Capture, CaptureError, Wires};
 
 /// A table that is being read.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ impl Import {
             comma: layout.decimal_comma,
         };
         let capture = Capture {
-            references_v: layout.columns.references.map(|_| (Vec::new(), Vec::new())),
+            wires: layout.columns.references.map(|_| Wires::default()),
             reference_deg: layout.columns.reference_angle.map(|_| Vec::new()),
             absolute: layout.columns.absolute.map(|_| Vec::new()),
             ..Capture::default()
@@ -163,11 +163,13 @@ impl Taken {
         let time = self.columns.time.map(&mut value).transpose()?;
         let mut sine = value(self.columns.sine)? * self.volts;
         let mut cosine = value(self.columns.cosine)? * self.volts;
-        if let (Some((refsin, refcos)), Some(kept)) = (self.columns.references, &mut capture.references_v) {
+        if let (Some((refsin, refcos)), Some(wires)) = (self.columns.references, &mut capture.wires) {
             let (refsin, refcos) = (value(refsin)? * self.volts, value(refcos)? * self.volts);
+            wires.sin_v.push(sine);
+            wires.refsin_v.push(refsin);
+            wires.cos_v.push(cosine);
+            wires.refcos_v.push(refcos);
             (sine, cosine) = (sine - refsin, cosine - refcos);
-            kept.0.push(refsin);
-            kept.1.push(refcos);
         }
         if let (Some(column), Some(kept)) = (self.columns.reference_angle, &mut capture.reference_deg) {
             kept.push(value(column)?);

@@ -12,6 +12,8 @@ pub use detect::{Delimiter, HEAD, Layout, Wishes};
 pub use header::{Columns, TimeUnit, VoltUnit};
 pub use import::Import;
 
+use super::wires::Wires;
+
 /// Samples of a sine/cosine signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Capture {
@@ -21,12 +23,19 @@ pub struct Capture {
     pub sine_v: Vec<f64>,
     /// Cosine channel in volts, likewise.
     pub cosine_v: Vec<f64>,
-    /// REFSIN and REFCOS in volts, where the table has them.
-    pub references_v: Option<(Vec<f64>, Vec<f64>)>,
+    /// The four wires against ground as they were measured, where the table has the references.
+    pub wires: Option<Wires>,
     /// The shaft's angle by a reference encoder in degrees, where the table has it: wrapped at a turn or running on.
     pub reference_deg: Option<Vec<f64>>,
     /// Absolute positions in steps of 1/32 period, where the table has them.
     pub absolute: Option<Vec<i64>>,
+}
+
+impl Capture {
+    /// REFSIN and REFCOS in volts, where the table has them.
+    pub fn references_v(&self) -> Option<(&[f64], &[f64])> {
+        self.wires.as_ref().map(|wires| (wires.refsin_v.as_slice(), wires.refcos_v.as_slice()))
+    }
 }
 
 /// Why a table is no capture.

@@ -4,7 +4,7 @@ use egui::{Ui, vec2};
 
 use super::numbers::with_unit;
 use super::{View, quality, source};
-use crate::app::signals::{ChannelSpectrum, Measurement, Signals, Spectra, Unit, dbv};
+use crate::app::signals::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, Unit, dbv};
 use crate::app::{Action, Desk, Text, explain};
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -40,7 +40,11 @@ fn trace(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut ScopeView, acti
     card(ui, skin, "scope.title", |ui| {
         ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
             ui.set_max_height(height);
-            let empty = skin.say(if scope.refused { "scope.refused" } else { "scope.nothing" });
+            let empty = skin.say(match scope.refused {
+                Some(NoTimes::GoBack) => "scope.refused",
+                Some(NoTimes::TooFar) => "scope.too_far",
+                None => "scope.nothing",
+            });
             plot::plot_ui(ui, skin, &scope.recorder, Desk::Signals, &mut view.plot, &empty, actions);
         });
         if scope.recorder.counts() {
