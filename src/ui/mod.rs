@@ -19,3 +19,11 @@ mod workspace;
 pub use run::run;
 pub use skin::{Skin, install_fonts};
 pub use window::{Views, Window};
+
+/// The pages of a tab in their order, as the table of texts names them.
+pub fn pages(tab: crate::app::Tab) -> Vec<&'static str> {
+    match tab {
+        crate::app::Tab::Hiperface => hiperface::Page::ALL.into_iter().map(hiperface::Page::word).collect(),
+        crate::app::Tab::Signals => signals::Page::ALL.into_iter().map(signals::Page::word).collect(),
+    }
+}

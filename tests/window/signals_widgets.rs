@@ -9,7 +9,6 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::screen::Screen;
 use crate::support::{HANGING, Outside};
 
-pub(crate) const PAGES: [&str; 4] = ["page.quality", "page.error", "page.synchronise", "page.input_circuit"];
 const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
 
 impl Screen {
@@ -24,7 +23,7 @@ impl Screen {
             for theme in [Theme::Dark, Theme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
-                for page in PAGES {
+                for page in encoder_studio::ui::pages(Tab::Signals) {
                     self.click(page);
                     self.check_language();
                 }
