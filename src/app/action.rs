@@ -59,6 +59,8 @@ pub enum Action {
     Chosen(FileQuestion, PathBuf),
     /// Something with the recorder of a desk.
     Recorder(Desk, recorder::Action),
+    /// Forget what a recorder has recorded; asks first when that is much.
+    AskForget(Desk),
     /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
     AskTable {
         /// Whose recorder.
@@ -277,4 +279,5 @@ pub(super) enum Then {
     CloseWindow,
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
+    Forget(Desk),
 }

@@ -3,8 +3,12 @@
 use super::Text;
 use super::action::{Action, Done, Question, Then, Waited};
 use super::hiperface::{Encoder, Source};
+use super::recorder;
 use super::services::JobEnd;
 use super::studio::{SessionId, Studio};
+
+/// Nanoseconds of a recording that nobody wants to lose by a click.
+pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
     /// The window may close now: nothing runs any more, not even in sessions that were let go, and what is to be kept is
@@ -52,11 +56,13 @@ impl Studio {
     pub(super) fn close(&mut self) {
         let busy = self.encoders.iter().any(Encoder::is_busy);
         let edits = self.encoders.iter().any(|encoder| encoder.staged.is_dirty());
-        if busy || edits {
+        let recorded = self.encoders.iter().any(|encoder| encoder.record.recorder.unsaved() >= MUCH);
+        if busy || edits || recorded {
             let lost = |encoder: &Encoder| encoder.staged.is_dirty() && !encoder.keeps_edits();
             let text = match self.encoders.iter().find(|encoder| lost(encoder)) {
                 Some(encoder) => Text::new("question.session_lost").with("name", encoder.name()),
-                None => Text::new(if busy { "question.busy" } else { "question.edits" }),
+                None if busy => Text::new("question.busy"),
+                None => Text::new(if edits { "question.edits" } else { "question.recording" }),
             };
             let confirm = Text::new("question.close_window");
             self.question = Some(Question { text, confirm, then: Then::CloseWindow });
@@ -87,6 +93,7 @@ impl Studio {
             }
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
+            Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
             None => {}
         }
     }

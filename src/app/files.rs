@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Desk, Done, FileQuestion};
+use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
+use super::closing::MUCH;
 use super::hiperface;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
@@ -59,19 +60,35 @@ impl Studio {
         }
     }
 
+    pub(super) fn ask_forget(&mut self, desk: Desk) {
+        if self.recorder(desk).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
+            let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
+            self.question = Some(Question { text, confirm, then: Then::Forget(desk) });
+        } else {
+            self.act_recorder(desk, recorder::Action::Clear);
+        }
+    }
+
     pub(super) fn ask_table(&mut self, desk: Desk, visible: bool) {
-        let suggested = self.suggested("csv");
+        let suggested = self.suggested(Some(desk), "csv");
         self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
     }
 
     pub(super) fn ask_picture(&mut self, picture: Picture) {
-        let suggested = self.suggested("png");
+        let suggested = self.suggested(None, "png");
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
-    /// A name after the time of day: what is recorded is not recorded again.
-    fn suggested(&self, ending: &str) -> PathBuf {
-        PathBuf::from(format!("{}.{ending}", self.services.now().strftime("recording-%Y%m%d-%H%M%S")))
+    /// A name after the encoder and the time of day: what is recorded is not recorded again.
+    fn suggested(&self, desk: Option<Desk>, ending: &str) -> PathBuf {
+        let encoder = match desk {
+            Some(Desk::Encoder(id)) => self.encoders.iter().find(|encoder| encoder.id == id),
+            Some(Desk::Signals) => None,
+            None => self.encoder(),
+        };
+        let whose = encoder.and_then(|encoder| encoder.suggested_file().file_stem().map(ToOwned::to_owned));
+        let whose = whose.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from(format!("{whose}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
     }
 
     fn write_table(&mut self, desk: Desk, visible: bool, path: &Path) {
@@ -91,7 +108,10 @@ impl Studio {
     }
 
     pub(super) fn table_written(&mut self, desk: Desk, exported: Exported) {
-        let lost = self.recorder_mut(desk).and_then(|recorder| recorder.end_export(exported.number)).unwrap_or(0);
+        let lost = self
+            .recorder_mut(desk)
+            .and_then(|recorder| recorder.end_export(exported.number, matches!(exported.rows, Ok(Some(_)))))
+            .unwrap_or(0);
         let path = exported.path.display();
         let (severity, mut texts) = match &exported.rows {
             Ok(Some(rows)) => {

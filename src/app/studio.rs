@@ -120,6 +120,7 @@ impl Studio {
             Action::Typed(question, path) => self.typed(question, path),
             Action::Chosen(question, path) => self.chosen(question, path),
             Action::Recorder(desk, action) => self.act_recorder(desk, action),
+            Action::AskForget(desk) => self.ask_forget(desk),
             Action::AskTable { desk, visible } => self.ask_table(desk, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),

@@ -227,6 +227,32 @@ pub(super) fn choice<T: PartialEq + Copy>(
     *value != before
 }
 
+/// A choice whose options all stand there, as many in a row as fit: also where a list could not open, in a panel that a
+/// click beside it closes.
+pub(super) fn options<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut T,
+    options: impl IntoIterator<Item = (T, String)>,
+) -> bool {
+    let before = *value;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+        ui.spacing_mut().button_padding.x = 6.0;
+        for (own, word) in options {
+            let chosen = *value == own;
+            let button = Button::selectable(chosen, word.as_str()).frame_when_inactive(true);
+            let response = ui.add(button);
+            let name = format!("{label}: {word}");
+            response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
+            if response.clicked() {
+                *value = own;
+            }
+        }
+    });
+    *value != before
+}
+
 /// A one-line entry for what is not to be seen: not on the screen, not by a screen reader, not by undoing.
 pub(super) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
     let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);

@@ -120,7 +120,8 @@ fn the_recording_is_saved_as_a_table() {
     desk.act(Action::AskTable { desk: desk_of, visible: false });
     let asked = desk.studio.take_file_question().unwrap();
     let FileQuestion::Table { visible: false, suggested, .. } = &asked else { panic!("{asked:?}") };
-    assert!(suggested.to_str().unwrap().ends_with(".csv"));
+    let name = suggested.to_str().unwrap();
+    assert!(name.starts_with("SKM36-GB0450179-2") && name.ends_with(".csv"), "{name}");
     desk.act(Action::Chosen(asked, path.clone()));
     desk.until("it is written", |studio| {
         studio.services.log.notices().any(|own| own.texts[0].id() == "recorder.written")

@@ -40,7 +40,9 @@ impl Encoder {
             }
             Action::Poll(interval) => {
                 if let Some(line) = &mut self.line {
+                    let begins = line.polling().is_none();
                     line.poll(interval);
+                    self.record.poll(interval, begins);
                 }
             }
             Action::Watch(what, on) => self.watch(what, on),
@@ -267,7 +269,7 @@ impl Encoder {
         self.review = None;
     }
 
-    fn suggested_file(&self) -> PathBuf {
+    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
         if let Source::File { path, .. } = &self.source {
             return path.clone();
         }

@@ -1,5 +1,7 @@
 //! What is recorded of an encoder while it is polled: its position without the wrap, speed and acceleration.
 
+use std::time::Duration;
+
 use jiff::Zoned;
 
 use crate::app::Text;
@@ -12,10 +14,13 @@ use crate::units::Moment;
 
 /// Positions that are kept: more than a day at the fastest rate.
 const CAPACITY: usize = 4_000_000;
-/// Nanoseconds between positions from which they are not joined: a line would tell of a movement that nobody has seen.
-const APART: i64 = 2_500_000_000;
+/// Nanoseconds between positions from which they are not joined, at any pace: a line would tell of a movement that nobody
+/// has seen.
+const APART: i64 = 5_000_000_000;
+/// What a position may be late beside four intervals: a reply that was lost and asked for again.
+const LATE: i64 = 400_000_000;
 /// Likewise between watched values, which come more slowly.
-const WATCHED_APART: i64 = 2 * APART;
+const WATCHED_APART: i64 = APART;
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 /// Values of one watched thing that are kept.
@@ -39,6 +44,8 @@ pub struct Record {
     began: Option<Zoned>,
     shift: i64,
     newest: Option<Time>,
+    /// Nanoseconds between two positions from which they are not joined.
+    apart: i64,
 }
 
 /// A watched value and where it is recorded.
@@ -101,6 +108,7 @@ impl Record {
             began: None,
             shift: 0,
             newest: None,
+            apart: APART,
         }
     }
 
@@ -114,6 +122,15 @@ impl Record {
         let behind = self.newest.map_or(0, |newest| newest.nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
         self.gap();
+    }
+
+    /// Positions are wished at this interval from now on; when that begins, what was before is not joined to what comes.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
+        self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
+        if begins {
+            self.gap();
+        }
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
@@ -216,8 +233,9 @@ impl Record {
             return;
         }
         let (began, shift, newest, dropped) = (self.began.take(), self.shift, self.newest, self.dropped);
+        let apart = self.apart;
         let (watched, span) = (self.watched(), self.recorder.span());
-        *self = Record { began, shift, newest, dropped, ..Record::about(geometry) };
+        *self = Record { began, shift, newest, dropped, apart, ..Record::about(geometry) };
         self.recorder.act(recorder::Action::SetSpan(span));
         self.watch(&watched);
         self.follower = Some(Follower::new(geometry));
@@ -229,7 +247,7 @@ impl Record {
             // Read on its own between two samples that are recorded already.
             return;
         }
-        if !reading.valid || self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > APART) {
+        if !reading.valid || self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > self.apart) {
             self.lose_track();
         }
         let word = i64::from(reading.raw);

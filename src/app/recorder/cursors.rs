@@ -2,6 +2,7 @@
 
 use super::{Line, Recorder};
 use crate::signal::Time;
+use crate::signal::history::Sample;
 
 /// One of the two cursors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,7 +76,7 @@ impl Recorder {
         if a.is_none() && b.is_none() {
             return None;
         }
-        let at = |time: Option<Time>| self.nearest(line, time?).filter(|sample| line.value(sample).is_finite());
+        let at = |time: Option<Time>| self.at(line, time?).filter(|sample| line.value(sample).is_finite());
         let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::signal::history::Flags::BAD));
         let (at_a, at_b) = (good(a), good(b));
         let difference = at_a.zip(at_b).map(|(a, b)| line.difference(&a, &b));
@@ -104,17 +105,46 @@ impl Recorder {
         })
     }
 
-    pub(super) fn cursor_mut(&mut self, cursor: Cursor) -> &mut Option<Time> {
+    /// The raw sample of a line at a point in time: the nearest, where it was recorded then.
+    pub fn at(&self, line: &Line, time: Time) -> Option<Sample> {
+        /// By so much of what is visible a cursor may stand beside the first or the last sample.
+        const BESIDE: i64 = 200;
+        let history = self.history(line)?;
+        let all = history.all();
+        let (first, last) = (history.time(all.start)?, history.time(all.end.checked_sub(1)?)?);
+        let beside = self.span() / BESIDE;
+        (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
+    }
+
+    /// Puts a cursor on the sample that is nearest, so that times and values belong together; where nothing was recorded,
+    /// it stands where it was put.
+    pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
+        let nearest = |time: Time| {
+            let samples = self.shown().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
+            samples.min_by_key(|own| own.nanoseconds_since(time).saturating_abs()).unwrap_or(time)
+        };
+        let time = time.map(nearest);
         let [a, b] = &mut self.cursors;
         match cursor {
-            Cursor::A => a,
-            Cursor::B => b,
+            Cursor::A => *a = time,
+            Cursor::B => *b = time,
         }
     }
 
+    /// Both to a third of what is visible of the samples, or away.
     pub(super) fn show_cursors(&mut self, shown: bool) {
-        let (from, _) = self.window();
-        let third = self.span() / 3;
-        self.cursors = if shown { [Some(from.plus(third)), Some(from.plus(2 * third))] } else { [None; 2] };
+        if !shown {
+            self.cursors = [None; 2];
+            return;
+        }
+        let (mut from, mut to) = self.window();
+        if let Some((first, last)) = self.recorded()
+            && first.max(from) < last.min(to)
+        {
+            (from, to) = (first.max(from), last.min(to));
+        }
+        let third = to.nanoseconds_since(from) / 3;
+        self.set_cursor(Cursor::A, Some(from.plus(third)));
+        self.set_cursor(Cursor::B, Some(from.plus(2 * third)));
     }
 }

@@ -31,6 +31,8 @@ pub struct Export {
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
+    /// All that was recorded until then is in it; `None`: only what was visible.
+    until: Option<Time>,
 }
 
 /// Which table it is, of all that were ever written.
@@ -68,6 +70,8 @@ struct Column {
     head: usize,
     column: usize,
     factor: f64,
+    /// Where it has no value, that is no fault of the sample.
+    derived: bool,
 }
 
 /// What is handed over.
@@ -142,7 +146,13 @@ impl Recorder {
             if head == heads.len() {
                 heads.push(Head { group: line.group, next: range.start, end: range.end });
             }
-            columns.push(Column { heading: heading(line), head, column: line.column, factor: line.factor() });
+            columns.push(Column {
+                heading: heading(line),
+                head,
+                column: line.column,
+                factor: line.factor(),
+                derived: line.derived,
+            });
         }
         let total = heads.iter().map(|head| head.end.saturating_sub(head.next)).sum();
         if total == 0 {
@@ -172,6 +182,7 @@ impl Recorder {
             heads,
             columns,
             lost: 0,
+            until: self.recorded().map(|(_, last)| last).filter(|_| !visible),
         });
         self.feed_export();
         Some(writing)
@@ -198,8 +209,18 @@ impl Recorder {
     }
 
     /// The thread has ended. Gives the samples that were lost on the way; `None`: that was of an earlier table.
-    pub(in crate::app) fn end_export(&mut self, number: ExportNumber) -> Option<u64> {
-        self.export.take_if(|export| export.number == number).map(|export| export.lost)
+    pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
+        let export = self.export.take_if(|export| export.number == number)?;
+        if written && export.until.is_some() {
+            self.saved = export.until;
+        }
+        Some(export.lost)
+    }
+
+    /// Nanoseconds of recording that no table has.
+    pub fn unsaved(&self) -> i64 {
+        let Some((first, last)) = self.recorded() else { return 0 };
+        last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
     /// The next rows: the samples of all groups in the order of time, those of the same time in one row.
@@ -239,7 +260,8 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     let Some(sample) = sample() else { return Cell::default() };
     let value = sample.value.to_f64() * column.factor;
     let value = Some(value).filter(|value| value.is_finite() && !sample.flags.contains(Flags::BAD));
-    Cell { value, flags: sample.flags }
+    let flags = if column.derived { Flags::NONE } else { sample.flags };
+    Cell { value, flags }
 }
 
 /// The name and unit as a column of a table has them, which do not depend on the window's language.

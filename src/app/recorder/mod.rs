@@ -106,10 +106,13 @@ pub struct Recorder {
     next: u32,
     view: View,
     counts: bool,
+    finished: bool,
     one_axis: bool,
     cursors: [Option<Time>; 2],
     watch: Option<Watch>,
     export: Option<Export>,
+    /// Until then everything is in a table.
+    saved: Option<Time>,
 }
 
 impl Recorder {
@@ -122,6 +125,11 @@ impl Recorder {
     /// [`SAMPLE`]; so many of them are shown while it follows.
     pub fn counting(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
+    }
+
+    /// Nothing is added any more: what is looked for is there or not.
+    pub(in crate::app) fn finish(&mut self) {
+        self.finished = true;
     }
 
     /// Its times are numbers of samples.
@@ -164,11 +172,15 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group.
+    /// Appends samples to a group; as long as a picture that is held would be lost for them, they are left out.
     ///
     /// # Errors
     /// The batch does not have the group's columns, or its time goes back.
     pub fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
+        if self.would_lose_picture(group, times.len()) {
+            self.break_before_next(group);
+            return Ok(());
+        }
         let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(Refused::Shape) };
         let before = history.all().end;
         history.append(times, parts)?;
@@ -207,7 +219,7 @@ impl Recorder {
             Action::Look(from, to) => self.look(from, to),
             Action::SetSpan(span) => self.set_span(span),
             Action::Zoom(about, factor) => self.zoom(about, factor),
-            Action::SetCursor(cursor, time) => *self.cursor_mut(cursor) = time,
+            Action::SetCursor(cursor, time) => self.set_cursor(cursor, time),
             Action::ShowCursors(shown) => self.show_cursors(shown),
             Action::Arm(trigger) => self.arm(trigger),
             Action::Disarm => self.disarm(),
@@ -283,6 +295,7 @@ impl Recorder {
         }
         // Of a table that is half written nothing is kept.
         self.export = None;
+        self.saved = None;
         self.cursors = [None; 2];
         self.watch = self.watch.take().map(Watch::again);
         self.lines.iter_mut().for_each(|line| line.range = None);

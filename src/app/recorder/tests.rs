@@ -88,7 +88,7 @@ fn cursors_measure_on_the_raw_samples() {
     assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
     recorder.act(Action::SetCursor(Cursor::A, Some(at(200))));
     recorder.act(Action::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
-    assert_eq!(recorder.between_cursors(), Some(-100_200_000));
+    assert_eq!(recorder.between_cursors(), Some(-100 * MILLISECOND), "on the samples that are read");
     recorder.act(Action::SetScale(counts, 1));
     let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
     let degrees = 360.0 / 4096.0;
@@ -105,6 +105,60 @@ fn cursors_measure_on_the_raw_samples() {
     assert_eq!((measured.a, measured.difference), (None, None), "what is bad is not read");
     recorder.act(Action::ShowCursors(false));
     assert_eq!(recorder.measure(recorder.line(volts).unwrap()), None);
+}
+
+#[test]
+fn a_cursor_where_nothing_was_recorded_reads_nothing() {
+    let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
+    let slow = recorder.add_group(&[Kind::Whole], 100, None);
+    let scales = vec![Scale::new("unit.steps", 1.0, 0)];
+    let late = recorder.add_line(Line::of(slow, 0, Text::new("recorder.counter"), "counter", scales));
+    ramp(&mut recorder, group, 0, 1000);
+    recorder.append(slow, &[at(700), at(900)], &[Part::whole(&[7, 9])]).unwrap();
+    recorder.act(Action::SetCursor(Cursor::A, Some(at(500))));
+    recorder.act(Action::SetCursor(Cursor::B, Some(at(5_000))));
+    assert_eq!(recorder.cursor(Cursor::B), Some(at(5_000)), "it stands where it was put");
+    let measure = |id| recorder.measure(recorder.line(id).unwrap()).unwrap();
+    assert_eq!((measure(counts).a, measure(counts).b, measure(counts).difference), (Some(500.0), None, None));
+    assert_eq!((measure(late).a, measure(late).b), (None, None), "it was not recorded yet");
+    assert_eq!(measure(late).between.unwrap().count, 2);
+    recorder.act(Action::Fit);
+    recorder.act(Action::ShowCursors(true));
+    assert_eq!(Cursor::BOTH.map(|cursor| recorder.cursor(cursor)), [Some(at(333)), Some(at(666))]);
+}
+
+#[test]
+fn a_held_picture_is_not_lost_for_newer_samples() {
+    let mut recorder = Recorder::new(100 * MILLISECOND);
+    let group = recorder.add_group(&[Kind::Whole], 10_000, None);
+    let scales = vec![Scale::new("unit.steps", 1.0, 0)];
+    let line = recorder.add_line(Line::of(group, 0, Text::new("recorder.position"), "position", scales));
+    let feed = |recorder: &mut Recorder, from: i64, to: i64| {
+        let times: Vec<Time> = (from..to).map(at).collect();
+        let values: Vec<i64> = (from..to).collect();
+        recorder.append(group, &times, &[Part::whole(&values)]).unwrap();
+    };
+    arm(&mut recorder, line, When::Rising, 5_000.0, false);
+    (0..100).for_each(|portion| feed(&mut recorder, portion * 1000, (portion + 1) * 1000));
+    let (from, to) = recorder.window();
+    assert_eq!((from, to), (at(4_975), at(5_075)));
+    let own = recorder.line(line).unwrap();
+    let seen = |time| recorder.nearest(own, at(time)).unwrap().value.to_f64() as i64;
+    assert_eq!((seen(4_975), seen(5_075)), (4_975, 5_075), "still there");
+    recorder.act(Action::Disarm);
+    feed(&mut recorder, 100_000, 101_000);
+    assert_eq!(recorder.recorded().unwrap().1, at(100_999), "and goes on");
+}
+
+#[test]
+fn in_a_finished_recording_a_trigger_is_looked_for_at_once() {
+    let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
+    ramp(&mut recorder, group, 0, 1000);
+    recorder.finish();
+    arm(&mut recorder, counts, When::Rising, 600.0, false);
+    assert_eq!((state(&recorder), recorder.window()), (TriggerState::Held(at(600)), (at(575), at(675))));
+    arm(&mut recorder, counts, When::Falling, 600.0, false);
+    assert_eq!(state(&recorder), TriggerState::Missed);
 }
 
 fn arm(recorder: &mut Recorder, line: LineId, when: When, level: f64, repeat: bool) {
@@ -221,7 +275,7 @@ fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
         }
         written.join().unwrap()
     });
-    assert_eq!(recorder.end_export(exported.number), Some(0));
+    assert_eq!(recorder.end_export(exported.number, true), Some(0));
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(exported.rows.unwrap(), Some(text.lines().count() as u64 - 1));
     Some(text)
@@ -243,7 +297,9 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
                     0.002000000,90,,21.5,bad\n\
                     0.003000000,,,,bad\n\
                     1.000000000,,,22,\n";
+    assert_eq!(recorder.unsaved(), 1_001 * MILLISECOND);
     assert_eq!(exported(&mut recorder, false).unwrap(), expected);
+    assert_eq!(recorder.unsaved(), 0);
     recorder.act(Action::Look(at(-5), at(1)));
     recorder.act(Action::Show(volts, false));
     let visible = exported(&mut recorder, true).unwrap();
@@ -287,10 +343,10 @@ fn a_long_table_is_whole_and_can_be_given_up() {
     let given_up = writing.run(&|| {});
     assert!(given_up.rows.unwrap().is_none());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "the old one");
-    assert_eq!(recorder.end_export(given_up.number), Some(0));
+    assert_eq!(recorder.end_export(given_up.number, false), Some(0));
     let nowhere = recorder.begin_export(&folder.path().join("no/samples.csv"), false).unwrap();
     assert!(nowhere.run(&|| {}).rows.is_err());
-    assert_eq!(recorder.end_export(given_up.number), None, "that was another table");
+    assert_eq!(recorder.end_export(given_up.number, true), None, "that was another table");
     assert!(recorder.export().is_some());
 }
 

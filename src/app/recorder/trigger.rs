@@ -53,6 +53,8 @@ pub enum TriggerState {
     Fired(Time),
     /// It has happened then, and the picture is complete.
     Held(Time),
+    /// It did not happen in a recording to which nothing is added any more.
+    Missed,
 }
 
 /// A trigger at work.
@@ -127,7 +129,39 @@ impl Recorder {
         let trigger = Trigger { before, ..trigger };
         let span = self.span();
         self.watch = Some(Watch { trigger, when, level, state: TriggerState::Armed, last: None, span });
-        self.view = View::Follow { span };
+        if self.finished {
+            self.search();
+        } else {
+            self.view = View::Follow { span };
+        }
+    }
+
+    /// Looks for the trigger in what is there already: the first time that it happens.
+    fn search(&mut self) {
+        let Some(mut watch) = self.watch else { return };
+        let Some(line) = self.line(watch.trigger.line) else { return };
+        let (Some(history), column) = (self.history(line), line.column) else { return };
+        let found = history.all().find_map(|index| {
+            let sample = history.sample(column, index)?;
+            watch.is_it(&sample).then_some(sample.time)
+        });
+        watch.state = found.map_or(TriggerState::Missed, TriggerState::Held);
+        self.watch = Some(watch);
+        if let Some(at) = found {
+            let (from, to) = watch.window(at);
+            self.view = View::Fixed { from, to };
+        }
+    }
+
+    /// A held picture would lose samples if more were added to this group.
+    pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
+        let Some(watch) = self.watch else { return false };
+        let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
+        let all = group.history.all();
+        let room = (all.end - all.start).saturating_add(more as u64) <= group.capacity as u64;
+        // Whole blocks go: what lies a block behind the oldest is the next to be the oldest.
+        let oldest = group.history.time(all.start.saturating_add(2 * 4096 + more as u64));
+        !room && oldest.is_none_or(|oldest| oldest > watch.window(at).0)
     }
 
     pub(super) fn disarm(&mut self) {

@@ -69,6 +69,7 @@ impl Scope {
             scope.recorder.clear();
         }
         scope.recorder.act(recorder::Action::Fit);
+        scope.recorder.finish();
         scope
     }
 

@@ -178,6 +178,26 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
+/// A point in time as exactly as a picture of that many nanoseconds shows it.
+pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
+    let nanoseconds = time.nanoseconds();
+    let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
+    let decimals = digits.map_or(9, |(_, digits)| digits);
+    let sign = if nanoseconds < 0 { "-" } else { "" };
+    let whole = nanoseconds.unsigned_abs();
+    let fraction = format!("{:09}", whole % SECOND.unsigned_abs());
+    let seconds = format!("{sign}{}.{}", whole / SECOND.unsigned_abs(), fraction.get(..decimals).unwrap_or_default());
+    match language {
+        Language::German => format!("{} s", seconds.replace('.', ",")),
+        Language::English => format!("{seconds} s"),
+    }
+}
+
+/// The number of the sample at that place.
+pub(super) fn sample_number(time: Time) -> String {
+    time.nanoseconds().div_euclid(SAMPLE).to_string()
+}
+
 /// A length of time as a person reads it, with four digits or so.
 pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
@@ -300,6 +320,19 @@ mod tests {
             }
             span *= 3;
         }
+    }
+
+    #[test]
+    fn a_point_in_time_is_said_as_exactly_as_it_is_shown() {
+        for (nanoseconds, span, expected) in [
+            (12_345_678_901, 30 * SECOND, "12.345 s"),
+            (-1_500_000_000, SECOND, "-1.500 s"),
+            (12_345_678_901, 5_000_000, "12.345678 s"),
+            (901, 1_000, "0.000000901 s"),
+        ] {
+            assert_eq!(instant(Time::from_nanoseconds(nanoseconds), span, Language::English), expected);
+        }
+        assert_eq!(sample_number(Time::from_nanoseconds(7_999)), "7");
     }
 
     #[test]

@@ -83,9 +83,8 @@ fn value_axis(painter: &Painter, skin: &Skin, lane: &Lane, font: &FontId) {
     for value in axes::ticks(lane.range.0, lane.range.1, lane.step) {
         let y = axis.y(value).round();
         painter.hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
-        // A label stands beside its line, and inside its lane.
-        let y = y.clamp(rect.top() + 6.0, (rect.bottom() - 6.0).max(rect.top() + 6.0));
-        if lane.empty {
+        // Beside its line, or not at all: between two lanes there is room for half of one.
+        if lane.empty || y < rect.top() + 2.0 || y > rect.bottom() - 2.0 {
             continue;
         }
         let label = axes::value_label(value, lane.step, skin.language);
@@ -155,7 +154,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
 
 /// The raw sample nearest to a time, as a dot.
 fn dot(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, line: &Line, time: crate::signal::Time) {
-    let Some(sample) = context.recorder.nearest(line, time) else { return };
+    let Some(sample) = context.recorder.at(line, time) else { return };
     let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));
     if place.is_finite() && lane.rect.contains(place) {
         painter.circle(place, 3.5, colour(context.skin, line), Stroke::new(1.0, context.skin.palette.sunken));
@@ -166,6 +165,23 @@ fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, plac
     let faint = Stroke::new(1.0, Color32::from(context.skin.palette.muted).gamma_multiply(0.6));
     painter.vline(place.x.round(), layout.chart.y_range(), faint);
     let time = layout.time.time(place.x);
+    let words = match context.recorder.counts() {
+        true => axes::sample_number(time),
+        false => axes::instant(time, context.recorder.span(), context.skin.language),
+    };
+    let font = FontId::monospace(context.skin.sizes.caption);
+    let words = painter.layout_no_wrap(words, font, context.skin.palette.text.into());
+    let room = layout.chart.right() - words.size().x - 2.0;
+    let corner = pos2(
+        (place.x - words.size().x / 2.0).clamp(layout.chart.left(), room.max(layout.chart.left())),
+        layout.chart.bottom() + 3.0,
+    );
+    painter.rect_filled(
+        Rect::from_min_size(corner, words.size()).expand2(vec2(4.0, 1.0)),
+        2.0,
+        context.skin.palette.raised,
+    );
+    painter.galley(corner, words, Color32::PLACEHOLDER);
     for lane in &layout.lanes {
         for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
             dot(painter, context, layout, lane, line, time);

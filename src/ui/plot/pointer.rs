@@ -7,7 +7,7 @@ use super::lanes::Layout;
 use crate::app::recorder::{Action, Cursor};
 use crate::signal::Time;
 
-/// So near, in points, the pointer is on a cursor, and a cursor on a sample.
+/// So near, in points, the pointer is on a cursor.
 const NEAR: f32 = 6.0;
 /// A box that is smaller, in points, was a click.
 const CLICK: f32 = 5.0;
@@ -78,7 +78,7 @@ fn cursor_at(context: &Context<'_>, layout: &Layout, place: Pos2) -> Option<Curs
 fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layout) {
     match drag {
         Drag::Cursor(cursor) => {
-            let time = snapped(context, layout, place.x.clamp(layout.chart.left(), layout.chart.right()));
+            let time = layout.time.time(place.x.clamp(layout.chart.left(), layout.chart.right()));
             context.act(Action::SetCursor(*cursor, Some(time)));
         }
         Drag::Box { to, .. } => *to = place,
@@ -89,14 +89,6 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
             context.act(Action::Look(from.plus(by), to.plus(by)));
         }
     }
-}
-
-/// The time of the sample that is near, else the time there.
-fn snapped(context: &Context<'_>, layout: &Layout, x: f32) -> Time {
-    let time = layout.time.time(x);
-    let samples = context.recorder.shown().filter_map(|line| context.recorder.nearest(line, time));
-    let nearest = samples.map(|sample| sample.time).min_by_key(|own| own.nanoseconds_since(time).abs());
-    nearest.filter(|own| (layout.time.x(*own) - x).abs() <= NEAR).unwrap_or(time)
 }
 
 /// A wide box chooses a time, a high one values, one that is both chooses both.
@@ -144,7 +136,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     let middle = layout.time.time(layout.chart.center().x);
-    let at = response.hover_pos().map_or(middle, |place| snapped(context, layout, place.x));
+    let at = response.hover_pos().map_or(middle, |place| layout.time.time(place.x));
     for (key, action) in [
         (Key::Plus, Action::Zoom(middle, 0.5)),
         (Key::Equals, Action::Zoom(middle, 0.5)),

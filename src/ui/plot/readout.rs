@@ -94,7 +94,7 @@ fn name(ui: &mut Ui, skin: &Skin, line: &Line) {
 
 /// The raw sample under the pointer, or the newest.
 fn now(context: &Context<'_>, line: &Line, hovered: Option<Time>) -> String {
-    let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.nearest(line, time));
+    let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.skin, line, &sample))
 }
 

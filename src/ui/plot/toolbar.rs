@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::{Context, View, chart, snapshot, trigger};
 use crate::app::Action as Studio;
 use crate::app::recorder::{Action, Cursor, TriggerState};
-use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu};
+use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
 use crate::ui::icons;
 
 /// Seconds that can be chosen.
@@ -33,7 +33,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View
         };
         let some = !recorder.is_empty();
         if recorder.follows() {
-            if tool(ui, some, icons::PAUSE, "recorder.pause") {
+            if tool(ui, some, icons::SNOWFLAKE, "recorder.pause") {
                 context.act(Action::Pause);
             }
         } else if tool(ui, true, icons::FAST_FORWARD, "recorder.follow") {
@@ -44,7 +44,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View
             context.act(Action::Fit);
         }
         let cursors = Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some());
-        if switch(ui, context, some, cursors, icons::LINE_VERTICAL, "recorder.cursors") {
+        if switch(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
             context.act(Action::ShowCursors(!cursors));
         }
         trigger_menu(ui, context, &mut view.trigger);
@@ -112,23 +112,21 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     let (skin, recorder) = (context.skin, context.recorder);
     let mut actions = Vec::new();
     icon_menu(ui, icons::LIST_CHECKS, &skin.say("recorder.lines"), |ui| {
-        egui::Grid::new("lines").num_columns(2).spacing(egui::vec2(16.0, 4.0)).show(ui, |ui| {
-            for line in recorder.lines() {
-                let mut shown = line.shown;
-                let words = skin.words(&line.name);
-                let text = RichText::new(&words).color(chart::colour(skin, line));
-                if ui.checkbox(&mut shown, text).changed() {
-                    actions.push(Action::Show(line.id, shown));
-                }
-                let mut scale = line.scale_number();
-                let units = line.scales().iter().map(|scale| skin.words(&scale.unit)).enumerate();
-                let label = format!("{words}: {}", skin.say("recorder.unit"));
-                if choice(ui, &label, &mut scale, units) {
-                    actions.push(Action::SetScale(line.id, scale));
-                }
-                ui.end_row();
+        ui.set_width(300.0);
+        for line in recorder.lines() {
+            let mut shown = line.shown;
+            let words = skin.words(&line.name);
+            let text = RichText::new(&words).color(chart::colour(skin, line));
+            if ui.checkbox(&mut shown, text).changed() {
+                actions.push(Action::Show(line.id, shown));
             }
-        });
+            let mut scale = line.scale_number();
+            let units = line.scales().iter().map(|scale| skin.words(&scale.unit)).enumerate();
+            if line.scales().len() > 1 && options(ui, &words, &mut scale, units) {
+                actions.push(Action::SetScale(line.id, scale));
+            }
+        }
+        ui.separator();
         let mut one_axis = recorder.has_one_axis();
         if ui.checkbox(&mut one_axis, skin.say("recorder.one_axis")).changed() {
             actions.push(Action::ShareAxis(one_axis));
@@ -155,7 +153,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot
         }
         ui.separator();
         if enabled_button(ui, some, icons::TRASH, &skin.say("live.clear")).clicked() {
-            chosen = Some(Studio::Recorder(desk, Action::Clear));
+            chosen = Some(Studio::AskForget(desk));
             ui.close();
         }
     });
@@ -170,6 +168,7 @@ fn state(ui: &mut Ui, context: &mut Context<'_>) {
             TriggerState::Armed => "recorder.armed",
             TriggerState::Fired(_) => "recorder.fired",
             TriggerState::Held(_) => "recorder.held",
+            TriggerState::Missed => "recorder.missed",
         };
         ui.horizontal(|ui| {
             ui.label(RichText::new(icons::LIGHTNING).color(skin.palette.accent));

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::Text;
 use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
 use crate::ui::Skin;
-use crate::ui::controls::{choice, entry, primary, text_entry};
+use crate::ui::controls::{entry, options, primary, text_entry};
 use crate::ui::icons;
 
 /// What is being typed.
@@ -48,31 +48,30 @@ pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut 
     {
         form.line = first.id;
     }
-    entry(ui, skin, &skin.say("trigger.line"), |ui| {
-        let lines = recorder.shown().map(|line| (line.id, skin.words(&line.name)));
-        choice(ui, &skin.say("trigger.line"), &mut form.line, lines);
-    });
-    entry(ui, skin, &skin.say("trigger.when"), |ui| {
-        let whens = When::ALL.map(|when| (when, skin.say(word(when))));
-        choice(ui, &skin.say("trigger.when"), &mut form.when, whens);
-    });
+    let label = |ui: &mut Ui, id: &'static str| {
+        ui.label(skin.label(skin.say(id)));
+        skin.say(id)
+    };
+    let word_of = label(ui, "trigger.line");
+    let lines: Vec<(LineId, String)> = recorder.shown().map(|line| (line.id, skin.words(&line.name))).collect();
+    options(ui, &word_of, &mut form.line, lines);
+    let word_of = label(ui, "trigger.when");
+    options(ui, &word_of, &mut form.when, When::ALL.map(|when| (when, skin.say(word(when)))));
     let mut enter = false;
     if form.when.has_level() {
         entry(ui, skin, &skin.say("trigger.level"), |ui| {
             let response = text_entry(ui, &mut form.level, 88.0, &skin.say("trigger.level"), "");
+            if response.changed() {
+                form.problem = None;
+            }
             enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             let unit = recorder.line(form.line).and_then(|line| line.scale());
             ui.label(skin.label(unit.map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
         });
     }
-    entry(ui, skin, &skin.say("trigger.before"), |ui| {
-        let shares = [0, 10, 25, 50, 75, 90].map(|share| (share, format!("{share} %")));
-        choice(ui, &skin.say("trigger.before"), &mut form.before, shares);
-    });
+    let word_of = label(ui, "trigger.before");
+    options(ui, &word_of, &mut form.before, [0, 10, 25, 50, 75, 90].map(|share| (share, format!("{share} %"))));
     ui.checkbox(&mut form.repeat, skin.say("trigger.repeat"));
-    if let Some(problem) = &form.problem {
-        ui.label(RichText::new(skin.words(problem)).color(skin.palette.bad));
-    }
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         if primary(ui, skin, true, icons::LIGHTNING, &skin.say("trigger.arm")).clicked() || enter {
             match form.trigger() {
@@ -85,6 +84,9 @@ pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut 
             }
         }
     });
+    if let Some(problem) = &form.problem {
+        ui.label(RichText::new(skin.words(problem)).color(skin.palette.bad));
+    }
 }
 
 impl Form {

@@ -80,10 +80,26 @@ fn nothing_is_joined_across_what_is_missing() {
     assert_eq!(samples(&record, "position").last().unwrap().0, hour + 1);
 }
 
+#[test]
+fn what_is_stopped_and_started_again_is_not_joined() {
+    let mut record = Record::default();
+    let every = Some(Duration::from_millis(50));
+    record.poll(every, true);
+    record.add(vec![position(0, 0), position(50_000, 1)], 0, Some(SKM36));
+    record.poll(None, false);
+    record.poll(every, true);
+    record.add(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
+    // Four intervals and 0.4 s later something is missing, stopped or not.
+    record.add(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
+    let breaks: Vec<bool> = samples(&record, "position").iter().map(|own| own.2.contains(Flags::BREAK)).collect();
+    assert_eq!(breaks, [false, false, true, false, false, true]);
+}
+
 /// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand samples.
 #[test]
 fn a_long_run_misses_no_break_and_no_wrap() {
     let mut record = Record::default();
+    record.poll(Some(Duration::from_millis(1)), false);
     let (mut microseconds, mut expected) = (0, Vec::new());
     let start = RANGE - 1_000_000;
     let steps = |microseconds: u64| start + microseconds as i64 * 40_960 / 1_000_000;
