@@ -5,7 +5,7 @@ use std::time::Duration;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::hiperface::Action as Hiperface;
-use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState};
+use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
 use encoder_studio::app::{Action, FileQuestion};
 use encoder_studio::app::{Desk as Of, Language, Text, recorder};
 
@@ -149,6 +149,10 @@ fn lines_are_hidden_and_seen_in_other_units() {
     screen.harness.get_by_role_and_label(Role::CheckBox, &speed).click();
     screen.steps();
     assert_eq!(recorder(&screen).shown().count(), 1);
+    let degrees = format!("{}: °", screen.say("recorder.position"));
+    screen.harness.get_by_role_and_label(Role::RadioButton, &degrees).click();
+    screen.steps();
+    assert_eq!(recorder(&screen).lines().first().unwrap().scale().unwrap().unit.id(), "unit.degrees");
     let one_axis = screen.say("recorder.one_axis");
     screen.harness.get_by_role_and_label(Role::CheckBox, &one_axis).click();
     screen.steps();
@@ -177,6 +181,13 @@ fn a_trigger_is_typed_armed_and_switched_off() {
             screen.key(Key::Escape);
         }
     }
+    // Another kind of trigger, in a panel that stays open.
+    screen.click("recorder.trigger");
+    let falling = format!("{}: {}", screen.say("trigger.when"), screen.say("trigger.falling"));
+    screen.harness.get_by_role_and_label(Role::RadioButton, &falling).click();
+    screen.steps();
+    screen.click("trigger.arm");
+    assert_eq!(recorder(&screen).trigger().unwrap().0.when, When::Falling);
     let (trigger, state) = recorder(&screen).trigger().unwrap();
     assert_eq!((trigger.level, state), (250.5, TriggerState::Armed));
     screen.click("recorder.disarm");
