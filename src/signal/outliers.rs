@@ -113,7 +113,7 @@ pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
 }
 
 /// What remains of `length` samples without `left_out`.
-pub(super) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
+pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
     starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end)

@@ -15,6 +15,7 @@ mod recording;
 mod remembering;
 mod screen;
 mod signals;
+mod signals_beside;
 mod signals_calculators;
 mod signals_live;
 mod signals_widgets;

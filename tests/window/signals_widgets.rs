@@ -18,7 +18,7 @@ impl Screen {
     }
 
     #[track_caller]
-    fn look_at_signals(&mut self) {
+    pub(crate) fn look_at_signals(&mut self) {
         for language in [Language::English, Language::German] {
             for theme in [Theme::Dark, Theme::Light] {
                 self.act(Action::SetLanguage(language));

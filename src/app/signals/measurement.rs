@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Example, Spectra};
+use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, beside};
 use crate::app::{Language, Text, explain};
 use crate::signal::analysis::{Analysis, AnalysisError};
 use crate::signal::capture::Capture;
@@ -13,6 +13,7 @@ use crate::signal::ellipse::Correction;
 use crate::signal::lissajous::{Density, Square};
 use crate::signal::position_error::Samples;
 use crate::signal::quality::Family;
+use crate::signal::revolution::RevolutionError;
 use crate::signal::spectrum::SpectrumError;
 
 /// Where a capture comes from.
@@ -76,6 +77,10 @@ pub struct Measurement {
     pub levels_v: Option<(f64, f64)>,
     /// Amplitudes over frequency, or why there are none.
     pub spectra: Result<Spectra, SpectrumError>,
+    /// DNL and INL, or why they cannot be told; `None` without a reference angle, an ellipse or the number of periods.
+    pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
+    /// By how much the absolute position is ahead of the analogue one, or why that cannot be told; `None` without one.
+    pub absolute_offset: Option<Result<AbsoluteOffset, NoOffset>>,
     /// All samples as a picture, sine over cosine; `None` where they are too large for one.
     pub raw: Option<Density>,
     /// All of them after the correction of the ellipse; `None` without one.
@@ -110,6 +115,8 @@ impl Measurement {
             judge,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
+            nonlinearities: beside_reference(&capture, &analysis, judge),
+            absolute_offset: beside::absolute_offset(&capture, analysis.as_ref().ok()),
             raw: density(samples, None),
             corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
             analysis,
@@ -121,7 +128,12 @@ impl Measurement {
     /// The same, judged by something else.
     #[must_use]
     pub fn judged(&self, judge: Judge) -> Self {
-        Measurement { diagnosis: diagnosis(&self.capture, &self.analysis, judge), judge, ..self.clone() }
+        Measurement {
+            diagnosis: diagnosis(&self.capture, &self.analysis, judge),
+            nonlinearities: beside_reference(&self.capture, &self.analysis, judge),
+            judge,
+            ..self.clone()
+        }
     }
 
     /// Why there is no analysis, in words.
@@ -139,6 +151,14 @@ fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judg
     let references_v = capture.references_v();
     let record = Record { samples: samples(capture), references_v, periods: judge.periods };
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
+}
+
+fn beside_reference(
+    capture: &Capture,
+    analysis: &Result<Analysis, AnalysisError>,
+    judge: Judge,
+) -> Option<Result<Nonlinearities, RevolutionError>> {
+    beside::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
 /// A picture of all samples, around zero, corrected or as they are.

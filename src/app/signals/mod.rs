@@ -3,6 +3,7 @@
 
 mod act;
 mod action;
+mod beside;
 pub mod forms;
 pub mod input_circuit;
 pub mod interpolation;
@@ -19,6 +20,7 @@ mod table;
 
 pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};
+pub use beside::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
 pub use live::{Source, SourceAction};
 pub use measurement::{Judge, Measurement, Origin, Place};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};

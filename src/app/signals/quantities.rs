@@ -38,7 +38,7 @@ pub enum Unit {
     DecibelVolts,
     /// Percent.
     Percent,
-    /// Electrical degrees.
+    /// Degrees, electrical or mechanical.
     Degrees,
     /// Mechanical seconds of arc.
     ArcSeconds,
@@ -96,11 +96,11 @@ impl Bound {
 }
 
 impl Quantity {
-    fn new(word: &'static str, value: f64, decimals: usize, unit: Unit) -> Self {
+    pub(super) fn new(word: &'static str, value: f64, decimals: usize, unit: Unit) -> Self {
         Quantity { word, value, decimals, unit, also: None, bound: None, verdict: None }
     }
 
-    fn also(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
+    pub(super) fn also(mut self, value: f64, decimals: usize, unit: Unit) -> Self {
         self.also = Some((value, decimals, unit));
         self
     }

@@ -17,8 +17,10 @@ use crate::signal::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronis
 pub enum Action {
     /// An entry was edited.
     Edit(Box<Form>),
-    /// Take the measured offset over.
+    /// Take the offset over that is measured from readings.
     UseOffset,
+    /// Take an offset over that a capture gives, in 1/32 period and without the half step.
+    UseCaptured(f64),
     /// Forget the readings that the offset is measured from.
     Forget,
 }
@@ -234,6 +236,7 @@ impl Synchronise {
                     self.form.offset = format!("{offset:.2}");
                 }
             }
+            Action::UseCaptured(offset) => self.form.offset = format!("{:.2}", self.with_half_step(offset)),
             Action::Forget => self.readings.clear(),
         }
     }
@@ -291,8 +294,12 @@ impl Synchronise {
         if self.readings.len() < LEAST_READINGS {
             return None;
         }
-        let half = if self.form.half_step { 0.5 } else { 0.0 };
-        measure_offset(self.readings.iter().copied()).map(|offset| offset + half)
+        measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
+    }
+
+    /// An offset as it has to be entered.
+    pub fn with_half_step(&self, offset: f64) -> f64 {
+        offset + if self.form.half_step { 0.5 } else { 0.0 }
     }
 }
 

@@ -31,6 +31,10 @@ pub enum Column {
     RefSine,
     /// REFCOS against ground.
     RefCosine,
+    /// The shaft's angle by a reference encoder.
+    ReferenceAngle,
+    /// The absolute position.
+    Absolute,
 }
 
 /// Lines that are shown.
@@ -71,6 +75,8 @@ impl Table {
             Column::Time => columns.time,
             Column::Sine => Some(columns.sine),
             Column::Cosine => Some(columns.cosine),
+            Column::ReferenceAngle => columns.reference_angle,
+            Column::Absolute => columns.absolute,
             Column::RefSine => columns.references.map(|(sine, _)| sine).or(self.half_chosen.0),
             Column::RefCosine => columns.references.map(|(_, cosine)| cosine).or(self.half_chosen.1),
         }
@@ -99,6 +105,8 @@ impl Table {
         let mut columns = self.columns().unwrap_or(Columns::PLAIN);
         match (column, number) {
             (Column::Time, number) => columns.time = number,
+            (Column::ReferenceAngle, number) => columns.reference_angle = number,
+            (Column::Absolute, number) => columns.absolute = number,
             (Column::Sine, Some(number)) => columns.sine = number,
             (Column::Cosine, Some(number)) => columns.cosine = number,
             (Column::Sine | Column::Cosine, None) => return false,

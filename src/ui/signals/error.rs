@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{View, numbers, octant, quality, source};
+use super::{View, nonlinearity, numbers, octant, quality, source};
 use crate::app::signals::{Measurement, Signals, error_quantities};
 use crate::app::{Action, Text};
 use crate::signal::position_error::{Basis, PositionError, harmonics};
@@ -42,6 +42,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
         },
         |ui, _| bars(ui, skin, &analysis.error, compared.map(AsRef::as_ref)),
     );
+    ui.add_space(skin.space.groups);
+    nonlinearity::card_ui(ui, skin, measurement, compared.map(AsRef::as_ref));
     ui.add_space(skin.space.groups);
     octant::card_ui(ui, skin, &mut view.octant);
 }

@@ -3,6 +3,7 @@
 
 mod error;
 mod input_circuit;
+mod nonlinearity;
 mod numbers;
 mod octant;
 mod quality;
@@ -116,7 +117,7 @@ pub(super) fn page_ui(
                     error::page_ui(ui, skin, signals, view, actions);
                 }
             }
-            Page::Synchronise => synchronise::page_ui(ui, skin, signals.synchronise(), encoder, actions),
+            Page::Synchronise => synchronise::page_ui(ui, skin, signals, encoder, actions),
             Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
         });
     });

@@ -4,8 +4,8 @@ use egui::{RichText, Ui};
 
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
-use crate::app::signals::{Action as Signals, synchronise::Told};
-use crate::app::{Action, Text};
+use crate::app::signals::{Action as Signals, Signals as State, synchronise::Told};
+use crate::app::{Action, Text, explain};
 use crate::signal::quality::Verdict;
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, paragraph, problem, row, split, text_entry,
@@ -21,13 +21,8 @@ const RING: f32 = 200.0;
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 /// Draws the page.
-pub(super) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    state: &Synchronise,
-    encoder: Option<&Encoder>,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &State, encoder: Option<&Encoder>, actions: &mut Vec<Action>) {
+    let state = signals.synchronise();
     let mut form = state.form.clone();
     // What is drawn beside the entries is what they come to now.
     let told = form.told();
@@ -52,6 +47,8 @@ pub(super) fn page_ui(
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
             measured(ui, skin, state, actions);
+            ui.add_space(skin.space.groups);
+            captured(ui, skin, signals, actions);
             ui.add_space(skin.space.groups);
             counter(ui, skin, form);
         },
@@ -132,6 +129,32 @@ fn measured(ui: &mut Ui, skin: &Skin, state: &Synchronise, actions: &mut Vec<Act
     if forget {
         actions.push(ask(Page::Forget));
     }
+}
+
+/// The offset over a capture with an absolute position.
+fn captured(ui: &mut Ui, skin: &Skin, signals: &State, actions: &mut Vec<Action>) {
+    card(ui, skin, "synchronise.captured", |ui| {
+        let measurement = signals.measurement();
+        let Some((own, offset)) = measurement.and_then(|own| Some((own, own.absolute_offset?))) else {
+            paragraph(ui, skin.label(skin.say("synchronise.not_captured")));
+            return;
+        };
+        let name = Text::new("synchronise.captured_from").with_text("name", own.origin.name());
+        paragraph(ui, skin.label(skin.words(&name)));
+        match offset {
+            Ok(offset) => {
+                let steps = |steps| skin.mono(format!("{}/32", skin.number(steps, 2)));
+                let state = signals.synchronise();
+                row(ui, skin, &skin.say("quality.samples"), skin.mono(offset.samples.to_string()));
+                row(ui, skin, &skin.say("synchronise.mean"), steps(state.with_half_step(offset.offset_steps)));
+                row(ui, skin, &skin.say("synchronise.farthest"), steps(offset.farthest_steps));
+                if enabled_button(ui, true, icons::CHECK, &skin.say("synchronise.use_captured")).clicked() {
+                    actions.push(ask(Page::UseCaptured(offset.offset_steps)));
+                }
+            }
+            Err(why) => problem(ui, skin, Some(&explain::signal::no_offset(why))),
+        }
+    });
 }
 
 fn result(ui: &mut Ui, skin: &Skin, told: &Told) {

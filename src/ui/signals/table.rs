@@ -17,12 +17,14 @@ pub(super) struct View {
     volts: Draft,
 }
 
-const COLUMNS: [(Column, &str); 5] = [
+const COLUMNS: [(Column, &str); 7] = [
     (Column::Time, "columns.time"),
     (Column::Sine, "columns.sine"),
     (Column::Cosine, "columns.cosine"),
     (Column::RefSine, "columns.refsin"),
     (Column::RefCosine, "columns.refcos"),
+    (Column::ReferenceAngle, "columns.reference_angle"),
+    (Column::Absolute, "columns.absolute"),
 ];
 const DELIMITERS: [(Delimiter, &str); 3] =
     [(Delimiter::Comma, "columns.comma"), (Delimiter::Semicolon, "columns.semicolon"), (Delimiter::Tab, "columns.tab")];

@@ -1,0 +1,210 @@
+//! What a capture tells beside a second measurement of the same shaft: DNL and INL beside a reference encoder, and by how
+//! much an absolute position is ahead. SICK 8010701, definitions of errors and forming the absolute position; sections 4 and
+//! 6 of the project's sine/cosine reference.
+
+use super::quantities::{Quantity, Unit};
+use crate::signal::analysis::Analysis;
+use crate::signal::arctan::{Phase, exact};
+use crate::signal::capture::Capture;
+use crate::signal::nonlinearity::{Deviation, Nonlinearity};
+use crate::signal::outliers::kept;
+use crate::signal::revolution::{Revolution, RevolutionError};
+use crate::signal::synchronise::{STEPS, measure_offset};
+
+/// DNL and INL, as measured and corrected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nonlinearities {
+    /// As measured.
+    pub raw: Part,
+    /// With offsets, gain ratio and phase error taken out.
+    pub corrected: Part,
+    /// Revolutions of the reference that the samples cover; INL speaks for a whole one only from 1 on.
+    pub revolutions: f64,
+}
+
+/// DNL and INL of one of both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// DNL: ± mechanical degrees.
+    pub differential_deg: f64,
+    /// INL: ± mechanical degrees.
+    pub integral_deg: f64,
+    /// Reference angle and the whole deviation in mechanical degrees: least and greatest of each stretch.
+    pub deviation: Vec<(f64, f64)>,
+    /// Reference angle and the mean over a period, likewise.
+    pub mean: Vec<(f64, f64)>,
+}
+
+/// How an absolute position lies to the analogue one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AbsoluteOffset {
+    /// How much the absolute position is ahead on average, in 1/32 period.
+    pub offset_steps: f64,
+    /// How far a sample is from that at most, in 1/32 period.
+    pub farthest_steps: f64,
+    /// Samples that it is told from.
+    pub samples: usize,
+}
+
+/// Why it cannot be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoOffset {
+    /// There is no sample with a signal.
+    NoSignal,
+    /// The differences are everywhere in the period.
+    Scattered,
+}
+
+/// Stretches that a curve is drawn of.
+const STRETCHES: usize = 512;
+
+/// DNL and INL of a capture; `None` without a reference angle.
+pub(super) fn nonlinearities(
+    capture: &Capture,
+    analysis: &Analysis,
+    periods: u32,
+) -> Option<Result<Nonlinearities, RevolutionError>> {
+    let reference = capture.reference_deg.as_ref()?;
+    let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
+    let told = Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+    Some(told.map(|told| Nonlinearities {
+        revolutions: told.raw.revolutions,
+        raw: Part::of(&told.raw),
+        corrected: Part::of(&told.corrected),
+    }))
+}
+
+impl Part {
+    fn of(told: &Nonlinearity) -> Self {
+        let (mut deviation, mut mean) = (Vec::new(), Vec::new());
+        let whole = |own: &Deviation| own.differential_deg + own.integral_deg;
+        for stretch in told.curve.chunks(told.curve.len().div_ceil(STRETCHES).max(1)) {
+            let least = stretch.iter().min_by(|a, b| whole(a).total_cmp(&whole(b)));
+            let most = stretch.iter().max_by(|a, b| whole(a).total_cmp(&whole(b)));
+            deviation.extend([least, most].into_iter().flatten().map(|own| (own.reference_deg, whole(own))));
+            mean.extend(stretch.first().map(|own| (own.reference_deg, own.integral_deg)));
+        }
+        let Nonlinearity { differential_deg, integral_deg, .. } = *told;
+        Part { differential_deg, integral_deg, deviation, mean }
+    }
+}
+
+/// DNL and INL as ± values.
+pub fn nonlinearity_quantities(told: &Nonlinearities) -> Vec<Quantity> {
+    /// Seconds of arc in a degree.
+    const ARC_SECONDS: f64 = 3600.0;
+    let plus_minus = |word, degrees: f64| {
+        Quantity::new(word, degrees, 5, Unit::Degrees).also(degrees * ARC_SECONDS, 2, Unit::ArcSeconds)
+    };
+    vec![
+        plus_minus("nonlinearity.dnl_raw", told.raw.differential_deg),
+        plus_minus("nonlinearity.dnl_corrected", told.corrected.differential_deg),
+        plus_minus("nonlinearity.inl_raw", told.raw.integral_deg),
+        plus_minus("nonlinearity.inl_corrected", told.corrected.integral_deg),
+        Quantity::new("nonlinearity.revolutions", told.revolutions, 2, Unit::One),
+    ]
+}
+
+/// By how much the absolute position of a capture is ahead; `None` without one. Samples that were left out of the
+/// ellipse do not count.
+pub(super) fn absolute_offset(
+    capture: &Capture,
+    analysis: Option<&Analysis>,
+) -> Option<Result<AbsoluteOffset, NoOffset>> {
+    let absolute = capture.absolute.as_ref()?;
+    let left_out = analysis.and_then(|own| own.outliers.as_ref()).map_or(&[][..], |outliers| &outliers.stretches);
+    let count = absolute.len().min(capture.sine_v.len()).min(capture.cosine_v.len());
+    let sample = |at: usize| -> Option<(u64, Phase)> {
+        let steps = absolute.get(at)?.rem_euclid(STEPS as i64).unsigned_abs();
+        Some((steps, exact(*capture.sine_v.get(at)?, *capture.cosine_v.get(at)?)?))
+    };
+    let samples = || kept(count, left_out).flatten().filter_map(sample);
+    if samples().next().is_none() {
+        return Some(Err(NoOffset::NoSignal));
+    }
+    let Some(offset_steps) = measure_offset(samples()) else { return Some(Err(NoOffset::Scattered)) };
+    let off = |(steps, phase): (u64, Phase)| {
+        let periods = (steps as f64 - offset_steps) / STEPS as f64 - phase.periods();
+        (periods - periods.round()).abs() * STEPS as f64
+    };
+    let farthest_steps = samples().map(off).fold(0.0, f64::max);
+    Some(Ok(AbsoluteOffset { offset_steps, farthest_steps, samples: samples().count() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that is
+    /// 3 steps ahead.
+    fn capture() -> Capture {
+        let count = 20_000;
+        let turn = |at: i32| 1.25 * f64::from(at) / f64::from(count);
+        let measured = |at: i32| 64.0 * (turn(at) + 0.01 / 360.0 * (TAU * turn(at)).sin());
+        Capture {
+            sine_v: (0..count).map(|at| 0.5 * (TAU * measured(at)).sin() + 0.005).collect(),
+            cosine_v: (0..count).map(|at| 0.5 * (TAU * measured(at)).cos()).collect(),
+            reference_deg: Some((0..count).map(|at| 360.0 * turn(at)).collect()),
+            absolute: Some((0..count).map(|at| (32.0 * measured(at) + 3.0).floor() as i64 - 320).collect()),
+            ..Capture::default()
+        }
+    }
+
+    fn analysed(capture: &Capture) -> Analysis {
+        let samples = crate::signal::position_error::Samples {
+            time_s: &capture.time_s,
+            sine_v: &capture.sine_v,
+            cosine_v: &capture.cosine_v,
+        };
+        Analysis::of(samples).unwrap()
+    }
+
+    #[test]
+    fn both_nonlinearities_in_degrees_and_seconds_of_arc() {
+        let capture = capture();
+        let analysis = analysed(&capture);
+        let told = nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
+        let list = nonlinearity_quantities(&told);
+        // Section 6: an offset of 1 % is ±0.573 electrical degrees; of one of 64 periods 32.23″. 0.01° are 36″.
+        for (at, seconds, tolerance) in [(0, 32.23, 0.2), (1, 0.0, 0.2), (2, 36.0, 0.2), (3, 36.0, 0.2)] {
+            let (found, _, unit) = list[at].also.unwrap();
+            assert!((found - seconds).abs() < tolerance && unit == Unit::ArcSeconds, "{:?}", list[at]);
+        }
+        assert!((list[4].value - 1.25).abs() < 0.02, "{:?}", list[4]);
+        assert_eq!(told.raw.mean.len() * 2, told.raw.deviation.len());
+        assert!(told.raw.mean.len() <= STRETCHES && told.raw.mean.len() > STRETCHES / 2);
+        let most = told.raw.deviation.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
+        // The ends of both parts meet on the way; the mean of a sine over 1.25 turns is 1/(2.5·π).
+        assert!((most - (0.01 * (1.0 - 0.127_324) + 0.573 / 64.0)).abs() < 2e-4, "{most}");
+    }
+
+    #[test]
+    fn what_there_is_no_reference_for_is_not_told() {
+        let mut capture = capture();
+        let analysis = analysed(&capture);
+        assert!(matches!(nonlinearities(&capture, &analysis, 100), Some(Err(RevolutionError::Periods { .. }))));
+        capture.reference_deg = None;
+        assert_eq!(nonlinearities(&capture, &analysis, 64), None);
+    }
+
+    #[test]
+    fn an_absolute_position_is_ahead_by_its_offset_less_half_a_step() {
+        let mut capture = capture();
+        let analysis = analysed(&capture);
+        let told = absolute_offset(&capture, Some(&analysis)).unwrap().unwrap();
+        // Rounding down takes half a step on average; an offset of 1 % moves the phase by 0.57° or 0.05 steps.
+        assert!((told.offset_steps - 2.5).abs() < 0.01, "{told:?}");
+        assert!((told.farthest_steps - 0.55).abs() < 0.02, "{told:?}");
+        assert_eq!(told.samples, 20_000);
+        let backwards = capture.absolute.as_ref().unwrap().iter().map(|steps| -steps).collect();
+        capture.absolute = Some(backwards);
+        assert_eq!(absolute_offset(&capture, None), Some(Err(NoOffset::Scattered)));
+        capture.sine_v.fill(0.0);
+        capture.cosine_v.fill(0.0);
+        assert_eq!(absolute_offset(&capture, None), Some(Err(NoOffset::NoSignal)));
+        capture.absolute = None;
+        assert_eq!(absolute_offset(&capture, None), None);
+    }
+}
