@@ -1,3 +1,4 @@
 //! Bytes ↔ meaning. Pure functions and tables: no socket, port, clock, thread, channel or file.
 
+pub mod biss;
 pub mod hiperface;

@@ -1,0 +1,137 @@
+//! The control frame: register access, one bit a cycle in each direction (manual 3.1.2, figures 3 and 4; what they leave
+//! open from iC-Haus, *BiSS protocol description (C-mode)*).
+//!
+//! ```text
+//! cycle  0  1    2..4  5..11  12..15  16  17  18  19..26  27..30  31
+//! CDM    S  CTS  ID    ADR    CRC4    R   W   S   DATA    CRC4    P        host → encoder, at the end of a cycle
+//! CDS    0  IDL0 … IDL7 0…            0   R   W   S       DATA    CRC4 P   encoder → host, at the start of a cycle
+//! ```
+//! A bit of CDS answers the bit of CDM of the cycle before. P = 1 goes on with the next address, its S in the same
+//! cycle. Fourteen cycles of CDM = 0 lead both sides back to rest, wherever they are.
+//!
+//! What stands in no source available (`U`) and is chosen here: a host that waits for the encoder's S repeats its own,
+//! because fourteen zeros would be an abort; an encoder echoes what it is given to write, its checksum among it.
+
+mod encoder;
+mod host;
+#[cfg(test)]
+mod tests;
+
+pub use encoder::{Encoder, Event};
+pub use host::{Host, Step};
+
+/// Cycles of CDM = 0 that lead back to rest.
+pub const REST_CYCLES: u8 = 14;
+/// So long an encoder may keep the host waiting for its S (`U`).
+pub const MAX_WAIT_CYCLES: u8 = 50;
+/// Registers that a control frame can address.
+const REGISTERS: u8 = 0x80;
+
+/// What a host asks of one of the encoders on its line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    slave: u8,
+    address: u8,
+    what: What,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum What {
+    Read { count: u8 },
+    Write { values: Vec<u8> },
+}
+
+/// Why something cannot be asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RequestError {
+    /// There are eight numbers, 0…7.
+    #[error("a slave has a number from 0 to 7, not {0}")]
+    Slave(u8),
+    /// No register at all, or one beyond 7Fh.
+    #[error("{count} registers from {address:02X}h on do not lie within 00h and 7Fh")]
+    Range {
+        /// The first.
+        address: u8,
+        /// How many.
+        count: usize,
+    },
+}
+
+/// How a request failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ControlError {
+    /// Nobody of that number is on the line.
+    #[error("no slave {0} answers")]
+    NoSlave(u8),
+    /// The encoder does not repeat the kind of access: it has not understood, or it refuses.
+    #[error("the encoder refuses register {0:02X}h")]
+    Rejected(u8),
+    /// The encoder keeps the host waiting for too long.
+    #[error("the encoder does not give register {0:02X}h within {MAX_WAIT_CYCLES} cycles")]
+    TimeOut(u8),
+    /// The encoder's answer is damaged. A write may have been done or not.
+    #[error("register {address:02X}h: CRC {got:X} where {expected:X} was expected")]
+    Crc {
+        /// The register.
+        address: u8,
+        /// What its value gives.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+}
+
+impl Request {
+    /// Reads `count` registers one after the other.
+    ///
+    /// # Errors
+    /// [`RequestError`] where they are not there.
+    pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
+        Self::checked(slave, address, What::Read { count })
+    }
+
+    /// Writes registers one after the other.
+    ///
+    /// # Errors
+    /// [`RequestError`] where they are not there.
+    pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
+        Self::checked(slave, address, What::Write { values: values.to_vec() })
+    }
+
+    fn checked(slave: u8, address: u8, what: What) -> Result<Self, RequestError> {
+        let request = Request { slave, address, what };
+        let count = request.count();
+        if slave > 7 {
+            return Err(RequestError::Slave(slave));
+        }
+        if count == 0 || usize::from(address) + count > usize::from(REGISTERS) {
+            return Err(RequestError::Range { address, count });
+        }
+        Ok(request)
+    }
+
+    fn count(&self) -> usize {
+        match &self.what {
+            What::Read { count } => usize::from(*count),
+            What::Write { values } => values.len(),
+        }
+    }
+
+    fn reads(&self) -> bool {
+        matches!(self.what, What::Read { .. })
+    }
+
+    /// DATA and CRC4 that the host sends for the register number `index` of the request; zeros where it reads.
+    fn data(&self, index: usize) -> u16 {
+        match &self.what {
+            What::Read { .. } => 0,
+            What::Write { values } => values.get(index).map_or(0, |value| with_crc(*value)),
+        }
+    }
+}
+
+/// A value with its CRC4, twelve bits.
+fn with_crc(value: u8) -> u16 {
+    let value = u16::from(value);
+    value << 4 | u16::from(super::crc::crc4(value, 8))
+}

@@ -1,0 +1,196 @@
+//! The host's side of the control frame.
+
+use super::super::crc::crc4;
+use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
+
+/// A host, cycle by cycle. It has one request at a time and lies at rest in between.
+#[derive(Clone, Debug)]
+pub struct Host {
+    /// Cycles of CDM = 0 in a row, so far as they matter.
+    zeros: u8,
+    waiting: Option<Request>,
+    state: State,
+}
+
+/// What comes of a cycle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// CDM of this cycle. The level of the clock line during the time-out is its inverse.
+    pub cdm: bool,
+    /// The request has ended with this cycle: the values read, or for a write those that the encoder repeated.
+    pub outcome: Option<Result<Vec<u8>, ControlError>>,
+}
+
+#[derive(Clone, Debug)]
+enum State {
+    Rest,
+    /// Cycles 0…18: `bits` holds those of CDM, the first in bit 18.
+    Head {
+        request: Request,
+        bits: u32,
+        cycle: u8,
+    },
+    /// S is sent, the encoder's is awaited.
+    Start {
+        transfer: Transfer,
+        cycles: u8,
+    },
+    /// `received` bits of DATA and CRC4 have come.
+    Data {
+        transfer: Transfer,
+        word: u16,
+        received: u8,
+    },
+}
+
+#[derive(Clone, Debug)]
+struct Transfer {
+    request: Request,
+    values: Vec<u8>,
+}
+
+impl Transfer {
+    /// Register in turn. The request's addresses end at 7Fh.
+    fn address(&self) -> u8 {
+        self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
+    }
+
+    /// Bit number `at` of DATA and CRC4 that the host sends.
+    fn bit(&self, at: u8) -> bool {
+        self.request.data(self.values.len()) << at & 0x800 != 0
+    }
+}
+
+impl Default for Host {
+    fn default() -> Self {
+        Host { zeros: 0, waiting: None, state: State::Rest }
+    }
+}
+
+impl Host {
+    /// The last cycle of a request's head; in the next one the encoder may give its S.
+    const LAST_OF_HEAD: u8 = 18;
+    const WORD_BITS: u8 = 12;
+
+    /// Asks for something as soon as the line is at rest.
+    ///
+    /// # Errors
+    /// Gives the request back while another one is under way.
+    pub fn ask(&mut self, request: Request) -> Result<(), Request> {
+        if self.is_busy() {
+            return Err(request);
+        }
+        self.waiting = Some(request);
+        Ok(())
+    }
+
+    /// A request is under way.
+    pub fn is_busy(&self) -> bool {
+        self.waiting.is_some() || !matches!(self.state, State::Rest)
+    }
+
+    /// Gives a request up. The encoder forgets it within the zeros that precede the next.
+    pub fn abort(&mut self) {
+        self.waiting = None;
+        self.rest();
+    }
+
+    /// One cycle: takes the CDS that came in it and gives the CDM to end it with.
+    pub fn cycle(&mut self, cds: bool) -> Step {
+        let step = match std::mem::replace(&mut self.state, State::Rest) {
+            State::Rest => self.begin(),
+            State::Head { request, bits, cycle } => self.head(request, bits, cycle, cds),
+            State::Start { transfer, cycles } => self.start(transfer, cycles, cds),
+            State::Data { transfer, word, received } => self.data(transfer, word << 1 | u16::from(cds), received + 1),
+        };
+        self.zeros = if step.cdm { 0 } else { self.zeros.saturating_add(1) };
+        step
+    }
+
+    fn begin(&mut self) -> Step {
+        if self.zeros < REST_CYCLES {
+            return Step { cdm: false, outcome: None };
+        }
+        match self.waiting.take() {
+            None => Step { cdm: false, outcome: None },
+            Some(request) => {
+                let bits = head(&request);
+                self.state = State::Head { request, bits, cycle: 1 };
+                Step { cdm: true, outcome: None }
+            }
+        }
+    }
+
+    fn head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
+        // The bit that the encoder has to send now, where it is known.
+        let expected = match cycle {
+            17 => Some(request.reads()),
+            18 => Some(!request.reads()),
+            _ => None,
+        };
+        if cycle == request.slave + 1 && !cds {
+            return self.fail(ControlError::NoSlave(request.slave));
+        }
+        if expected.is_some_and(|expected| expected != cds) {
+            return self.fail(ControlError::Rejected(request.address));
+        }
+        let cdm = bits >> (Self::LAST_OF_HEAD - cycle) & 1 == 1;
+        self.state = if cycle < Self::LAST_OF_HEAD {
+            State::Head { request, bits, cycle: cycle + 1 }
+        } else {
+            State::Start { transfer: Transfer { request, values: Vec::new() }, cycles: 0 }
+        };
+        Step { cdm, outcome: None }
+    }
+
+    fn start(&mut self, transfer: Transfer, cycles: u8, cds: bool) -> Step {
+        if !cds && cycles >= MAX_WAIT_CYCLES {
+            return self.fail(ControlError::TimeOut(transfer.address()));
+        }
+        if !cds {
+            self.state = State::Start { transfer, cycles: cycles + 1 };
+            return Step { cdm: true, outcome: None };
+        }
+        let cdm = transfer.bit(0);
+        self.state = State::Data { transfer, word: 0, received: 0 };
+        Step { cdm, outcome: None }
+    }
+
+    fn data(&mut self, mut transfer: Transfer, word: u16, received: u8) -> Step {
+        if received < Self::WORD_BITS {
+            let cdm = transfer.bit(received);
+            self.state = State::Data { transfer, word, received };
+            return Step { cdm, outcome: None };
+        }
+        let [value, got] = [(word >> 4) as u8, (word & 0xF) as u8];
+        let expected = crc4(value.into(), 8);
+        if got != expected {
+            return self.fail(ControlError::Crc { address: transfer.address(), expected, got });
+        }
+        transfer.values.push(value);
+        if transfer.values.len() < transfer.request.count() {
+            self.state = State::Start { transfer, cycles: 0 };
+            return Step { cdm: true, outcome: None };
+        }
+        self.rest();
+        Step { cdm: false, outcome: Some(Ok(transfer.values)) }
+    }
+
+    fn fail(&mut self, error: ControlError) -> Step {
+        self.rest();
+        Step { cdm: false, outcome: Some(Err(error)) }
+    }
+
+    /// The zeros before the next request are counted from here: within a frame they may have been data.
+    fn rest(&mut self) {
+        self.state = State::Rest;
+        self.zeros = 0;
+    }
+}
+
+/// S, CTS, ID, ADR, CRC4, R, W, S.
+fn head(request: &Request) -> u32 {
+    let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
+    let access = if request.reads() { 0b10 } else { 0b01 };
+    1 << 18 | u32::from(header) << 7 | u32::from(crc4(header, 11)) << 3 | access << 1 | 1
+}

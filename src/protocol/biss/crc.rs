@@ -1,0 +1,267 @@
+//! The checksums of BiSS: a polynomial of up to 32 bits, first bit first, nothing reflected (manual 3.1.1; iC-Haus AN3).
+//! Which polynomial guards the position data is the encoder's matter; the control frame always has the one of 4 bits.
+
+use std::fmt;
+
+/// A checksum as a description tells it: the polynomial decides how many bits it has.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Crc {
+    polynomial: u64,
+    start: u32,
+    inverted: bool,
+    /// What eight bits at the register's upper end leave behind, the register standing at the upper end of 32 bits.
+    table: [u32; 256],
+}
+
+/// Why something is no checksum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CrcError {
+    /// The polynomial's degree is 0 or above 32.
+    #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, its highest and its lowest term written")]
+    Degree(u64),
+    /// The polynomial's lowest term is missing: it would not see every single flipped bit.
+    #[error("the CRC polynomial {0:#X} must end with the term 1")]
+    LowestTerm(u64),
+    /// The start value has more bits than the checksum.
+    #[error("the CRC start value {start:#X} does not fit into {width} bits")]
+    Start {
+        /// The start value.
+        start: u32,
+        /// Bits of the checksum.
+        width: u8,
+    },
+}
+
+impl Crc {
+    /// x⁶ + x + 1, sent inverted: position data, unless an encoder says otherwise.
+    pub const POSITION: u64 = 0x43;
+    /// x⁴ + x + 1, sent inverted: the control frame.
+    pub const CONTROL: u64 = 0x13;
+
+    /// A checksum with all terms of its polynomial written, the highest too (43h is x⁶ + x + 1), the register's value
+    /// before the first bit, and whether the result is sent inverted.
+    ///
+    /// # Errors
+    /// [`CrcError`] where that is no checksum of 1 to 32 bits.
+    pub fn new(polynomial: u64, start: u32, inverted: bool) -> Result<Self, CrcError> {
+        let degree = polynomial.checked_ilog2().unwrap_or(0);
+        if !(1..=32).contains(&degree) {
+            return Err(CrcError::Degree(polynomial));
+        }
+        if polynomial & 1 == 0 {
+            return Err(CrcError::LowestTerm(polynomial));
+        }
+        let crc = Crc { polynomial, start, inverted, table: table(polynomial, degree) };
+        if start & !crc.mask() != 0 {
+            return Err(CrcError::Start { start, width: crc.width() });
+        }
+        Ok(crc)
+    }
+
+    /// A checksum as the electronic data sheet writes it: without the term 1, which every polynomial has (21h is
+    /// 43h); `None` for 0, which stands for no checksum.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
+        match polynomial {
+            0 => Ok(None),
+            _ => Self::new(u64::from(polynomial) << 1 | 1, start, true).map(Some),
+        }
+    }
+
+    /// All terms of the polynomial.
+    pub const fn polynomial(&self) -> u64 {
+        self.polynomial
+    }
+
+    /// The register before the first bit.
+    pub const fn start(&self) -> u32 {
+        self.start
+    }
+
+    /// The result is sent inverted.
+    pub const fn is_inverted(&self) -> bool {
+        self.inverted
+    }
+
+    /// Bits of the checksum, 1…32.
+    pub const fn width(&self) -> u8 {
+        self.polynomial.ilog2() as u8 // at most 32
+    }
+
+    /// The checksum of the lowest `bits` bits of `data` as it is sent, the highest of them first. More than 64 count as
+    /// 64.
+    pub fn of(&self, data: u64, bits: u8) -> u32 {
+        let unused = 32 - u32::from(self.width());
+        let mut register = self.start << unused;
+        let mut left = u32::from(bits.min(64));
+        while left > 0 {
+            // The odd bits come first, so that whole bytes follow.
+            let now = if left.is_multiple_of(8) { 8 } else { left % 8 };
+            left -= now;
+            let group = (data >> left) as u32 & ((1 << now) - 1);
+            let index = (register >> (32 - now)) ^ group;
+            register = (register << now) ^ self.entry(index);
+        }
+        let sum = register >> unused;
+        if self.inverted { sum ^ self.mask() } else { sum }
+    }
+
+    fn entry(&self, index: u32) -> u32 {
+        self.table.get((index & 0xFF) as usize).copied().unwrap_or(0)
+    }
+
+    fn mask(&self) -> u32 {
+        u32::MAX >> (32 - u32::from(self.width()))
+    }
+}
+
+impl fmt::Debug for Crc {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Crc")
+            .field("polynomial", &format_args!("{:#X}", self.polynomial))
+            .field("start", &self.start)
+            .field("inverted", &self.inverted)
+            .finish()
+    }
+}
+
+/// The checksum of the control frame over the lowest `bits` bits of `data`: x⁴ + x + 1, inverted.
+pub(super) fn crc4(data: u16, bits: u8) -> u8 {
+    let sum = (0..bits.min(16)).rev().fold(0u8, |sum, at| {
+        let feedback = sum >> 3 ^ (data >> at & 1) as u8;
+        sum << 1 & 0xF ^ if feedback == 1 { 3 } else { 0 }
+    });
+    sum ^ 0xF
+}
+
+fn table(polynomial: u64, degree: u32) -> [u32; 256] {
+    // Without its highest term, at the upper end of 32 bits.
+    let low_terms = ((polynomial ^ 1 << degree) << (32 - degree)) as u32;
+    let mut table = [0; 256];
+    for (index, entry) in (0u32..).zip(&mut table) {
+        *entry = (0..8).fold(index << 24, |register, _| match register >> 31 {
+            0 => register << 1,
+            _ => register << 1 ^ low_terms,
+        });
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The remainder by long division in a wide number, with nothing of the code under test.
+    fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
+        let degree = 63 - polynomial.leading_zeros();
+        let mut rest = u128::from(data) & ((1u128 << bits) - 1);
+        rest <<= degree;
+        // A start value is the same as a change of the first bits.
+        rest ^= u128::from(start) << bits;
+        for at in (degree..u32::from(bits) + degree).rev() {
+            if rest >> at & 1 == 1 {
+                rest ^= u128::from(polynomial) << (at - degree);
+            }
+        }
+        rest as u32
+    }
+
+    /// Reference 3: header CRC4 over CTS = 1, ID = 0, address.
+    #[test]
+    fn the_published_headers() {
+        let table = [
+            (0x00, 0x6),
+            (0x05, 0x9),
+            (0x40, 0x1),
+            (0x42, 0x7),
+            (0x66, 0x1),
+            (0x68, 0x0),
+            (0x69, 0x3),
+            (0x6A, 0x6),
+            (0x6B, 0x5),
+            (0x6E, 0xA),
+            (0x7E, 0xF),
+            (0x7F, 0xC),
+        ];
+        for (address, sum) in table {
+            assert_eq!(crc4(0x400 | address, 11), sum, "{address:02X}");
+        }
+        // Commands: CTS = 0, ID 0, CMD 01 and 00 (reference 3, last line).
+        assert_eq!(crc4(0b001, 11), 0xC);
+        assert_eq!(crc4(0b000, 11), 0xF);
+    }
+
+    #[test]
+    fn every_control_header_is_its_remainder() {
+        let crc = Crc::new(Crc::CONTROL, 0, true).unwrap();
+        for header in 0..1 << 11 {
+            let sum = divided(0x13, 0, header.into(), 11) as u8 ^ 0xF;
+            assert_eq!(crc4(header, 11), sum, "{header:03X}");
+            assert_eq!(crc.of(header.into(), 11), u32::from(sum), "{header:03X}");
+        }
+    }
+
+    /// Reference 3: data CRC4.
+    #[test]
+    fn the_published_data_bytes() {
+        let table = "00→F 01→C 02→9 03→A 04→3 05→0 07→6 10→A 1C→D 21→6 29→D 2A→8 30→0 46→2 4B→6 61→1 72→1 80→1 FF→B";
+        for entry in table.split(' ') {
+            let (data, sum) = entry.split_once('→').unwrap();
+            let data = u16::from_str_radix(data, 16).unwrap();
+            assert_eq!(crc4(data, 8), u8::from_str_radix(sum, 16).unwrap(), "{entry}");
+        }
+    }
+
+    /// The check values of the catalogue of parametrised CRC algorithms (reveng), over the text 123456789: those that
+    /// reflect nothing, of any width.
+    #[test]
+    fn other_polynomials_by_their_published_check_values() {
+        let cases = [
+            ("CRC-8/SMBUS", 0x107, 0, 0x00, 0xF4),
+            ("CRC-8/AUTOSAR", 0x12F, 0xFF, 0xFF, 0xDF),
+            ("CRC-16/IBM-3740", 0x1_1021, 0xFFFF, 0x0000, 0x29B1),
+            ("CRC-16/GENIBUS", 0x1_1021, 0xFFFF, 0xFFFF, 0xD64E),
+            ("CRC-32/BZIP2", 0x1_04C1_1DB7, 0xFFFF_FFFF, 0xFFFF_FFFF, 0xFC89_1918),
+            ("CRC-32/MPEG-2", 0x1_04C1_1DB7, 0xFFFF_FFFF, 0x0000_0000, 0x0376_E6E7),
+        ];
+        for (name, polynomial, start, xor, check) in cases {
+            let crc = Crc::new(polynomial, start, xor != 0).unwrap();
+            // Nine bytes do not fit into 64 bits: the first goes into the start value.
+            let first = divided(polynomial, start, u64::from(b'1'), 8);
+            let rest = Crc::new(polynomial, first, xor != 0).unwrap();
+            assert_eq!(rest.of(u64::from_be_bytes(*b"23456789"), 64), check, "{name}");
+            let plain = crc.of(u64::from(b'1'), 8) ^ xor;
+            assert_eq!(plain, first, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_checksum_is_refused() {
+        assert_eq!(Crc::new(0, 0, true), Err(CrcError::Degree(0)));
+        assert_eq!(Crc::new(1, 0, true), Err(CrcError::Degree(1)));
+        assert_eq!(Crc::new(1 << 33 | 1, 0, true), Err(CrcError::Degree(1 << 33 | 1)));
+        assert_eq!(Crc::new(0x42, 0, true), Err(CrcError::LowestTerm(0x42)));
+        assert_eq!(Crc::new(0x43, 0x40, true), Err(CrcError::Start { start: 0x40, width: 6 }));
+        assert_eq!(Crc::from_data_sheet(0x21, 0), Crc::new(0x43, 0, true).map(Some));
+        assert_eq!(Crc::from_data_sheet(0, 0), Ok(None));
+        assert_eq!(Crc::new(0x1_04C1_1DB7, u32::MAX, false).unwrap().width(), 32);
+        assert_eq!(Crc::new(3, 1, false).unwrap().width(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn any_checksum_is_the_remainder(
+            degree in 1u32..=32, terms: u32, start: u32, inverted: bool, data: u64, bits in 0u8..=64,
+        ) {
+            let low = u64::from(terms) & ((1 << degree) - 1);
+            let polynomial = 1 << degree | low | 1;
+            let mask = u32::MAX >> (32 - degree);
+            let crc = Crc::new(polynomial, start & mask, inverted).unwrap();
+            let sum = divided(polynomial, start & mask, data, bits);
+            prop_assert_eq!(crc.of(data, bits), if inverted { sum ^ mask } else { sum });
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! Single-cycle data: what an encoder sends in every cycle. Multiturn, singleturn, error and warning bit (both active
+//! low), checksum; the highest bit first (manual 3.1.1, figure 2). How many bits each has is the encoder's matter.
+
+use super::crc::{Crc, CrcError};
+
+/// Which bits a frame has, behind its start and control bit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    multiturn_bits: u8,
+    singleturn_bits: u8,
+    error_bit: bool,
+    warning_bit: bool,
+    crc: Option<Crc>,
+}
+
+/// Why a layout cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LayoutError {
+    /// More bits than a number has that they are kept in.
+    #[error("{field} must have at most 32 bits, not {bits}")]
+    Field {
+        /// `multiturn` or `singleturn`.
+        field: &'static str,
+        /// Bits asked for.
+        bits: u8,
+    },
+    /// No position at all.
+    #[error("multiturn and singleturn must have at least one bit together")]
+    Empty,
+    /// The whole frame, checksum included, does not fit into 64 bits.
+    #[error("the frame must have at most 64 bits with its CRC, not {0}")]
+    Long(u32),
+    /// The checksum is none.
+    #[error(transparent)]
+    Crc(#[from] CrcError),
+}
+
+/// A frame whose checksum was right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// Revolutions, as many bits as the layout has.
+    pub multiturn: u32,
+    /// Place within the revolution, in parts of 2 to the power of the layout's singleturn bits.
+    pub singleturn: u32,
+    /// The encoder says that the position is invalid (the bit on the line is 0).
+    pub error: bool,
+    /// The encoder warns; the position is valid (the bit on the line is 0).
+    pub warning: bool,
+}
+
+/// Why bits are not a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// All bits are 0, which is no frame of this layout: no encoder, a short, or one that is not ready.
+    #[error("the line stays low")]
+    StuckLow,
+    /// All bits are 1, which is no frame of this layout: no encoder, or a broken wire.
+    #[error("the line stays high")]
+    StuckHigh,
+    /// Bits above the frame's length are set.
+    #[error("the frame has more than {bits} bits")]
+    Long {
+        /// Bits of the layout.
+        bits: u8,
+    },
+    /// The checksum does not fit.
+    #[error("CRC {got:02X} where {expected:02X} was expected")]
+    Crc {
+        /// What the other bits give.
+        expected: u32,
+        /// What stood there.
+        got: u32,
+    },
+}
+
+impl Layout {
+    /// A layout of so many bits each; the error bit comes behind the position, the warning bit behind that.
+    ///
+    /// # Errors
+    /// [`LayoutError`] where a number does not fit into 32 bits or the frame into 64.
+    pub fn new(
+        multiturn_bits: u8,
+        singleturn_bits: u8,
+        error_bit: bool,
+        warning_bit: bool,
+        crc: Option<Crc>,
+    ) -> Result<Self, LayoutError> {
+        for (field, bits) in [("multiturn", multiturn_bits), ("singleturn", singleturn_bits)] {
+            if bits > 32 {
+                return Err(LayoutError::Field { field, bits });
+            }
+        }
+        let layout = Layout { multiturn_bits, singleturn_bits, error_bit, warning_bit, crc };
+        if multiturn_bits == 0 && singleturn_bits == 0 {
+            return Err(LayoutError::Empty);
+        }
+        let bits = u32::from(layout.data_bits()) + u32::from(layout.crc_bits());
+        if bits > 64 { Err(LayoutError::Long(bits)) } else { Ok(layout) }
+    }
+
+    /// Bits of the revolutions, 0…32.
+    pub const fn multiturn_bits(&self) -> u8 {
+        self.multiturn_bits
+    }
+
+    /// Bits within a revolution, 0…32.
+    pub const fn singleturn_bits(&self) -> u8 {
+        self.singleturn_bits
+    }
+
+    /// There is an error bit.
+    pub const fn has_error_bit(&self) -> bool {
+        self.error_bit
+    }
+
+    /// There is a warning bit.
+    pub const fn has_warning_bit(&self) -> bool {
+        self.warning_bit
+    }
+
+    /// The checksum; `None` where the encoder sends none.
+    pub const fn crc(&self) -> Option<&Crc> {
+        self.crc.as_ref()
+    }
+
+    /// Position, error and warning bit, without the checksum.
+    pub const fn data_bits(&self) -> u8 {
+        self.multiturn_bits + self.singleturn_bits + self.error_bit as u8 + self.warning_bit as u8
+    }
+
+    /// Bits of the checksum.
+    pub fn crc_bits(&self) -> u8 {
+        self.crc.as_ref().map_or(0, Crc::width)
+    }
+
+    /// The whole frame, 1…64.
+    pub fn bits(&self) -> u8 {
+        self.data_bits() + self.crc_bits()
+    }
+
+    /// Takes a frame apart: its bits right-justified, the last one received in bit 0.
+    ///
+    /// # Errors
+    /// [`FrameError`]; a line that does not move is told from a wrong checksum.
+    pub fn parse(&self, raw: u64) -> Result<Reading, FrameError> {
+        let whole = ones(self.bits());
+        if raw & !whole != 0 {
+            return Err(FrameError::Long { bits: self.bits() });
+        }
+        let data = raw.checked_shr(self.crc_bits().into()).unwrap_or(0);
+        let sums = self.crc.as_ref().map(|crc| {
+            let got = (raw & ones(crc.width())) as u32;
+            (crc.of(data, self.data_bits()), got)
+        });
+        let moves = raw != 0 && raw != whole;
+        match sums {
+            Some((expected, got)) if expected == got => Ok(self.fields(data)),
+            None if moves => Ok(self.fields(data)),
+            _ if raw == 0 => Err(FrameError::StuckLow),
+            Some((expected, got)) if moves => Err(FrameError::Crc { expected, got }),
+            _ => Err(FrameError::StuckHigh),
+        }
+    }
+
+    /// The frame of a reading, right-justified. Bits that the layout has no place for are left out.
+    pub fn emit(&self, reading: &Reading) -> u64 {
+        let mut data = u64::from(reading.multiturn) & ones(self.multiturn_bits);
+        data = data << self.singleturn_bits | u64::from(reading.singleturn) & ones(self.singleturn_bits);
+        if self.error_bit {
+            data = data << 1 | u64::from(!reading.error);
+        }
+        if self.warning_bit {
+            data = data << 1 | u64::from(!reading.warning);
+        }
+        match &self.crc {
+            None => data,
+            Some(crc) => data << crc.width() | u64::from(crc.of(data, self.data_bits())),
+        }
+    }
+
+    /// Degrees within the revolution, from 0 up to 360.
+    pub fn degrees(&self, reading: &Reading) -> f64 {
+        f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
+    }
+
+    /// Multiturn and singleturn as one number of steps.
+    pub fn steps(&self, reading: &Reading) -> u64 {
+        u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
+    }
+
+    fn fields(&self, data: u64) -> Reading {
+        let mut rest = data;
+        let mut take = |bits: u8| {
+            let field = rest & ones(bits);
+            rest = rest.checked_shr(bits.into()).unwrap_or(0);
+            field
+        };
+        let warning = self.warning_bit && take(1) == 0;
+        let error = self.error_bit && take(1) == 0;
+        // Fields have at most 32 bits.
+        let singleturn = take(self.singleturn_bits) as u32;
+        let multiturn = take(self.multiturn_bits) as u32;
+        Reading { multiturn, singleturn, error, warning }
+    }
+}
+
+impl Default for Layout {
+    /// 16 + 17 bits, error, warning, CRC6 43h inverted: the kit encoder.
+    fn default() -> Self {
+        let crc = Crc::new(Crc::POSITION, 0, true).ok();
+        Layout { multiturn_bits: 16, singleturn_bits: 17, error_bit: true, warning_bit: true, crc }
+    }
+}
+
+/// That many ones at the lower end, 0…64.
+const fn ones(bits: u8) -> u64 {
+    match bits {
+        0 => 0,
+        1..=63 => (1 << bits) - 1,
+        _ => u64::MAX,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn reading(multiturn: u32, singleturn: u32, error: bool, warning: bool) -> Reading {
+        Reading { multiturn, singleturn, error, warning }
+    }
+
+    /// Reference 2: the table of 41-bit frames.
+    #[test]
+    fn the_published_frames() {
+        let cases = [
+            (0x0000, 0x00000, false, false, 0x000_0000_00FA),
+            (0x0000, 0x00000, true, false, 0x000_0000_007C),
+            (0x0000, 0x00000, false, true, 0x000_0000_00B9),
+            (0x0000, 0x00001, false, false, 0x000_0000_01F6),
+            (0x0001, 0x00000, false, false, 0x000_0200_00D8),
+            (0x0000, 0x18000, false, false, 0x000_0180_00C2),
+            (0x1234, 0x18000, false, false, 0x024_6980_00CF),
+            (0x00FF, 0x0ABCD, false, false, 0x001_FEAB_CDF0),
+            (0xA5A5, 0x15555, true, true, 0x14B_4B55_552D),
+            (0xFFFF, 0x1FFFF, false, false, 0x1FF_FFFF_FFF5),
+        ];
+        let layout = Layout::default();
+        assert_eq!((layout.data_bits(), layout.bits()), (35, 41));
+        for (multiturn, singleturn, error, warning, raw) in cases {
+            let reading = reading(multiturn, singleturn, error, warning);
+            assert_eq!(layout.parse(raw), Ok(reading), "{raw:011X}");
+            assert_eq!(layout.emit(&reading), raw, "{raw:011X}");
+        }
+    }
+
+    /// Reference 7: any bit of 024698000CF.
+    #[test]
+    fn every_flipped_bit_is_found() {
+        let layout = Layout::default();
+        for bit in 0..41 {
+            let damaged = 0x024_6980_00CF ^ 1 << bit;
+            assert!(matches!(layout.parse(damaged), Err(FrameError::Crc { .. })), "bit {bit}");
+        }
+        // A CRC6 finds every two flipped bits too, up to 63 bits of length.
+        for (one, other) in (0..41).flat_map(|one| (0..one).map(move |other| (one, other))) {
+            assert!(layout.parse(0x024_6980_00CF ^ 1 << one ^ 1 << other).is_err(), "bits {one}, {other}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_does_not_move_is_told_from_a_wrong_checksum() {
+        let layout = Layout::default();
+        assert_eq!(layout.parse(0), Err(FrameError::StuckLow));
+        assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
+        assert_eq!(layout.parse(1 << 41), Err(FrameError::Long { bits: 41 }));
+        assert_eq!(layout.parse(0x0FB), Err(FrameError::Crc { expected: 0x3A, got: 0x3B }));
+        // Where all zeros are a frame, as with a sum that is not inverted, they are one.
+        let plain = Layout::new(0, 12, false, false, Crc::new(0x43, 0, false).ok()).unwrap();
+        assert_eq!(plain.parse(0), Ok(Reading::default()));
+        let bare = Layout::new(0, 12, false, false, None).unwrap();
+        assert_eq!(bare.parse(0), Err(FrameError::StuckLow));
+        assert_eq!(bare.parse(0xFFF), Err(FrameError::StuckHigh));
+        assert_eq!(bare.parse(0x800), Ok(reading(0, 0x800, false, false)));
+    }
+
+    #[test]
+    fn an_angle_is_a_part_of_a_turn() {
+        let layout = Layout::default();
+        for (singleturn, degrees) in [(0, 0.0), (0x8000, 90.0), (0x10000, 180.0), (0x18000, 270.0)] {
+            assert_eq!(layout.degrees(&reading(7, singleturn, false, false)), degrees);
+        }
+        assert_eq!(layout.steps(&reading(1, 2, false, false)), 0x2_0002);
+    }
+
+    #[test]
+    fn wrong_widths_are_refused() {
+        let crc = || Crc::new(Crc::POSITION, 0, true).ok();
+        assert_eq!(Layout::new(33, 1, true, true, crc()), Err(LayoutError::Field { field: "multiturn", bits: 33 }));
+        assert_eq!(Layout::new(1, 255, true, true, crc()), Err(LayoutError::Field { field: "singleturn", bits: 255 }));
+        assert_eq!(Layout::new(0, 0, true, true, crc()), Err(LayoutError::Empty));
+        assert_eq!(Layout::new(32, 32, false, false, crc()), Err(LayoutError::Long(70)));
+        assert_eq!(Layout::new(32, 32, false, false, None).unwrap().bits(), 64);
+        assert_eq!(Layout::new(24, 32, true, true, crc()).unwrap().bits(), 64);
+    }
+
+    proptest! {
+        #[test]
+        fn any_layout_gives_back_what_it_was_given(
+            multiturn_bits in 0u8..=32, singleturn_bits in 0u8..=32, error_bit: bool, warning_bit: bool,
+            start in 0u32..64, inverted: bool, multiturn: u32, singleturn: u32, error: bool, warning: bool, bit in 0u32..64,
+        ) {
+            let crc = Crc::new(Crc::POSITION, start, inverted).ok();
+            let Ok(layout) = Layout::new(multiturn_bits, singleturn_bits, error_bit, warning_bit, crc) else {
+                return Ok(());
+            };
+            let fit = |value: u32, bits: u8| (u64::from(value) & ((1u64 << bits) - 1)) as u32;
+            let reading = Reading {
+                multiturn: fit(multiturn, multiturn_bits),
+                singleturn: fit(singleturn, singleturn_bits),
+                error: error && error_bit,
+                warning: warning && warning_bit,
+            };
+            let raw = layout.emit(&reading);
+            prop_assert_eq!(layout.parse(raw), Ok(reading));
+            prop_assert!(layout.parse(raw ^ 1 << (bit % u32::from(layout.bits()))).is_err());
+        }
+
+        #[test]
+        fn no_bits_panic(raw: u64) {
+            if let Ok(reading) = Layout::default().parse(raw) {
+                prop_assert_eq!(Layout::default().emit(&reading), raw);
+            }
+        }
+    }
+}
