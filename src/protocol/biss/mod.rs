@@ -4,18 +4,34 @@
 //! of it where a section is named so). What the manual leaves open is marked `U` (unknown) and is either tolerated or
 //! can be set.
 
+mod address;
 mod control;
 mod crc;
+mod description;
+mod eds;
 mod line;
+mod procedure;
 mod single_cycle;
+mod status;
 
 /// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
 pub const KIND: &str = "biss";
 
+pub use address::{AddressError, RegisterAddress};
 pub use control::{
     ControlError, Encoder as ControlEncoder, Event as ControlEvent, Host as ControlHost, MAX_WAIT_CYCLES, REST_CYCLES,
     Request as ControlRequest, RequestError as ControlRequestError, Step as ControlStep,
 };
 pub use crc::{Crc, CrcError};
+pub use description::{
+    Access, Area, ByteOrder, Decoded, Decoding, Description, DescriptionError, Descriptions, Identity, Lock, Mismatch,
+    Procedure, Register, Role,
+};
+pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
 pub use line::{Cycle, CycleError};
+pub use procedure::{
+    CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,
+    PresetStatus, PresetValue, ProcedureKind, PulseVoltage, WiegandCommand, WiegandStatus,
+};
 pub use single_cycle::{FrameError, Layout, LayoutError, Reading};
+pub use status::{DeviceMode, ErrorRegister, Filter, Firmware, ProfileId, Temperature, WarningRegister};

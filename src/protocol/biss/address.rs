@@ -1,0 +1,162 @@
+//! Where a register is: 00h…3Fh in one of the banks, 40h…7Fh direct (manual 4); and the same as one number, by which
+//! UBICOM asks for it (manual, appendix: "Address global").
+
+use std::fmt;
+use std::str::FromStr;
+
+/// A register's place. Direct registers come before those of the banks, as their global addresses do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RegisterAddress(u16);
+
+/// Why a text names no register.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
+pub struct AddressError(String);
+
+impl RegisterAddress {
+    /// Registers of a bank, and direct ones.
+    pub const BANK_SIZE: u8 = 0x40;
+
+    /// A direct register, 40h…7Fh.
+    pub const fn direct(address: u8) -> Option<Self> {
+        if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
+    }
+
+    /// A register of a bank, 00h…3Fh.
+    pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
+        if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
+    }
+
+    /// By its global address; `None` beyond bank FFh.
+    pub const fn from_global(global: u16) -> Option<Self> {
+        if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
+    }
+
+    /// The one number: direct registers from 0, those of bank 0 from 40h on, and so forth.
+    pub const fn global(self) -> u16 {
+        self.0
+    }
+
+    /// The bank that has to be selected; `None` for a direct register.
+    pub const fn bank(self) -> Option<u8> {
+        if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
+    }
+
+    /// The seven bits of the control frame: 40h…7Fh direct, 00h…3Fh within the bank.
+    pub const fn address(self) -> u8 {
+        // Below 40h either way.
+        let offset = (self.0 % 0x40) as u8;
+        if self.0 < 0x40 { 0x40 + offset } else { offset }
+    }
+
+    /// The register `count` further on in the same bank; `None` beyond its end.
+    pub fn plus(self, count: u8) -> Option<Self> {
+        let offset = u16::from(self.address() % Self::BANK_SIZE) + u16::from(count);
+        (offset < u16::from(Self::BANK_SIZE)).then_some(RegisterAddress(self.0 + u16::from(count)))
+    }
+}
+
+impl fmt::Display for RegisterAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.bank() {
+            None => write!(f, "0x{:02X}", self.address()),
+            Some(bank) => write!(f, "0x{bank:02X}:0x{:02X}", self.address()),
+        }
+    }
+}
+
+impl FromStr for RegisterAddress {
+    type Err = AddressError;
+
+    /// Reads `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
+    fn from_str(text: &str) -> Result<Self, AddressError> {
+        let place = match text.split_once(':') {
+            None => byte(text).and_then(Self::direct),
+            Some((bank, offset)) => byte(bank).zip(byte(offset)).and_then(|(bank, offset)| Self::banked(bank, offset)),
+        };
+        place.ok_or_else(|| AddressError(text.to_owned()))
+    }
+}
+
+fn byte(text: &str) -> Option<u8> {
+    let text = text.trim();
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        // from_str_radix takes a sign.
+        Some(digits) => u8::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|c| c.is_ascii_hexdigit())),
+        None => text.parse().ok().filter(|_| text.bytes().all(|c| c.is_ascii_digit())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// UBICOM reference 3.
+    #[test]
+    fn the_published_map() {
+        let cases = [
+            ("0x40", 0x0000),
+            ("0x7F", 0x003F),
+            ("0x00:0x00", 0x0040),
+            ("0x00:0x25", 0x0065),
+            ("0x01:0x07", 0x0087),
+            ("0x02:0x3F", 0x00FF),
+            ("0x03:0x3F", 0x013F),
+            ("0x04:0x00", 0x0140),
+            ("0x23:0x3F", 0x093F),
+            ("0x24:0x00", 0x0940),
+            ("0x43:0x3F", 0x113F),
+            // By name in the same section.
+            ("0x6B", 0x002B),
+            ("0x6A", 0x002A),
+            ("0x66", 0x0026),
+            ("0x68", 0x0028),
+            ("0x69", 0x0029),
+            ("0x6E", 0x002E),
+            ("0x74", 0x0034),
+            ("0x44", 0x0004),
+            ("0x42", 0x0002),
+        ];
+        for (text, global) in cases {
+            let address: RegisterAddress = text.parse().unwrap();
+            assert_eq!(address.global(), global, "{text}");
+            assert_eq!(RegisterAddress::from_global(global), Some(address), "{text}");
+            assert_eq!(address.to_string(), text);
+        }
+        let decimal = "36:16".parse::<RegisterAddress>().unwrap();
+        assert_eq!((decimal.bank(), decimal.address()), (Some(0x24), 0x10));
+        assert_eq!("102".parse::<RegisterAddress>().unwrap().address(), 0x66);
+    }
+
+    #[test]
+    fn what_is_no_register_is_refused() {
+        for text in ["", "0x3F", "0x80", "0x00:0x40", "256:0", "1:", ":1", "0x+5:0", "+66", "-1", "0x24:0x10:0", "x"] {
+            assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
+        }
+        assert_eq!(RegisterAddress::from_global(0x403F), RegisterAddress::banked(0xFF, 0x3F));
+        assert_eq!(RegisterAddress::from_global(0x4040), None);
+        let last = RegisterAddress::banked(2, 0x3F).unwrap();
+        assert_eq!((last.plus(0), last.plus(1)), (Some(last), None));
+        assert_eq!(RegisterAddress::direct(0x7E).and_then(|own| own.plus(1)), RegisterAddress::direct(0x7F));
+    }
+
+    proptest! {
+        #[test]
+        fn every_place_has_one_number(global in 0u16..0x4040) {
+            let address = RegisterAddress::from_global(global).unwrap();
+            prop_assert_eq!(address.global(), global);
+            prop_assert_eq!(address.to_string().parse(), Ok(address));
+            let again = match address.bank() {
+                None => RegisterAddress::direct(address.address()),
+                Some(bank) => RegisterAddress::banked(bank, address.address()),
+            };
+            prop_assert_eq!(again, Some(address));
+        }
+
+        #[test]
+        fn no_text_panics(text in ".*") {
+            let _ = text.parse::<RegisterAddress>();
+        }
+    }
+}

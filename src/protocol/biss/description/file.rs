@@ -1,0 +1,331 @@
+//! A description as it stands in its file. What is wrong is told where it stands: rows are checked while they are read.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use ron::error::SpannedError;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::super::address::RegisterAddress;
+use super::super::crc::Crc;
+use super::super::procedure::ProcedureKind;
+use super::super::single_cycle::{Layout, LayoutError};
+use super::super::status::{Firmware, ProfileId};
+use super::register::{Access, Area, ByteOrder, Decoding, Register, Role};
+use super::{Description, Identity, Lock, Procedure};
+
+pub(super) fn parse(text: &str) -> Result<Description, SpannedError> {
+    let file: File = ron::from_str(text)?;
+    Ok(Description {
+        name: file.name,
+        identity: file.identity,
+        layout: file.frame,
+        lock: file.lock,
+        registers: file.registers.0,
+        areas: file.areas.0,
+        procedures: file.procedures.0,
+    })
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String,
+    #[serde(default)]
+    identity: Option<Identity>,
+    #[serde(default)]
+    frame: Option<Layout>,
+    #[serde(default)]
+    lock: Option<Lock>,
+    #[serde(default)]
+    registers: Rows<Register>,
+    #[serde(default)]
+    areas: Rows<Area>,
+    #[serde(default)]
+    procedures: Rows<Procedure>,
+}
+
+/// `direct(0x66)` or `bank(0x24, 0x10)`.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Place {
+    Direct(u8),
+    Bank(u8, u8),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct IdentityRow {
+    profile: u16,
+    manufacturer: [u8; 2],
+    device_id: [u8; 6],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LayoutRow {
+    multiturn: u8,
+    singleturn: u8,
+    error: bool,
+    warning: bool,
+    #[serde(default)]
+    crc: Option<CrcRow>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CrcRow {
+    polynomial: u64,
+    #[serde(default)]
+    start: u32,
+    inverted: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LockRow {
+    password_at: Place,
+    password: u8,
+    mode_at: Place,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RegisterRow {
+    at: Place,
+    #[serde(default = "one")]
+    width: u8,
+    name: String,
+    #[serde(default)]
+    role: Option<Role>,
+    access: Access,
+    #[serde(default)]
+    order: ByteOrder,
+    #[serde(default)]
+    default: Vec<u8>,
+    #[serde(default)]
+    decode: Decoding,
+    #[serde(default)]
+    unit: String,
+    #[serde(default)]
+    saves: Vec<u8>,
+    #[serde(default)]
+    since: (u8, u8, u8),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AreaRow {
+    name: String,
+    banks: (u8, u8),
+    access: Access,
+    #[serde(default)]
+    open: Option<u8>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProcedureRow {
+    kind: ProcedureKind,
+    mode: u8,
+    command: Place,
+    status: Place,
+    #[serde(default)]
+    data: Option<Place>,
+    #[serde(default)]
+    since: (u8, u8, u8),
+}
+
+fn one() -> u8 {
+    1
+}
+
+impl TryFrom<Place> for RegisterAddress {
+    type Error = String;
+
+    fn try_from(place: Place) -> Result<Self, String> {
+        match place {
+            Place::Direct(address) => RegisterAddress::direct(address)
+                .ok_or_else(|| format!("direct(0x{address:02X}): a direct register is from 0x40 to 0x7F")),
+            Place::Bank(bank, offset) => RegisterAddress::banked(bank, offset)
+                .ok_or_else(|| format!("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")),
+        }
+    }
+}
+
+/// Reads what stands in the file and checks it, so that an error has its place.
+macro_rules! checked {
+    ($($row:ident => $own:ty,)*) => {$(
+        impl<'de> Deserialize<'de> for $own {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $row::deserialize(deserializer)?.check().map_err(D::Error::custom)
+            }
+        }
+    )*};
+}
+
+checked! {
+    IdentityRow => Identity,
+    LayoutRow => Layout,
+    LockRow => Lock,
+    RegisterRow => Register,
+    AreaRow => Area,
+    ProcedureRow => Procedure,
+}
+
+impl IdentityRow {
+    fn check(self) -> Result<Identity, String> {
+        let IdentityRow { profile, manufacturer, device_id } = self;
+        Ok(Identity { profile: ProfileId::new(profile), manufacturer, device_id })
+    }
+}
+
+impl LayoutRow {
+    fn check(self) -> Result<Layout, LayoutError> {
+        let crc = self.crc.map(|row| Crc::new(row.polynomial, row.start, row.inverted)).transpose()?;
+        Layout::new(self.multiturn, self.singleturn, self.error, self.warning, crc)
+    }
+}
+
+impl LockRow {
+    fn check(self) -> Result<Lock, String> {
+        let (password_at, mode_at) = (self.password_at.try_into()?, self.mode_at.try_into()?);
+        Ok(Lock { password_at, password: self.password, mode_at })
+    }
+}
+
+impl RegisterRow {
+    fn check(self) -> Result<Register, String> {
+        let address: RegisterAddress = self.at.try_into()?;
+        let (name, width) = (self.name, self.width);
+        if !(1..=Register::MAX_WIDTH).contains(&width) {
+            return Err(format!("\"{name}\": a register has 1 to {} bytes, not {width}", Register::MAX_WIDTH));
+        }
+        if address.plus(width - 1).is_none() {
+            return Err(format!("\"{name}\": {width} bytes from {address} on do not fit into the bank"));
+        }
+        if !self.default.is_empty() && self.default.len() != usize::from(width) {
+            return Err(format!("\"{name}\": {} default bytes for a width of {width}", self.default.len()));
+        }
+        if let Decoding::Bits(bits) = &self.decode
+            && let Some((bit, _)) = bits.iter().find(|(bit, _)| *bit >= width * 8)
+        {
+            return Err(format!("\"{name}\": there is no bit {bit} in a width of {width}"));
+        }
+        if let Decoding::Scaled { factor, offset } = self.decode
+            && !(factor.is_finite() && offset.is_finite())
+        {
+            return Err(format!("\"{name}\": factor and offset must be finite numbers"));
+        }
+        if !self.access.writes() && !self.saves.is_empty() {
+            return Err(format!("\"{name}\": a register that is not written saves nothing"));
+        }
+        Ok(Register {
+            address,
+            width,
+            name,
+            role: self.role,
+            access: self.access,
+            order: self.order,
+            default: self.default,
+            decoding: self.decode,
+            unit: self.unit,
+            saves: self.saves,
+            since: firmware(self.since),
+        })
+    }
+}
+
+impl AreaRow {
+    fn check(self) -> Result<Area, String> {
+        let (first, last) = self.banks;
+        if first > last {
+            return Err(format!("\"{}\": bank 0x{first:02X} comes after bank 0x{last:02X}", self.name));
+        }
+        Ok(Area { name: self.name, first, last, access: self.access, open: self.open })
+    }
+}
+
+impl ProcedureRow {
+    fn check(self) -> Result<Procedure, String> {
+        Ok(Procedure {
+            kind: self.kind,
+            mode: self.mode,
+            command: self.command.try_into()?,
+            status: self.status.try_into()?,
+            data: self.data.map(RegisterAddress::try_from).transpose()?,
+            since: firmware(self.since),
+        })
+    }
+}
+
+fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
+    Firmware::new(major, minor, patch)
+}
+
+/// A row that must not stand twice.
+trait Row {
+    /// What it takes that no other may take, and how to call it.
+    fn claims(&self) -> Vec<String>;
+}
+
+impl Row for Register {
+    fn claims(&self) -> Vec<String> {
+        let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(|place| format!("register {place}"));
+        let role = self.role.map(|role| format!("role {role:?}"));
+        bytes.chain(role).collect()
+    }
+}
+
+impl Row for Area {
+    fn claims(&self) -> Vec<String> {
+        (self.first..=self.last).map(|bank| format!("bank 0x{bank:02X}")).collect()
+    }
+}
+
+impl Row for Procedure {
+    fn claims(&self) -> Vec<String> {
+        vec![format!("procedure {:?}", self.kind)]
+    }
+}
+
+/// A list of rows, none of which claims what another does.
+struct Rows<T>(Vec<T>);
+
+impl<T> Default for Rows<T> {
+    fn default() -> Self {
+        Rows(Vec::new())
+    }
+}
+
+impl<'de, T: Deserialize<'de> + Row> Deserialize<'de> for Rows<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(RowsVisitor(std::marker::PhantomData))
+    }
+}
+
+struct RowsVisitor<T>(std::marker::PhantomData<T>);
+
+impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
+    type Value = Rows<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of rows")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Rows<T>, A::Error> {
+        let mut claimed = BTreeSet::new();
+        let mut rows = Vec::new();
+        while let Some(row) = list.next_element::<T>()? {
+            for claim in row.claims() {
+                if claimed.contains(&claim) {
+                    return Err(A::Error::custom(format!("{claim} stands here for the second time")));
+                }
+                claimed.insert(claim);
+            }
+            rows.push(row);
+        }
+        Ok(Rows(rows))
+    }
+}

@@ -1,0 +1,228 @@
+//! A register of a description: where it is, how wide, what its bytes say, what writing it costs.
+
+use super::super::address::RegisterAddress;
+use super::super::status::Firmware;
+
+/// One row of a description.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Register {
+    /// First byte.
+    pub address: RegisterAddress,
+    /// Bytes, 1…8.
+    pub width: u8,
+    /// The manual's name.
+    pub name: String,
+    /// What it is for, where the program has to know that.
+    pub role: Option<Role>,
+    /// What may be done.
+    pub access: Access,
+    /// Which byte comes first.
+    pub order: ByteOrder,
+    /// Bytes as delivered, as many as it is wide; empty where nothing is known.
+    pub default: Vec<u8>,
+    /// What its number says.
+    pub decoding: Decoding,
+    /// The sign of its unit; may be empty.
+    pub unit: String,
+    /// Values the writing of which spends a write cycle of the flash.
+    pub saves: Vec<u8>,
+    /// Older firmware has no such register.
+    pub since: Firmware,
+}
+
+/// What a register is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// Selects the bank of 00h…3Fh.
+    BankSelect,
+    /// The first bank of the data sheet.
+    EdsBank,
+    /// The profile identification.
+    Profile,
+    /// The serial number.
+    SerialNumber,
+    /// The temperature.
+    Temperature,
+    /// Errors, a bit each.
+    Errors,
+    /// Warnings, a bit each.
+    Warnings,
+    /// The device mode.
+    Mode,
+    /// The password of the device mode.
+    Password,
+    /// The filter in force.
+    Filter,
+    /// The firmware's release.
+    Firmware,
+    /// The device ID.
+    DeviceId,
+    /// The manufacturer.
+    Manufacturer,
+}
+
+/// What may be done with a register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Access {
+    /// Read only.
+    R,
+    /// Write only.
+    W,
+    /// Read and write.
+    Rw,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ByteOrder {
+    /// The highest: the data sheet.
+    #[default]
+    HighFirst,
+    /// The lowest: preset values.
+    LowFirst,
+}
+
+/// What a register's number says.
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Decoding {
+    /// Itself.
+    #[default]
+    Number,
+    /// A code without order.
+    Hex,
+    /// `factor` times the number, and `offset`.
+    Scaled {
+        /// Of one step.
+        factor: f64,
+        /// At 0.
+        offset: f64,
+    },
+    /// Bits with their names, the lowest bit 0.
+    Bits(Vec<(u8, String)>),
+    /// Values with their names.
+    Choice(Vec<(u64, String)>),
+    /// Bytes in their order, with a dot between them: 1.6.0.
+    Version,
+    /// Characters in the order of their addresses.
+    Text,
+}
+
+/// What a register's bytes say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Decoded<'a> {
+    /// A number.
+    Number(u64),
+    /// A code.
+    Hex(u64),
+    /// A quantity in the register's unit.
+    Scaled(f64),
+    /// The bits that are set; one without a name is unknown.
+    Bits(Vec<(u8, Option<&'a str>)>),
+    /// The value's name; `None` for one that has none.
+    Choice(u64, Option<&'a str>),
+    /// A text or a version.
+    Text(String),
+}
+
+/// Banks of plain data, each byte for itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Area {
+    /// The manual's name.
+    pub name: String,
+    /// First bank.
+    pub first: u8,
+    /// Last bank.
+    pub last: u8,
+    /// What may be done.
+    pub access: Access,
+    /// The command that opens it for writing, in the procedure for data.
+    pub open: Option<u8>,
+}
+
+impl Access {
+    /// It can be read.
+    pub const fn reads(self) -> bool {
+        matches!(self, Access::R | Access::Rw)
+    }
+
+    /// It can be written.
+    pub const fn writes(self) -> bool {
+        matches!(self, Access::W | Access::Rw)
+    }
+}
+
+impl Register {
+    /// Widest register.
+    pub(super) const MAX_WIDTH: u8 = 8;
+
+    /// A byte of it is there.
+    pub fn contains(&self, address: RegisterAddress) -> bool {
+        // Global addresses of a bank follow each other, and a register does not leave its bank.
+        let first = self.address.global();
+        (first..first + u16::from(self.width)).contains(&address.global())
+    }
+
+    /// Its bytes as a number; `None` unless there are as many as it is wide.
+    pub fn number(&self, bytes: &[u8]) -> Option<u64> {
+        let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
+        (bytes.len() == usize::from(self.width)).then(|| match self.order {
+            ByteOrder::HighFirst => bytes.iter().fold(0, join),
+            ByteOrder::LowFirst => bytes.iter().rev().fold(0, join),
+        })
+    }
+
+    /// The bytes for a number; `None` where it needs more than there are.
+    pub fn bytes(&self, number: u64) -> Option<Vec<u8>> {
+        let bytes = number.to_be_bytes();
+        let (above, own) = bytes.split_at(bytes.len().checked_sub(usize::from(self.width))?);
+        if above.iter().any(|byte| *byte != 0) {
+            return None;
+        }
+        Some(match self.order {
+            ByteOrder::HighFirst => own.to_vec(),
+            ByteOrder::LowFirst => own.iter().rev().copied().collect(),
+        })
+    }
+
+    /// What its bytes say; `None` unless there are as many as it is wide.
+    pub fn decode(&self, bytes: &[u8]) -> Option<Decoded<'_>> {
+        let number = self.number(bytes)?;
+        Some(match &self.decoding {
+            Decoding::Number => Decoded::Number(number),
+            Decoding::Hex => Decoded::Hex(number),
+            Decoding::Scaled { factor, offset } => Decoded::Scaled(number as f64 * factor + offset),
+            Decoding::Bits(names) => {
+                let name = |bit: u8| names.iter().find(|(own, _)| *own == bit).map(|(_, name)| name.as_str());
+                let set = (0..self.width * 8).filter(|bit| number >> bit & 1 == 1);
+                Decoded::Bits(set.map(|bit| (bit, name(bit))).collect())
+            }
+            Decoding::Choice(names) => {
+                let name = names.iter().find(|(own, _)| *own == number).map(|(_, name)| name.as_str());
+                Decoded::Choice(number, name)
+            }
+            Decoding::Version => Decoded::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),
+            Decoding::Text => Decoded::Text(bytes.escape_ascii().to_string()),
+        })
+    }
+
+    /// Writing this value spends a write cycle of the flash.
+    pub fn is_save(&self, value: u8) -> bool {
+        self.saves.contains(&value)
+    }
+}
+
+impl Area {
+    /// The bank belongs to it.
+    pub const fn contains(&self, bank: u8) -> bool {
+        self.first <= bank && bank <= self.last
+    }
+
+    /// Its bytes.
+    pub fn size(&self) -> usize {
+        (usize::from(self.last) + 1).saturating_sub(self.first.into()) * usize::from(RegisterAddress::BANK_SIZE)
+    }
+}

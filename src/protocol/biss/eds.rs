@@ -1,0 +1,340 @@
+//! The electronic data sheet of the standard encoder profile BP3: bank 2, common to all BiSS devices, and bank 3, about
+//! the encoder (manual, appendix 9.1.4 and 9.1.5). Numbers have their high byte first; the last byte of each bank is the
+//! sum of the others. Bytes that the tables do not name are kept.
+
+use std::time::Duration;
+
+use super::crc::{Crc, CrcError};
+use super::single_cycle::{Layout, LayoutError};
+use super::status::ProfileId;
+
+/// Which bank of the data sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EdsBank {
+    /// Bank 2: what every BiSS device says.
+    Common,
+    /// Bank 3: what an encoder says.
+    Encoder,
+}
+
+/// A field of the data sheet: a row of the manual's table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdsField {
+    /// First register, 00h…3Eh.
+    pub offset: u8,
+    /// Bytes, 1…4.
+    pub width: u8,
+    /// As the manual has it.
+    pub name: &'static str,
+    /// What the kit encoder has there as delivered; `None` where the manual leaves it open.
+    pub default: Option<u32>,
+    meaning: Meaning,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    Number(&'static str),
+    Bank,
+    Ticks { zero: EdsValue },
+    Format,
+    Profile,
+    Feedback,
+    EncoderType,
+    Polynomial,
+    Hex,
+    Kelvin,
+}
+
+/// What a field says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdsValue {
+    /// A number with its unit, which may be empty.
+    Number(u32, &'static str),
+    /// A bank's number.
+    Bank(u8),
+    /// FFh where a bank's number belongs.
+    NotAvailable,
+    /// A time in units that are not published ([`EDS_TICK`] is a guess).
+    Ticks(u8),
+    /// 0 as a time-out: it adapts itself.
+    Adaptive,
+    /// 0 as a cycle time.
+    NoLimit,
+    /// An absolute temperature in kelvin.
+    Kelvin(u16),
+    /// A CRC polynomial with all of its terms (43h is x⁶ + x + 1); 0: no CRC.
+    Polynomial(u64),
+    /// The profile.
+    Profile(ProfileId),
+    /// What a bit beside the position says.
+    Feedback(Feedback),
+    /// 0: rotary. Other numbers are unknown (`U`).
+    EncoderType(u8),
+    /// A number that is a code.
+    Code(u32),
+}
+
+/// What a bit beside the position says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feedback {
+    /// 0: there is no such bit.
+    None,
+    /// 1: an error, active low.
+    Error,
+    /// 2: a warning, active low.
+    Warning,
+    /// A code that is not known.
+    Unknown(u8),
+}
+
+/// Fits neither of the manual's own tables exactly; nothing better is published (`U`).
+pub const EDS_TICK: Duration = Duration::from_nanos(250);
+
+const NUMBER: Meaning = Meaning::Number("");
+const TIME_OUT: Meaning = Meaning::Ticks { zero: EdsValue::Adaptive };
+
+const fn row(offset: u8, width: u8, default: Option<u32>, meaning: Meaning, name: &'static str) -> EdsField {
+    EdsField { offset, width, name, default, meaning }
+}
+
+#[rustfmt::skip]
+const COMMON: [EdsField; 15] = [
+    row(0x00, 1, Some(0x01),   NUMBER,              "EDS version"),
+    row(0x01, 1, Some(0x02),   Meaning::Number("banks"), "EDS length"),
+    row(0x02, 1, Some(0x04),   Meaning::Bank,       "bank address user start"),
+    row(0x03, 1, Some(0x43),   Meaning::Bank,       "bank address user end"),
+    row(0x05, 1, Some(0x1C),   TIME_OUT,            "minimum BiSS timeout"),
+    row(0x06, 1, Some(0x30),   TIME_OUT,            "maximum BiSS timeout"),
+    row(0x0B, 1, None,         Meaning::Ticks { zero: EdsValue::NoLimit }, "minimum cycle time"),
+    row(0x0C, 1, Some(0x20),   Meaning::Ticks { zero: EdsValue::Ticks(0) }, "maximum processing time SCD"),
+    row(0x0E, 2, Some(0x01F4), Meaning::Number("ms"), "maximum power-on delay until control communication is available"),
+    row(0x10, 1, Some(0x01),   NUMBER,              "number of data channels"),
+    row(0x11, 1, Some(0x01),   Meaning::Number("slave addresses"), "area of validity for this EDS"),
+    row(0x14, 1, Some(0x03),   Meaning::Bank,       "bank address of the description of data channel 1"),
+    row(0x15, 1, Some(0x23),   Meaning::Number("bit"), "data length, data channel 1"),
+    row(0x16, 1, Some(0x00),   Meaning::Format,     "data format, data channel 1"),
+    row(0x17, 1, Some(0x21),   Meaning::Polynomial, "CRC polynomial (8:1) for data channel 1"),
+];
+
+#[rustfmt::skip]
+const ENCODER: [EdsField; 17] = [
+    row(0x00, 1, Some(0x01),   NUMBER,               "BiSS profile 3 version"),
+    row(0x01, 1, Some(0x01),   Meaning::Number("banks"), "length of this profile"),
+    row(0x02, 2, Some(0x6129), Meaning::Profile,     "profile identification BP3"),
+    row(0x04, 1, Some(0x01),   Meaning::Feedback,    "feedback bit 1"),
+    row(0x05, 1, Some(0x02),   Meaning::Feedback,    "feedback bit 2"),
+    row(0x06, 1, Some(0xFF),   NUMBER,               "maximum power-on delay until position data is available"),
+    row(0x08, 1, Some(0x00),   Meaning::EncoderType, "encoder type"),
+    row(0x0A, 1, Some(0x10),   Meaning::Number("bit"), "data length multiturn"),
+    row(0x0C, 1, Some(0x11),   Meaning::Number("bit"), "data length coarse"),
+    row(0x1C, 4, Some(0x21),   Meaning::Polynomial,  "CRC polynomial (32:1)"),
+    row(0x20, 4, Some(0x00),   Meaning::Hex,         "CRC start value"),
+    row(0x2C, 2, Some(12_000), Meaning::Number("1/min"), "maximum revolution speed"),
+    row(0x30, 2, Some(233),    Meaning::Kelvin,      "minimum operating temperature"),
+    row(0x32, 2, Some(378),    Meaning::Kelvin,      "maximum operating temperature"),
+    row(0x34, 2, Some(5_000),  Meaning::Number("mV"), "minimum operating voltage"),
+    row(0x36, 2, Some(12_000), Meaning::Number("mV"), "maximum operating voltage"),
+    row(0x38, 2, Some(70),     Meaning::Number("mA"), "maximum current consumption"),
+];
+
+/// A bank of the data sheet, byte for byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Eds {
+    bank: EdsBank,
+    bytes: [u8; 64],
+}
+
+/// Why a data sheet cannot be relied upon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EdsError {
+    /// The last byte is not the sum of the others.
+    #[error("EDS bank {bank:02X}h: checksum {got:02X} where {expected:02X} was expected")]
+    Checksum {
+        /// The bank's number where the manual puts it.
+        bank: u8,
+        /// The sum.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+    /// A bit beside the position with a meaning that is not known.
+    #[error("EDS: feedback bit {number} has the unknown meaning {code:02X}h")]
+    Feedback {
+        /// 1 or 2.
+        number: u8,
+        /// Its code.
+        code: u8,
+    },
+    /// The two banks disagree.
+    #[error("EDS: the data length is {common} bit in bank 02h and {encoder} bit in bank 03h")]
+    DataLength {
+        /// Bank 2, 15h.
+        common: u8,
+        /// Multiturn, coarse and feedback bits of bank 3.
+        encoder: u8,
+    },
+    /// The checksum of the position data is none.
+    #[error("EDS: {0}")]
+    Crc(#[from] CrcError),
+    /// The widths are impossible.
+    #[error("EDS: {0}")]
+    Layout(#[from] LayoutError),
+}
+
+impl EdsBank {
+    /// Where the kit encoder has it.
+    pub const fn number(self) -> u8 {
+        match self {
+            EdsBank::Common => 0x02,
+            EdsBank::Encoder => 0x03,
+        }
+    }
+
+    /// Its fields, by address.
+    pub const fn fields(self) -> &'static [EdsField] {
+        match self {
+            EdsBank::Common => &COMMON,
+            EdsBank::Encoder => &ENCODER,
+        }
+    }
+}
+
+impl Eds {
+    /// Where the sum of the others is.
+    pub const CHECKSUM_OFFSET: u8 = 0x3F;
+
+    /// Reads a bank and checks its sum.
+    ///
+    /// # Errors
+    /// [`EdsError::Checksum`].
+    pub fn parse(bank: EdsBank, bytes: [u8; 64]) -> Result<Self, EdsError> {
+        let expected = sum(&bytes);
+        let [.., got] = bytes;
+        if got != expected {
+            return Err(EdsError::Checksum { bank: bank.number(), expected, got });
+        }
+        Ok(Eds { bank, bytes })
+    }
+
+    /// The kit encoder's bank as delivered, 0 where the manual says nothing.
+    pub fn delivered(bank: EdsBank) -> Self {
+        let mut bytes = [0; 64];
+        for field in bank.fields() {
+            let value = field.default.unwrap_or(0).to_be_bytes();
+            let from = value.len() - usize::from(field.width);
+            for (byte, at) in value.iter().skip(from).zip(usize::from(field.offset)..) {
+                if let Some(place) = bytes.get_mut(at) {
+                    *place = *byte;
+                }
+            }
+        }
+        let total = sum(&bytes);
+        let [.., last] = &mut bytes;
+        *last = total;
+        Eds { bank, bytes }
+    }
+
+    /// The bytes of the bank, its sum last.
+    pub const fn emit(&self) -> [u8; 64] {
+        self.bytes
+    }
+
+    /// Every field with what it says.
+    pub fn values(&self) -> impl Iterator<Item = (&'static EdsField, EdsValue)> {
+        self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
+    }
+
+    fn number(&self, offset: u8) -> u32 {
+        let field = self.bank.fields().iter().find(|field| field.offset == offset);
+        field.map_or(0, |field| field.raw(&self.bytes))
+    }
+
+    fn byte(&self, offset: u8) -> u8 {
+        self.bytes.get(usize::from(offset)).copied().unwrap_or(0)
+    }
+}
+
+/// The frame of the position data, as both banks tell it.
+///
+/// # Errors
+/// [`EdsError`] where they tell none, or not the same.
+pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
+    let feedback = |number: u8, offset: u8, expected: Feedback| match Feedback::from_byte(encoder.byte(offset)) {
+        Feedback::None => Ok(false),
+        meaning if meaning == expected => Ok(true),
+        _ => Err(EdsError::Feedback { number, code: encoder.byte(offset) }),
+    };
+    let error_bit = feedback(1, 0x04, Feedback::Error)?;
+    let warning_bit = feedback(2, 0x05, Feedback::Warning)?;
+    let crc = Crc::from_data_sheet(encoder.number(0x1C), encoder.number(0x20))?;
+    let layout = Layout::new(encoder.byte(0x0A), encoder.byte(0x0C), error_bit, warning_bit, crc)?;
+    let (common, encoder) = (common.byte(0x15), layout.data_bits());
+    if common == encoder { Ok(layout) } else { Err(EdsError::DataLength { common, encoder }) }
+}
+
+fn sum(bytes: &[u8; 64]) -> u8 {
+    let [content @ .., _] = bytes;
+    content.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
+}
+
+impl EdsField {
+    /// The number in the field, high byte first.
+    pub fn raw(&self, bank: &[u8; 64]) -> u32 {
+        let first = usize::from(self.offset);
+        let bytes = bank.get(first..first + usize::from(self.width)).unwrap_or_default();
+        bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
+    }
+
+    /// What the field says. The bank's sum is not looked at: see [`Eds::parse`].
+    pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
+        let raw = self.raw(bank);
+        // Fields with these meanings have one byte, those of two words of it: nothing is cut off.
+        let byte = raw as u8;
+        match self.meaning {
+            Meaning::Number(unit) => EdsValue::Number(raw, unit),
+            Meaning::Bank if byte == 0xFF => EdsValue::NotAvailable,
+            Meaning::Bank => EdsValue::Bank(byte),
+            Meaning::Ticks { zero } if byte == 0 => zero,
+            Meaning::Ticks { .. } => EdsValue::Ticks(byte),
+            Meaning::Format | Meaning::Hex => EdsValue::Code(raw),
+            Meaning::Profile => EdsValue::Profile(ProfileId::new(raw as u16)),
+            Meaning::Feedback => EdsValue::Feedback(Feedback::from_byte(byte)),
+            Meaning::EncoderType => EdsValue::EncoderType(byte),
+            Meaning::Polynomial if raw == 0 => EdsValue::Polynomial(0),
+            Meaning::Polynomial => EdsValue::Polynomial(u64::from(raw) << 1 | 1),
+            Meaning::Kelvin => EdsValue::Kelvin(raw as u16),
+        }
+    }
+}
+
+impl EdsValue {
+    /// Whole degrees Celsius of a temperature.
+    pub fn celsius(self) -> Option<i32> {
+        match self {
+            EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),
+            _ => None,
+        }
+    }
+
+    /// The time of a number of ticks, with the length of one.
+    pub fn duration(self, tick: Duration) -> Option<Duration> {
+        match self {
+            EdsValue::Ticks(ticks) => Some(tick * u32::from(ticks)),
+            _ => None,
+        }
+    }
+}
+
+impl Feedback {
+    const fn from_byte(byte: u8) -> Self {
+        match byte {
+            0 => Feedback::None,
+            1 => Feedback::Error,
+            2 => Feedback::Warning,
+            _ => Feedback::Unknown(byte),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

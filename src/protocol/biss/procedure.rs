@@ -1,0 +1,360 @@
+//! The codes of the guided procedures: what is written into their command registers, what their status registers say
+//! (manual 6.3 to 6.7). Where these registers are is in the encoder's [description](super::Description).
+
+use std::fmt;
+
+/// A procedure that leads an encoder through a device mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProcedureKind {
+    /// Manual 6.3.
+    WiegandTest,
+    /// Manual 6.4.
+    Calibration,
+    /// Manual 6.5: OEM data and EDS motor data.
+    DataWrite,
+    /// Manual 6.6.
+    FilterSelection,
+    /// Manual 6.7.
+    Preset,
+}
+
+impl ProcedureKind {
+    /// Every procedure, in the manual's order.
+    pub const ALL: [ProcedureKind; 5] = [
+        ProcedureKind::WiegandTest,
+        ProcedureKind::Calibration,
+        ProcedureKind::DataWrite,
+        ProcedureKind::FilterSelection,
+        ProcedureKind::Preset,
+    ];
+}
+
+/// Codes of a register as a type: unknown ones keep their number.
+macro_rules! codes {
+    ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $name {
+            $($(#[$doc])* $variant,)*
+            /// A code that the manual does not know.
+            Unknown(u8),
+        }
+
+        impl $name {
+            /// By the register's value.
+            pub const fn from_byte(byte: u8) -> Self {
+                match byte {
+                    $($code => $name::$variant,)*
+                    _ => $name::Unknown(byte),
+                }
+            }
+
+            /// The register's value.
+            pub const fn byte(self) -> u8 {
+                match self {
+                    $($name::$variant => $code,)*
+                    $name::Unknown(byte) => byte,
+                }
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let text = match self {
+                    $($name::$variant => $text,)*
+                    $name::Unknown(_) => "unknown code",
+                };
+                write!(f, "{:02X}h {text}", self.byte())
+            }
+        }
+    };
+}
+
+codes! {
+    /// Written to the Wiegand test's command register (bank 0, 06h).
+    WiegandCommand {
+        /// Collects pulses while the motor runs clockwise.
+        StartClockwise = 0x01 "start clockwise",
+        /// Collects pulses while the motor runs counterclockwise.
+        StartCounterclockwise = 0x02 "start counterclockwise",
+        /// Ends the test, at any time.
+        Stop = 0x03 "finish test",
+        /// Keeps the result; it can be seen after a restart.
+        Save = 0x05 "save result",
+    }
+}
+
+codes! {
+    /// What the Wiegand test's status register says (bank 0, 07h).
+    WiegandStatus {
+        /// No test runs.
+        Stopped = 0x00 "test stopped",
+        /// The first direction runs.
+        Clockwise = 0x01 "pulse collection active, clockwise",
+        /// The motor has to turn the other way now.
+        WaitForDirection = 0x03 "wait for change of motor rotation direction",
+        /// The second direction runs.
+        Counterclockwise = 0x04 "pulse collection active, counterclockwise",
+        /// Both directions are done.
+        Complete = 0x06 "test complete",
+        /// The error code (bank 0, 08h) says why.
+        Failed = 0x07 "test failed",
+        /// The encoder has noticed that the motor turns the other way.
+        WrongDirection = 0x30 "wrong motor rotation direction",
+    }
+}
+
+codes! {
+    /// Written to the calibration's command register (bank 0, 00h).
+    CalibrationCommand {
+        /// The first run, with the motor turning counterclockwise.
+        StartCounterclockwise = 0x01 "start counterclockwise",
+        /// The second run, with the motor turning clockwise. Its success is saved by itself; its failure loses the
+        /// table.
+        StartClockwise = 0x02 "start clockwise",
+    }
+}
+
+codes! {
+    /// What the calibration's status register says (bank 0, 01h).
+    CalibrationStatus {
+        /// Nothing has begun.
+        Idle = 0x00 "not started",
+        /// A run is under way.
+        Running = 0x01 "calibration running",
+        /// The first run is done.
+        CounterclockwiseDone = 0x02 "calibration finished, counterclockwise",
+        /// The second run is done and the table saved.
+        ClockwiseDone = 0x22 "calibration finished, clockwise",
+        /// The motor turns the other way.
+        WrongDirection = 0x30 "wrong rotation direction",
+        /// Not within 25 and 40 °C.
+        Temperature = 0x31 "temperature out of range",
+        /// Not within 300 and 700 rpm.
+        Speed = 0x32 "motor speed out of range",
+        /// Without a reason.
+        Failed = 0x33 "calibration failure",
+    }
+}
+
+codes! {
+    /// Written to the data write's command register (bank 0, 1Ah).
+    DataCommand {
+        /// Opens banks 04h…23h.
+        OpenMotorData = 0x01 "get write access to EDS motor data",
+        /// Opens banks 24h…43h.
+        OpenOemData = 0x02 "get write access to OEM data",
+        /// Writes what was entered into the flash.
+        Save = 0x03 "save data",
+        /// Forgets what was entered.
+        Cancel = 0x04 "cancel write access",
+    }
+}
+
+codes! {
+    /// What the data write's status register says (bank 0, 1Bh).
+    DataStatus {
+        /// Write access may be asked for.
+        Closed = 0x00 "wait for write access",
+        /// Data may be entered and saved.
+        Open = 0x01 "wait for save command",
+    }
+}
+
+codes! {
+    /// Written to the filter selection's command register (bank 0, 24h).
+    FilterCommand {
+        /// Asks for write access.
+        Open = 0x01 "get write access",
+        /// Keeps the filter and restarts.
+        Save = 0x02 "save filter selection",
+        /// [`Filter::Balanced`](super::Filter).
+        Balanced = 0x03 "balanced filter",
+        /// [`Filter::Dynamic`](super::Filter).
+        Dynamic = 0x04 "dynamic filter",
+    }
+}
+
+codes! {
+    /// What the filter selection's status register says (bank 0, 25h).
+    FilterStatus {
+        /// Write access may be asked for.
+        Closed = 0x00 "wait for write access",
+        /// The filter may be saved.
+        WaitForSave = 0x01 "wait for save command",
+        /// A filter may be chosen.
+        WaitForValue = 0x02 "wait for filter",
+    }
+}
+
+codes! {
+    /// Written to the preset's command register (bank 1, 00h).
+    PresetCommand {
+        /// The shaft's place becomes the stored preset value; restarts.
+        Both = 0x01 "perform preset, singleturn and multiturn",
+        /// The preset value may be entered.
+        Edit = 0x02 "enable preset value edit",
+        /// Keeps the preset value and restarts.
+        Save = 0x03 "save preset value",
+        /// As `Both`, for the singleturn only; restarts.
+        Singleturn = 0x04 "perform preset, singleturn",
+        /// As `Both`, for the multiturn only; restarts.
+        Multiturn = 0x05 "perform preset, multiturn",
+    }
+}
+
+codes! {
+    /// What the preset's status register says (bank 1, 01h).
+    PresetStatus {
+        /// No value is expected.
+        Idle = 0x00 "idle",
+        /// The preset value may be entered.
+        WaitForValue = 0x01 "wait for value",
+    }
+}
+
+/// What a preset makes of the shaft's place: three bytes each, low byte first (bank 1, 02h…07h).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PresetValue {
+    singleturn: u32,
+    multiturn: u32,
+}
+
+impl PresetValue {
+    /// 24 bits each; `None` above. The encoder's widths may allow less.
+    pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
+        if singleturn < 1 << 24 && multiturn < 1 << 24 { Some(PresetValue { singleturn, multiturn }) } else { None }
+    }
+
+    /// From the registers, in the order of their addresses.
+    pub const fn parse(bytes: [u8; 6]) -> Self {
+        let [s0, s1, s2, m0, m1, m2] = bytes;
+        PresetValue { singleturn: u32::from_le_bytes([s0, s1, s2, 0]), multiturn: u32::from_le_bytes([m0, m1, m2, 0]) }
+    }
+
+    /// For the registers, in the order of their addresses.
+    pub const fn emit(self) -> [u8; 6] {
+        let [s0, s1, s2, _] = self.singleturn.to_le_bytes();
+        let [m0, m1, m2, _] = self.multiturn.to_le_bytes();
+        [s0, s1, s2, m0, m1, m2]
+    }
+
+    /// Place within the revolution.
+    pub const fn singleturn(self) -> u32 {
+        self.singleturn
+    }
+
+    /// Revolutions.
+    pub const fn multiturn(self) -> u32 {
+        self.multiturn
+    }
+}
+
+/// A voltage as the Wiegand test gives it, in tenths of a volt (bank 0, 09h…14h).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PulseVoltage(u8);
+
+impl PulseVoltage {
+    /// The average less four standard deviations has to lie above this: 5.3 V.
+    pub const LIMIT: PulseVoltage = PulseVoltage(53);
+
+    /// Any byte is a voltage.
+    pub const fn new(tenths: u8) -> Self {
+        PulseVoltage(tenths)
+    }
+
+    /// The register's value.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// Volts, from 0 to 25.5.
+    pub fn volts(self) -> f64 {
+        f64::from(self.0) / 10.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Reference 5.5: 270°, 180°, 90°, 1° and 0° of 17 bits.
+    #[test]
+    fn the_published_preset_values() {
+        for (singleturn, bytes) in [
+            (98_304, [0x00, 0x80, 0x01]),
+            (0, [0x00, 0x00, 0x00]),
+            (0x1_0000, [0x00, 0x00, 0x01]),
+            (0x8000, [0x00, 0x80, 0x00]),
+            (364, [0x6C, 0x01, 0x00]),
+        ] {
+            let value = PresetValue::new(singleturn, 0x0102).unwrap();
+            assert_eq!(value.emit()[..3], bytes);
+            assert_eq!(value.emit()[3..], [0x02, 0x01, 0x00]);
+            assert_eq!(PresetValue::parse(value.emit()), value);
+        }
+        assert_eq!(PresetValue::new(1 << 24, 0), None);
+        assert_eq!(PresetValue::new(0, 1 << 24), None);
+    }
+
+    #[test]
+    fn a_pulse_voltage_is_in_tenths() {
+        assert_eq!(PulseVoltage::LIMIT.byte(), 0x35);
+        assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
+    }
+
+    /// The manual's tables, and what is in none of them.
+    #[test]
+    fn codes_are_the_manuals_and_unknown_ones_are_kept() {
+        assert_eq!(
+            [0, 1, 3, 4, 6, 7, 0x30].map(|code| WiegandStatus::from_byte(code).to_string()),
+            [
+                "00h test stopped",
+                "01h pulse collection active, clockwise",
+                "03h wait for change of motor rotation direction",
+                "04h pulse collection active, counterclockwise",
+                "06h test complete",
+                "07h test failed",
+                "30h wrong motor rotation direction",
+            ]
+        );
+        assert_eq!(
+            [1, 2, 0x22, 0x30, 0x31, 0x32, 0x33].map(CalibrationStatus::from_byte),
+            [
+                CalibrationStatus::Running,
+                CalibrationStatus::CounterclockwiseDone,
+                CalibrationStatus::ClockwiseDone,
+                CalibrationStatus::WrongDirection,
+                CalibrationStatus::Temperature,
+                CalibrationStatus::Speed,
+                CalibrationStatus::Failed,
+            ]
+        );
+        assert_eq!(
+            [0, 2, 1].map(FilterStatus::from_byte),
+            [FilterStatus::Closed, FilterStatus::WaitForValue, FilterStatus::WaitForSave,]
+        );
+        for byte in 0..=255 {
+            assert_eq!(WiegandCommand::from_byte(byte).byte(), byte);
+            assert_eq!(WiegandStatus::from_byte(byte).byte(), byte);
+            assert_eq!(CalibrationCommand::from_byte(byte).byte(), byte);
+            assert_eq!(CalibrationStatus::from_byte(byte).byte(), byte);
+            assert_eq!(DataCommand::from_byte(byte).byte(), byte);
+            assert_eq!(DataStatus::from_byte(byte).byte(), byte);
+            assert_eq!(FilterCommand::from_byte(byte).byte(), byte);
+            assert_eq!(FilterStatus::from_byte(byte).byte(), byte);
+            assert_eq!(PresetCommand::from_byte(byte).byte(), byte);
+            assert_eq!(PresetStatus::from_byte(byte).byte(), byte);
+        }
+        assert_eq!(CalibrationStatus::from_byte(0x77).to_string(), "77h unknown code");
+    }
+
+    proptest! {
+        #[test]
+        fn six_bytes_are_a_preset_value(bytes: [u8; 6]) {
+            prop_assert_eq!(PresetValue::parse(bytes).emit(), bytes);
+        }
+    }
+}

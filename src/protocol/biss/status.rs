@@ -1,0 +1,292 @@
+//! What single registers of the kit encoder say: errors, warnings, temperature, device mode, filter, firmware (manual
+//! 6.1, 6.2, 6.6, 6.8 and appendix).
+
+use std::fmt;
+
+/// The error register (68h); any of its bits makes the position's error bit 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ErrorRegister(u8);
+
+/// The warning register (69h).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WarningRegister(u8);
+
+const ERRORS: [&str; 5] = [
+    "FRAM error",
+    "multiturn synchronisation error",
+    "singleturn position sensor error",
+    "temperature sensor error",
+    "magnetic field too low",
+];
+const WARNINGS: [&str; 1] = ["temperature too high"];
+const UNKNOWN_ERROR: &str = "unknown error";
+const UNKNOWN_WARNING: &str = "unknown warning";
+
+impl ErrorRegister {
+    /// Bit 1: the multiturn counter has lost its synchronisation.
+    pub const MULTITURN: ErrorRegister = ErrorRegister(0x02);
+    /// Bit 4: no magnet, or one too far away.
+    pub const FIELD_TOO_LOW: ErrorRegister = ErrorRegister(0x10);
+
+    /// Any byte is an error register; bits that the manual does not use are kept.
+    pub const fn new(byte: u8) -> Self {
+        ErrorRegister(byte)
+    }
+
+    /// The register's value.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// The bits that are set, the lowest first, with what each says.
+    pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
+        set_bits(self.0, &ERRORS, UNKNOWN_ERROR)
+    }
+}
+
+impl WarningRegister {
+    /// Bit 0: set from 125 °C on, cleared below 123 °C.
+    pub const TEMPERATURE: WarningRegister = WarningRegister(0x01);
+
+    /// Any byte is a warning register; bits that the manual does not use are kept.
+    pub const fn new(byte: u8) -> Self {
+        WarningRegister(byte)
+    }
+
+    /// The register's value.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// The bits that are set, the lowest first, with what each says.
+    pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
+        set_bits(self.0, &WARNINGS, UNKNOWN_WARNING)
+    }
+}
+
+fn set_bits(
+    byte: u8,
+    names: &'static [&'static str],
+    unknown: &'static str,
+) -> impl Iterator<Item = (u8, &'static str)> {
+    (0..8u8)
+        .filter(move |bit| byte >> bit & 1 == 1)
+        .map(move |bit| (bit, names.get(usize::from(bit)).copied().unwrap_or(unknown)))
+}
+
+/// The temperature register (66h): 50 more than degrees Celsius. The sensor is right within 5 °C, from −40 to 130 °C.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Temperature(u8);
+
+impl Temperature {
+    const OFFSET: i16 = 50;
+
+    /// Any byte is a temperature.
+    pub const fn new(byte: u8) -> Self {
+        Temperature(byte)
+    }
+
+    /// The nearest temperature that the register can say.
+    pub fn from_celsius(celsius: i16) -> Self {
+        Temperature(u8::try_from(celsius.saturating_add(Self::OFFSET).clamp(0, 0xFF)).unwrap_or(0))
+    }
+
+    /// The register's value.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// Whole degrees Celsius, −50…205.
+    pub fn celsius(self) -> i16 {
+        i16::from(self.0) - Self::OFFSET
+    }
+
+    /// Degrees Fahrenheit. The manual's formula forgets the 50.
+    pub fn fahrenheit(self) -> f64 {
+        1.8 * f64::from(self.celsius()) + 32.0
+    }
+}
+
+/// The device mode (6Ah). Other modes than these are kept by their number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct DeviceMode(u8);
+
+impl DeviceMode {
+    /// Positions, and nothing else.
+    pub const OPERATION: DeviceMode = DeviceMode(0x00);
+    /// Calibration of the singleturn.
+    pub const CALIBRATION: DeviceMode = DeviceMode(0x01);
+    /// Test of the Wiegand sensor.
+    pub const WIEGAND_TEST: DeviceMode = DeviceMode(0x02);
+    /// OEM data and EDS motor data may be written.
+    pub const DATA_WRITE: DeviceMode = DeviceMode(0x04);
+    /// Another filter.
+    pub const FILTER: DeviceMode = DeviceMode(0x05);
+    /// Preset.
+    pub const PRESET: DeviceMode = DeviceMode(0x07);
+
+    /// Opens the mode register, written to 6Bh.
+    pub const PASSWORD: u8 = 0x2A;
+
+    /// Any byte is a mode.
+    pub const fn new(byte: u8) -> Self {
+        DeviceMode(byte)
+    }
+
+    /// The register's value.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// The manual knows this mode.
+    pub const fn is_known(self) -> bool {
+        matches!(self.0, 0x00 | 0x01 | 0x02 | 0x04 | 0x05 | 0x07)
+    }
+}
+
+impl fmt::Display for DeviceMode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match *self {
+            DeviceMode::OPERATION => "operation",
+            DeviceMode::CALIBRATION => "calibration",
+            DeviceMode::WIEGAND_TEST => "Wiegand sensor test",
+            DeviceMode::DATA_WRITE => "OEM/EDS motor data write",
+            DeviceMode::FILTER => "filter selection",
+            DeviceMode::PRESET => "preset",
+            DeviceMode(_) => "unknown mode",
+        };
+        write!(f, "{:02X}h {name}", self.0)
+    }
+}
+
+/// The filter of the position (6Eh).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Filter {
+    /// 03h, as delivered: little noise.
+    Balanced,
+    /// 04h: little latency, more noise.
+    Dynamic,
+    /// A value that the manual does not know.
+    Unknown(u8),
+}
+
+impl Filter {
+    /// By its code.
+    pub const fn from_byte(byte: u8) -> Self {
+        match byte {
+            0x03 => Filter::Balanced,
+            0x04 => Filter::Dynamic,
+            _ => Filter::Unknown(byte),
+        }
+    }
+
+    /// Its code, in 6Eh and as a command.
+    pub const fn byte(self) -> u8 {
+        match self {
+            Filter::Balanced => 0x03,
+            Filter::Dynamic => 0x04,
+            Filter::Unknown(byte) => byte,
+        }
+    }
+}
+
+/// A firmware's release (74h…76h), ordered by age.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Firmware {
+    /// Major release.
+    pub major: u8,
+    /// Minor release.
+    pub minor: u8,
+    /// Patch level.
+    pub patch: u8,
+}
+
+impl Firmware {
+    /// A release.
+    pub const fn new(major: u8, minor: u8, patch: u8) -> Self {
+        Firmware { major, minor, patch }
+    }
+}
+
+impl fmt::Display for Firmware {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}.{}", self.major, self.minor, self.patch)
+    }
+}
+
+/// The profile identification (42h and 43h, high byte first): which electronic data sheet the encoder has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ProfileId(u16);
+
+impl ProfileId {
+    /// Any two bytes are a profile.
+    pub const fn new(word: u16) -> Self {
+        ProfileId(word)
+    }
+
+    /// Both bytes, the first the higher.
+    pub const fn word(self) -> u16 {
+        self.0
+    }
+
+    /// Bits 15 to 13 are 011: the standard encoder profile BP3, whose data sheet this program reads.
+    pub const fn is_standard_encoder(self) -> bool {
+        self.0 >> 13 == 0b011
+    }
+}
+
+impl fmt::Display for ProfileId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:04X}h", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reference 4 and 7.
+    #[test]
+    fn the_published_temperatures() {
+        for (byte, celsius, fahrenheit) in
+            [(0x0A, -40, -40.0), (0x4B, 25, 77.0), (0x7B, 73, 163.4), (0xAF, 125, 257.0), (0xB4, 130, 266.0)]
+        {
+            let temperature = Temperature::new(byte);
+            assert_eq!(temperature.celsius(), celsius, "{byte:02X}");
+            assert!((temperature.fahrenheit() - fahrenheit).abs() < 1e-9, "{byte:02X}");
+            assert_eq!(Temperature::from_celsius(celsius).byte(), byte);
+        }
+        assert_eq!(Temperature::from_celsius(-300).byte(), 0x00);
+        assert_eq!(Temperature::from_celsius(i16::MAX).byte(), 0xFF);
+    }
+
+    /// Reference 7: error 12h is multiturn and field too low, warning 01h temperature.
+    #[test]
+    fn errors_and_warnings_bit_by_bit() {
+        let errors: Vec<_> = ErrorRegister::new(0x12).set().collect();
+        assert_eq!(errors, [(1, "multiturn synchronisation error"), (4, "magnetic field too low")]);
+        assert_eq!(0x12, ErrorRegister::MULTITURN.byte() | ErrorRegister::FIELD_TOO_LOW.byte());
+        assert_eq!(WarningRegister::new(0x01).set().collect::<Vec<_>>(), [(0, "temperature too high")]);
+        assert_eq!(ErrorRegister::new(0xA0).set().collect::<Vec<_>>(), [(5, "unknown error"), (7, "unknown error")]);
+        assert_eq!(WarningRegister::new(0x80).set().collect::<Vec<_>>(), [(7, "unknown warning")]);
+        assert_eq!(ErrorRegister::new(0).set().count(), 0);
+    }
+
+    #[test]
+    fn modes_filters_and_profiles_keep_what_is_unknown() {
+        let known: Vec<u8> = (0..=255).filter(|byte| DeviceMode::new(*byte).is_known()).collect();
+        assert_eq!(known, [0, 1, 2, 4, 5, 7]);
+        assert_eq!(DeviceMode::new(0x09).to_string(), "09h unknown mode");
+        assert_eq!(DeviceMode::PRESET.to_string(), "07h preset");
+        assert!((0..=255).all(|byte| Filter::from_byte(byte).byte() == byte));
+        assert!(ProfileId::new(0x6129).is_standard_encoder());
+        assert!(!ProfileId::new(0x4129).is_standard_encoder() && !ProfileId::new(0xE129).is_standard_encoder());
+    }
+
+    #[test]
+    fn releases_are_ordered() {
+        assert!(Firmware::new(1, 10, 0) > Firmware::new(1, 6, 0));
+        assert!(Firmware::new(1, 6, 0) > Firmware::new(1, 2, 9));
+        assert_eq!(Firmware::new(1, 6, 0).to_string(), "1.6.0");
+    }
+}
