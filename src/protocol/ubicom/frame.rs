@@ -1,0 +1,168 @@
+//! The frame (manual 5.1).
+
+/// The first byte of every frame.
+pub const SYNC: u8 = 0x80;
+/// The address of the encoder.
+pub const NODE: u8 = 0x01;
+/// Longest payload that is taken for one. No message of the manual has more than five bytes (`U`).
+pub const MAX_PAYLOAD: usize = 64;
+
+/// A frame whose checksum was right. What the payload means depends on the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// The encoder it comes from or goes to.
+    pub address: u8,
+    /// Command byte; a reply has that of its request.
+    pub command: u8,
+    /// Up to [`MAX_PAYLOAD`] bytes.
+    pub payload: &'a [u8],
+}
+
+/// Why bytes are not a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// The first byte is not 80h.
+    #[error("a frame begins with 80, not with {0:02X}")]
+    Sync(u8),
+    /// Fewer or more bytes than the header says.
+    #[error("{got} bytes where the frame has {expected}")]
+    Length {
+        /// Bytes of a whole frame; of the shortest where there is no whole header.
+        expected: usize,
+        /// Bytes received.
+        got: usize,
+    },
+    /// The last byte is not the inverted sum of the others.
+    #[error("checksum {got:02X} where {expected:02X} was expected")]
+    Checksum {
+        /// What the other bytes give.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+}
+
+impl<'a> Frame<'a> {
+    /// Bytes around the payload: five before it, one behind it.
+    pub const OVERHEAD: usize = 6;
+
+    /// Takes a frame apart. The whole slice is the frame; its length is that of the header, whatever examples in the
+    /// manual print.
+    ///
+    /// # Errors
+    /// [`FrameError`].
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
+        if let Some(first) = bytes.first().filter(|first| **first != SYNC) {
+            return Err(FrameError::Sync(*first));
+        }
+        let [_, address, command, low, high, payload @ .., got] = bytes else {
+            return Err(FrameError::Length { expected: Self::OVERHEAD, got: bytes.len() });
+        };
+        let length = usize::from(u16::from_le_bytes([*low, *high]));
+        if payload.len() != length {
+            return Err(FrameError::Length { expected: length + Self::OVERHEAD, got: bytes.len() });
+        }
+        let expected = checksum(bytes.split_last().map_or(&[], |(_, before)| before));
+        if *got != expected {
+            return Err(FrameError::Checksum { expected, got: *got });
+        }
+        Ok(Frame { address: *address, command: *command, payload })
+    }
+
+    /// The bytes on the line, checksum last.
+    pub fn emit(&self) -> Vec<u8> {
+        // A payload has at most 64 bytes.
+        let length = u16::try_from(self.payload.len()).unwrap_or(u16::MAX);
+        let mut bytes = Vec::with_capacity(self.payload.len() + Self::OVERHEAD);
+        bytes.extend([SYNC, self.address, self.command]);
+        bytes.extend(length.to_le_bytes());
+        bytes.extend(self.payload);
+        bytes.push(checksum(&bytes));
+        bytes
+    }
+}
+
+/// The inverted sum of all bytes.
+fn checksum(bytes: &[u8]) -> u8 {
+    !bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bits::parse_hex;
+    use proptest::prelude::*;
+
+    /// Reference 6: every frame, all of them with their checksums.
+    const FRAMES: [&str; 17] = [
+        "80 01 01 02 00 00 00 7B",
+        "80 01 01 02 00 26 00 55",
+        "80 01 01 01 00 4B 31",
+        "80 01 01 02 00 C5 00 B6",
+        "80 01 01 01 00 1C 60",
+        "80 01 01 02 00 05 01 75",
+        "80 01 01 02 00 34 00 47",
+        "80 01 02 03 00 2B 00 2A 24",
+        "80 01 02 01 00 90 EB",
+        "80 01 02 01 00 A0 DB",
+        "80 01 02 03 00 2A 00 07 48",
+        "80 01 02 03 00 83 00 80 76",
+        "80 01 03 01 00 01 79",
+        "80 01 03 05 00 00 80 69 24 00 69",
+        "80 01 03 05 00 00 00 00 00 00 76",
+        "80 01 03 05 00 FF FF FF FF 01 79",
+        "80 01 03 05 00 00 00 02 00 00 74",
+    ];
+
+    #[test]
+    fn the_published_frames() {
+        for text in FRAMES {
+            let bytes = parse_hex(text).unwrap();
+            let frame = Frame::parse(&bytes).unwrap();
+            assert_eq!(frame.emit(), bytes, "{text}");
+            // Reference 2: the sum of all bytes is FFh.
+            assert_eq!(bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)), 0xFF, "{text}");
+        }
+    }
+
+    #[test]
+    fn every_cut_and_every_flipped_bit_is_refused() {
+        for text in FRAMES {
+            let bytes = parse_hex(text).unwrap();
+            for cut in 0..bytes.len() {
+                assert!(matches!(Frame::parse(&bytes[..cut]), Err(FrameError::Length { .. })), "{text} cut at {cut}");
+            }
+            for bit in 0..bytes.len() * 8 {
+                let mut damaged = bytes.clone();
+                damaged[bit / 8] ^= 1 << (bit % 8);
+                assert!(Frame::parse(&damaged).is_err(), "{text} bit {bit}");
+            }
+            for (at, value) in (0..bytes.len()).flat_map(|at| (0..=255).map(move |value| (at, value))) {
+                let mut damaged = bytes.clone();
+                damaged[at] = value;
+                assert!(damaged == bytes || Frame::parse(&damaged).is_err(), "{text} byte {at} = {value:02X}");
+            }
+        }
+    }
+
+    /// Reference 5: the manual's example is a byte short.
+    #[test]
+    fn the_length_of_the_header_counts() {
+        let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];
+        assert_eq!(Frame::parse(&printed), Err(FrameError::Length { expected: 8, got: 7 }));
+        let longer = [0x80, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0x7A];
+        assert_eq!(Frame::parse(&longer), Err(FrameError::Length { expected: 9, got: 8 }));
+        assert_eq!(Frame::parse(&[0x81, 0x01]), Err(FrameError::Sync(0x81)));
+        let wrong = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x00, 0x7A];
+        assert_eq!(Frame::parse(&wrong), Err(FrameError::Checksum { expected: 0x7B, got: 0x7A }));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_emitted_is_parsed(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..=64)) {
+            let frame = Frame { address, command, payload: &payload };
+            let bytes = frame.emit();
+            prop_assert_eq!(Frame::parse(&bytes), Ok(frame));
+        }
+    }
+}

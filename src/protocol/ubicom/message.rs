@@ -1,0 +1,373 @@
+//! What a host asks and an encoder answers (manual 5.2). Registers have one number each: see
+//! [`RegisterAddress::global`](crate::protocol::biss::RegisterAddress::global).
+
+use super::frame::{Frame, NODE};
+use super::position::PositionWord;
+use crate::protocol::biss::ByteOrder;
+
+/// The three commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// 01h.
+    Read,
+    /// 02h.
+    Write,
+    /// 03h.
+    Position,
+}
+
+/// A request without its address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// 01h: a register's value.
+    Read {
+        /// Global address.
+        register: u16,
+    },
+    /// 02h: write a register.
+    Write {
+        /// Global address.
+        register: u16,
+        /// Its value from now on.
+        value: u8,
+    },
+    /// 03h: the position. The manual has one argument, 01h; others are kept.
+    Position {
+        /// The byte behind the command.
+        argument: u8,
+    },
+}
+
+/// Why an encoder does not understand a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RequestError {
+    /// Not one of the three commands.
+    #[error("{0:02X}h is not a command")]
+    Command(u8),
+    /// A command with the wrong number of bytes.
+    #[error("{got} payload bytes where {expected} belong")]
+    Length {
+        /// Bytes the command takes.
+        expected: usize,
+        /// Bytes there were.
+        got: usize,
+    },
+}
+
+/// What an encoder answers to a write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// 90h.
+    Acknowledged,
+    /// A0h.
+    Refused,
+    /// Something that is not in the manual.
+    Unknown(u8),
+}
+
+/// A reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// To a read: the register's value.
+    Value(u8),
+    /// To a write.
+    Written(Written),
+    /// To 03h.
+    Position(PositionWord),
+}
+
+/// Why a frame is not the reply to a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReplyError {
+    /// The frame is for or from somebody else.
+    #[error("a frame of node {got:02X}h where one of {expected:02X}h was expected")]
+    Address {
+        /// The node that was asked.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+    /// The frame answers another command.
+    #[error("a frame of command {got:02X}h where one of {expected:02X}h was expected")]
+    Command {
+        /// The command of the request.
+        expected: u8,
+        /// What stood there.
+        got: u8,
+    },
+    /// It has the wrong number of bytes. Where it has as many as the request, it may be its echo.
+    #[error("{got} payload bytes where the reply has {expected}")]
+    Length {
+        /// Bytes of the reply.
+        expected: usize,
+        /// Bytes there were.
+        got: usize,
+    },
+}
+
+impl Command {
+    /// Its byte.
+    pub const fn byte(self) -> u8 {
+        match self {
+            Command::Read => 0x01,
+            Command::Write => 0x02,
+            Command::Position => 0x03,
+        }
+    }
+
+    /// By its byte.
+    pub const fn from_byte(byte: u8) -> Option<Self> {
+        match byte {
+            0x01 => Some(Command::Read),
+            0x02 => Some(Command::Write),
+            0x03 => Some(Command::Position),
+            _ => None,
+        }
+    }
+
+    const fn request_bytes(self) -> usize {
+        match self {
+            Command::Read => 2,
+            Command::Write => 3,
+            Command::Position => 1,
+        }
+    }
+
+    const fn reply_bytes(self) -> usize {
+        match self {
+            Command::Read | Command::Write => 1,
+            Command::Position => PositionWord::BYTES,
+        }
+    }
+}
+
+impl Request {
+    /// The position, as the manual asks for it.
+    pub const POSITION: Request = Request::Position { argument: 0x01 };
+    /// Its answer tells in which order the encoder takes the two bytes of a register: see [`order_told_by`]. Sent in
+    /// the order low byte first.
+    pub const PROBE: Request = Request::Read { register: 0x0001 };
+
+    /// Which command it is.
+    pub const fn command(self) -> Command {
+        match self {
+            Request::Read { .. } => Command::Read,
+            Request::Write { .. } => Command::Write,
+            Request::Position { .. } => Command::Position,
+        }
+    }
+
+    /// The frame for the line. The order of the register's two bytes is nowhere printed (`U`).
+    pub fn emit(self, order: ByteOrder) -> Vec<u8> {
+        let number = |register: u16| match order {
+            ByteOrder::LowFirst => register.to_le_bytes(),
+            ByteOrder::HighFirst => register.to_be_bytes(),
+        };
+        let payload = match self {
+            Request::Read { register } => number(register).to_vec(),
+            Request::Write { register, value } => {
+                let [first, second] = number(register);
+                vec![first, second, value]
+            }
+            Request::Position { argument } => vec![argument],
+        };
+        Frame { address: NODE, command: self.command().byte(), payload: &payload }.emit()
+    }
+
+    /// Reads the request in a frame.
+    ///
+    /// # Errors
+    /// The command before the length.
+    pub fn parse(frame: &Frame<'_>, order: ByteOrder) -> Result<Self, RequestError> {
+        let command = Command::from_byte(frame.command).ok_or(RequestError::Command(frame.command))?;
+        let number = |bytes: [u8; 2]| match order {
+            ByteOrder::LowFirst => u16::from_le_bytes(bytes),
+            ByteOrder::HighFirst => u16::from_be_bytes(bytes),
+        };
+        match (command, frame.payload) {
+            (Command::Read, [first, second]) => Ok(Request::Read { register: number([*first, *second]) }),
+            (Command::Write, [first, second, value]) => {
+                Ok(Request::Write { register: number([*first, *second]), value: *value })
+            }
+            (Command::Position, [argument]) => Ok(Request::Position { argument: *argument }),
+            (_, payload) => Err(RequestError::Length { expected: command.request_bytes(), got: payload.len() }),
+        }
+    }
+}
+
+/// The order of a register's two bytes that the answer to [`Request::PROBE`] tells: 02h is the bank of the data sheet in
+/// register 0001h, 01h the version of its profile in register 0100h. `None`: the encoder has something else there.
+pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
+    match answer {
+        0x02 => Some(ByteOrder::LowFirst),
+        0x01 => Some(ByteOrder::HighFirst),
+        _ => None,
+    }
+}
+
+impl Written {
+    /// By its byte.
+    pub const fn from_byte(byte: u8) -> Self {
+        match byte {
+            0x90 => Written::Acknowledged,
+            0xA0 => Written::Refused,
+            _ => Written::Unknown(byte),
+        }
+    }
+
+    /// Its byte.
+    pub const fn byte(self) -> u8 {
+        match self {
+            Written::Acknowledged => 0x90,
+            Written::Refused => 0xA0,
+            Written::Unknown(byte) => byte,
+        }
+    }
+}
+
+impl Reply {
+    /// Which command it answers.
+    pub const fn command(self) -> Command {
+        match self {
+            Reply::Value(_) => Command::Read,
+            Reply::Written(_) => Command::Write,
+            Reply::Position(_) => Command::Position,
+        }
+    }
+
+    /// The frame for the line.
+    pub fn emit(self) -> Vec<u8> {
+        let payload = match self {
+            Reply::Value(value) => vec![value],
+            Reply::Written(written) => vec![written.byte()],
+            Reply::Position(word) => word.emit().to_vec(),
+        };
+        Frame { address: NODE, command: self.command().byte(), payload: &payload }.emit()
+    }
+
+    /// Reads the reply to a command.
+    ///
+    /// # Errors
+    /// [`ReplyError`] where the frame is none.
+    pub fn parse(frame: &Frame<'_>, command: Command) -> Result<Self, ReplyError> {
+        if frame.address != NODE {
+            return Err(ReplyError::Address { expected: NODE, got: frame.address });
+        }
+        if frame.command != command.byte() {
+            return Err(ReplyError::Command { expected: command.byte(), got: frame.command });
+        }
+        match (command, frame.payload) {
+            (Command::Read, [value]) => Ok(Reply::Value(*value)),
+            (Command::Write, [status]) => Ok(Reply::Written(Written::from_byte(*status))),
+            (Command::Position, [b0, b1, b2, b3, b4]) => {
+                Ok(Reply::Position(PositionWord::parse([*b0, *b1, *b2, *b3, *b4])))
+            }
+            (_, payload) => Err(ReplyError::Length { expected: command.reply_bytes(), got: payload.len() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bits::{hex, parse_hex};
+    use proptest::prelude::*;
+
+    /// Reference 6, and the probe of reference 2.
+    #[test]
+    fn the_published_requests() {
+        let cases = [
+            (Request::Read { register: 0x0000 }, "80 01 01 02 00 00 00 7B"),
+            (Request::Read { register: 0x0026 }, "80 01 01 02 00 26 00 55"),
+            (Request::Read { register: 0x00C5 }, "80 01 01 02 00 C5 00 B6"),
+            (Request::Read { register: 0x0105 }, "80 01 01 02 00 05 01 75"),
+            (Request::Read { register: 0x0034 }, "80 01 01 02 00 34 00 47"),
+            (Request::Write { register: 0x002B, value: 0x2A }, "80 01 02 03 00 2B 00 2A 24"),
+            (Request::Write { register: 0x002A, value: 0x07 }, "80 01 02 03 00 2A 00 07 48"),
+            (Request::Write { register: 0x0083, value: 0x80 }, "80 01 02 03 00 83 00 80 76"),
+            (Request::POSITION, "80 01 03 01 00 01 79"),
+            (Request::PROBE, "80 01 01 02 00 01 00 7A"),
+        ];
+        for (request, text) in cases {
+            assert_eq!(hex(&request.emit(ByteOrder::LowFirst)), text);
+            let bytes = parse_hex(text).unwrap();
+            let frame = Frame::parse(&bytes).unwrap();
+            assert_eq!(Request::parse(&frame, ByteOrder::LowFirst), Ok(request), "{text}");
+        }
+        let high = Request::Read { register: 0x0105 }.emit(ByteOrder::HighFirst);
+        assert_eq!(hex(&high), "80 01 01 02 00 01 05 75");
+    }
+
+    /// Reference 6.
+    #[test]
+    fn the_published_replies() {
+        let word = |word| Reply::Position(PositionWord::new(word).unwrap());
+        let cases = [
+            (Reply::Value(0x4B), "80 01 01 01 00 4B 31"),
+            (Reply::Value(0x1C), "80 01 01 01 00 1C 60"),
+            (Reply::Written(Written::Acknowledged), "80 01 02 01 00 90 EB"),
+            (Reply::Written(Written::Refused), "80 01 02 01 00 A0 DB"),
+            (word(0x2469_8000), "80 01 03 05 00 00 80 69 24 00 69"),
+            (word(0), "80 01 03 05 00 00 00 00 00 00 76"),
+            (word(0x1_FFFF_FFFF), "80 01 03 05 00 FF FF FF FF 01 79"),
+            (word(0x2_0000), "80 01 03 05 00 00 00 02 00 00 74"),
+        ];
+        for (reply, text) in cases {
+            assert_eq!(hex(&reply.emit()), text);
+            let bytes = parse_hex(text).unwrap();
+            assert_eq!(Reply::parse(&Frame::parse(&bytes).unwrap(), reply.command()), Ok(reply), "{text}");
+        }
+    }
+
+    /// The probe's frame read either way, and what each encoder answers.
+    #[test]
+    fn the_answer_tells_the_order() {
+        let bytes = Request::PROBE.emit(ByteOrder::LowFirst);
+        let frame = Frame::parse(&bytes).unwrap();
+        assert_eq!(Request::parse(&frame, ByteOrder::LowFirst), Ok(Request::Read { register: 0x0001 }));
+        assert_eq!(Request::parse(&frame, ByteOrder::HighFirst), Ok(Request::Read { register: 0x0100 }));
+        assert_eq!(order_told_by(0x02), Some(ByteOrder::LowFirst));
+        assert_eq!(order_told_by(0x01), Some(ByteOrder::HighFirst));
+        assert_eq!(order_told_by(0x00), None);
+    }
+
+    #[test]
+    fn what_is_not_understood_is_told() {
+        let frame = |command, payload| Frame { address: NODE, command, payload };
+        let order = ByteOrder::LowFirst;
+        assert_eq!(Request::parse(&frame(0x04, &[1]), order), Err(RequestError::Command(0x04)));
+        assert_eq!(
+            Request::parse(&frame(0x01, &[1]), order),
+            Err(RequestError::Length { expected: 2, got: 1 }),
+            "as a reply that came back"
+        );
+        let value = Frame { address: 0x02, command: 0x01, payload: &[1] };
+        assert_eq!(Reply::parse(&value, Command::Read), Err(ReplyError::Address { expected: 1, got: 2 }));
+        let other = frame(0x02, &[1]);
+        assert_eq!(Reply::parse(&other, Command::Read), Err(ReplyError::Command { expected: 1, got: 2 }));
+        // The echo of a request is never taken for its reply: they differ in length.
+        for request in [Request::PROBE, Request::Write { register: 0, value: 0 }, Request::POSITION] {
+            let bytes = request.emit(order);
+            let echo = Frame::parse(&bytes).unwrap();
+            assert!(matches!(Reply::parse(&echo, request.command()), Err(ReplyError::Length { .. })));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn requests_and_replies_survive(register: u16, value: u8, word in 0u64..1 << 40, high_first: bool) {
+            let order = if high_first { ByteOrder::HighFirst } else { ByteOrder::LowFirst };
+            let requests =
+                [Request::Read { register }, Request::Write { register, value }, Request::Position { argument: value }];
+            for request in requests {
+                let bytes = request.emit(order);
+                prop_assert_eq!(Request::parse(&Frame::parse(&bytes).unwrap(), order), Ok(request));
+            }
+            let position = Reply::Position(PositionWord::new(word).unwrap());
+            for reply in [Reply::Value(value), Reply::Written(Written::from_byte(value)), position] {
+                let bytes = reply.emit();
+                prop_assert_eq!(Reply::parse(&Frame::parse(&bytes).unwrap(), reply.command()), Ok(reply));
+            }
+        }
+    }
+}

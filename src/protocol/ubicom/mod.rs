@@ -1,0 +1,37 @@
+//! UBICOM: the serial protocol on the configuration pin of POSITAL kit encoders (manual IXARC kit encoders with BiSS C
+//! v4.6, chapter 5; the project's reference where a section is named so). What the manual leaves open is marked `U`.
+//!
+//! ```text
+//! 80 ADDRESS COMMAND LEN-low LEN-high payload… CHK        CHK = NOT(sum of all bytes before it)
+//! ```
+
+mod frame;
+mod message;
+mod position;
+mod receiver;
+
+use std::time::Duration;
+
+pub use frame::{Frame, FrameError, MAX_PAYLOAD, NODE, SYNC};
+pub use message::{Command, Reply, ReplyError, Request, RequestError, Written, order_told_by};
+pub use position::PositionWord;
+pub use receiver::Receiver;
+
+use crate::units::{Baud, CharacterFormat, Parity};
+
+/// 115200 bit/s.
+const BAUD: Baud = match Baud::new(115_200) {
+    Some(baud) => baud,
+    None => Baud::B9600,
+};
+
+/// How the line is set: 115200 8N1.
+pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
+/// Bits of a character: start, eight of data, stop.
+pub const CHARACTER_BITS: u64 = 10;
+/// So long a reply may take (`U`).
+pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
+/// So long an encoder may stay silent while it calibrates (`U`).
+pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
+/// A frame that pauses for so long is over (`U`).
+pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -1,0 +1,182 @@
+//! Frames out of a stream of bytes. 80h may stand within a payload, so that it begins a frame only where none is under
+//! way: after a whole frame, a damaged one, or silence (reference 2). How long silence has to last is the caller's
+//! matter: [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT).
+
+use super::frame::{Frame, MAX_PAYLOAD, SYNC};
+
+/// What has come and is no whole frame yet.
+#[derive(Clone, Debug)]
+pub struct Receiver {
+    node: u8,
+    bytes: Vec<u8>,
+    skipped: u64,
+}
+
+/// What the first bytes are.
+enum Head {
+    /// More has to come.
+    Partial,
+    /// A frame of that length.
+    Frame(usize),
+    /// No frame begins here.
+    Other,
+}
+
+impl Receiver {
+    /// For frames of the encoder with this address.
+    pub const fn new(node: u8) -> Self {
+        Receiver { node, bytes: Vec::new(), skipped: 0 }
+    }
+
+    /// Bytes that have come.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend(bytes);
+    }
+
+    /// The next whole frame. Bytes before it that belong to none are skipped.
+    pub fn next_frame(&mut self) -> Option<Vec<u8>> {
+        loop {
+            match self.head() {
+                Head::Partial => return None,
+                Head::Frame(length) => return Some(self.bytes.drain(..length).collect()),
+                Head::Other => self.skip(),
+            }
+        }
+    }
+
+    /// The line was silent: what has begun will not be completed. A frame that stands within it is found all the same.
+    pub fn silence(&mut self) -> Option<Vec<u8>> {
+        loop {
+            if let Some(frame) = self.next_frame() {
+                return Some(frame);
+            }
+            if self.bytes.is_empty() {
+                return None;
+            }
+            self.skip();
+        }
+    }
+
+    /// A frame has begun and is not complete.
+    pub fn is_waiting(&self) -> bool {
+        !self.bytes.is_empty()
+    }
+
+    /// Bytes so far that belonged to no frame.
+    pub const fn skipped(&self) -> u64 {
+        self.skipped
+    }
+
+    fn head(&self) -> Head {
+        match self.bytes.as_slice() {
+            [] | [SYNC] => Head::Partial,
+            [SYNC, node, ..] if *node != self.node => Head::Other,
+            [SYNC, _, _, low, high, ..] => {
+                let payload = usize::from(u16::from_le_bytes([*low, *high]));
+                match self.bytes.get(..payload + Frame::OVERHEAD) {
+                    _ if payload > MAX_PAYLOAD => Head::Other,
+                    None => Head::Partial,
+                    Some(frame) if Frame::parse(frame).is_ok() => Head::Frame(frame.len()),
+                    Some(_) => Head::Other,
+                }
+            }
+            [SYNC, ..] => Head::Partial,
+            _ => Head::Other,
+        }
+    }
+
+    fn skip(&mut self) {
+        // At least one byte; then up to what may begin a frame.
+        let rest = self.bytes.get(1..).unwrap_or_default();
+        let count = 1 + rest.iter().position(|byte| *byte == SYNC).unwrap_or(rest.len());
+        self.bytes.drain(..count);
+        self.skipped += count as u64;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::NODE;
+    use super::*;
+    use crate::bits::{hex, parse_hex};
+    use proptest::prelude::*;
+
+    const READ: &str = "80 01 01 02 00 26 00 55";
+    const VALUE: &str = "80 01 01 01 00 4B 31";
+    /// 80 01 stands within its payload.
+    const TRICKY: &str = "80 01 03 05 00 80 01 01 01 00 F3";
+
+    fn frames(receiver: &mut Receiver, text: &str) -> Vec<String> {
+        receiver.push(&parse_hex(text).unwrap());
+        std::iter::from_fn(|| receiver.next_frame()).map(|frame| hex(&frame)).collect()
+    }
+
+    #[test]
+    fn frames_are_found_in_any_portions() {
+        let text = [READ, VALUE, TRICKY].join(" ");
+        let bytes = parse_hex(&text).unwrap();
+        for size in 1..=bytes.len() {
+            let mut receiver = Receiver::new(NODE);
+            let mut found = Vec::new();
+            for portion in bytes.chunks(size) {
+                found.extend(frames(&mut receiver, &hex(portion)));
+            }
+            assert_eq!(found, [READ, VALUE, TRICKY], "portions of {size}");
+            assert!(!receiver.is_waiting() && receiver.skipped() == 0);
+        }
+    }
+
+    #[test]
+    fn after_damage_the_next_frame_is_found() {
+        let mut receiver = Receiver::new(NODE);
+        assert_eq!(frames(&mut receiver, &format!("55 80 80 {VALUE}")), [VALUE], "noise before");
+        assert_eq!(receiver.skipped(), 3);
+        let damaged = VALUE.replace("4B", "4A");
+        assert_eq!(frames(&mut receiver, &format!("{damaged} {READ}")), [READ], "a wrong checksum");
+        assert_eq!(frames(&mut receiver, &format!("80 01 01 FF FF {READ}")), [READ], "an impossible length");
+        assert_eq!(frames(&mut receiver, "80 02 01 01 00 4B 30"), [""; 0], "another node's");
+        assert_eq!(frames(&mut receiver, READ), [READ]);
+    }
+
+    /// Reference 6: LEN 3 with two bytes never ends.
+    #[test]
+    fn silence_ends_what_has_begun() {
+        let mut receiver = Receiver::new(NODE);
+        assert_eq!(frames(&mut receiver, "80 01 01 03 00 26 00 54"), [""; 0]);
+        assert!(receiver.is_waiting());
+        assert_eq!(receiver.silence(), None);
+        assert!(!receiver.is_waiting());
+        // The false beginning hides a whole frame until then.
+        assert_eq!(frames(&mut receiver, &format!("80 01 01 3F 00 {VALUE} {READ}")), [""; 0]);
+        assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(VALUE));
+        assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(READ));
+        assert_eq!(receiver.silence(), None);
+    }
+
+    #[test]
+    fn every_cut_is_waited_for_and_dropped() {
+        let bytes = parse_hex(TRICKY).unwrap();
+        for cut in 1..bytes.len() {
+            let mut receiver = Receiver::new(NODE);
+            receiver.push(&bytes[..cut]);
+            assert_eq!(receiver.next_frame(), None, "cut at {cut}");
+            assert_eq!(receiver.silence(), None, "cut at {cut}");
+            assert_eq!(frames(&mut receiver, VALUE), [VALUE]);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn noise_before_a_frame_does_not_hide_it(noise in proptest::collection::vec(any::<u8>(), 0..40)) {
+            let mut receiver = Receiver::new(NODE);
+            receiver.push(&noise);
+            let mut found: Vec<Vec<u8>> = std::iter::from_fn(|| receiver.next_frame()).collect();
+            found.extend(std::iter::from_fn(|| receiver.silence()));
+            receiver.push(&parse_hex(VALUE).unwrap());
+            found.extend(std::iter::from_fn(|| receiver.next_frame()));
+            prop_assert_eq!(found.last().map(|frame| hex(frame)), Some(VALUE.to_owned()));
+            let bytes: usize = found.iter().map(Vec::len).sum();
+            prop_assert_eq!(bytes as u64 + receiver.skipped(), noise.len() as u64 + 7);
+        }
+    }
+}
