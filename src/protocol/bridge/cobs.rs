@@ -1,0 +1,128 @@
+//! Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999): bytes without a 00
+//! among them, so that 00 can end a packet.
+
+/// Bytes that one code byte can be followed by.
+const BLOCK: usize = 254;
+
+/// Why bytes are no stuffed ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CobsError {
+    /// 00 ends a packet and never stands within one.
+    #[error("00 stands within the packet, at byte {0}")]
+    Zero(usize),
+    /// A code byte asks for more bytes than there are.
+    #[error("the packet ends {0} bytes too early")]
+    Short(usize),
+}
+
+/// Stuffs bytes, without the 00 that ends a packet.
+pub fn encode(bytes: &[u8]) -> Vec<u8> {
+    let mut stuffed = Vec::with_capacity(bytes.len() + bytes.len() / BLOCK + 1);
+    // A last block of full length needs no empty one behind it.
+    let mut open = true;
+    for (at, run) in bytes.split(|byte| *byte == 0).enumerate() {
+        if at > 0 && !open {
+            // The 00 before this run follows a full block: an empty block stands for it.
+            stuffed.push(1);
+        }
+        open = true;
+        let mut rest = run;
+        while let Some((block, more)) = rest.split_at_checked(BLOCK) {
+            stuffed.push(0xFF);
+            stuffed.extend(block);
+            (rest, open) = (more, !more.is_empty());
+        }
+        if open {
+            // Below 255.
+            stuffed.push(rest.len() as u8 + 1);
+            stuffed.extend(rest);
+        }
+    }
+    stuffed
+}
+
+/// Takes the stuffing out. The 00 that ends a packet is not among the bytes.
+///
+/// # Errors
+/// [`CobsError`].
+pub fn decode(stuffed: &[u8]) -> Result<Vec<u8>, CobsError> {
+    if let Some(at) = stuffed.iter().position(|byte| *byte == 0) {
+        return Err(CobsError::Zero(at));
+    }
+    let mut bytes = Vec::with_capacity(stuffed.len());
+    let mut rest = stuffed;
+    while let Some((code, behind)) = rest.split_first() {
+        let length = usize::from(*code) - 1;
+        let short = CobsError::Short(length.saturating_sub(behind.len()));
+        let (block, more) = behind.split_at_checked(length).ok_or(short)?;
+        bytes.extend(block);
+        if *code != 0xFF && !more.is_empty() {
+            bytes.push(0);
+        }
+        rest = more;
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The examples of the usual description of COBS, without their 00 at the end.
+    #[test]
+    fn the_published_examples() {
+        let counting = |first: u8, count: u8| (0..count).map(|at| first.wrapping_add(at)).collect::<Vec<u8>>();
+        let cases = [
+            (vec![], vec![0x01]),
+            (vec![0x00], vec![0x01, 0x01]),
+            (vec![0x00, 0x00], vec![0x01, 0x01, 0x01]),
+            (vec![0x00, 0x11, 0x00], vec![0x01, 0x02, 0x11, 0x01]),
+            (vec![0x11, 0x22, 0x00, 0x33], vec![0x03, 0x11, 0x22, 0x02, 0x33]),
+            (vec![0x11, 0x22, 0x33, 0x44], vec![0x05, 0x11, 0x22, 0x33, 0x44]),
+            (vec![0x11, 0x00, 0x00, 0x00], vec![0x02, 0x11, 0x01, 0x01, 0x01]),
+            (counting(1, 254), [vec![0xFF], counting(1, 254)].concat()),
+            ([vec![0], counting(1, 254)].concat(), [vec![0x01, 0xFF], counting(1, 254)].concat()),
+            (counting(1, 255), [vec![0xFF], counting(1, 254), vec![0x02, 0xFF]].concat()),
+            ([counting(2, 254), vec![0]].concat(), [vec![0xFF], counting(2, 254), vec![0x01, 0x01]].concat()),
+            ([counting(3, 253), vec![0, 1]].concat(), [vec![0xFE], counting(3, 253), vec![0x02, 0x01]].concat()),
+        ];
+        for (bytes, stuffed) in cases {
+            assert_eq!(encode(&bytes), stuffed);
+            assert_eq!(decode(&stuffed), Ok(bytes));
+        }
+        // An encoder may end a full block with an empty one.
+        let longer = [vec![0xFF], counting(1, 254), vec![0x01]].concat();
+        assert_eq!(decode(&longer), Ok(counting(1, 254)));
+    }
+
+    #[test]
+    fn what_is_not_stuffed_is_refused() {
+        assert_eq!(decode(&[0x03, 0x11, 0x00]), Err(CobsError::Zero(2)));
+        assert_eq!(decode(&[0x03, 0x11]), Err(CobsError::Short(1)));
+        assert_eq!(decode(&[0xFF]), Err(CobsError::Short(254)));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_stuffed_comes_back(bytes in proptest::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..1200)) {
+            let stuffed = encode(&bytes);
+            prop_assert!(!stuffed.contains(&0) && stuffed.len() <= bytes.len() + bytes.len() / 254 + 1);
+            prop_assert_eq!(decode(&stuffed), Ok(bytes));
+        }
+
+        #[test]
+        fn full_blocks_come_back(length in 250usize..260, zero in 0usize..520) {
+            let mut bytes = vec![7; 2 * length];
+            if let Some(byte) = bytes.get_mut(zero) {
+                *byte = 0;
+            }
+            prop_assert_eq!(decode(&encode(&bytes)), Ok(bytes));
+        }
+
+        #[test]
+        fn no_bytes_panic(bytes: Vec<u8>) {
+            let _ = decode(&bytes);
+        }
+    }
+}

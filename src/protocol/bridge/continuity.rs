@@ -1,0 +1,73 @@
+//! Whether the packets of a stream follow each other without a gap. A gap is never bridged silently (reference 3).
+
+use super::data::Data;
+
+/// Where a stream stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Continuity {
+    next: u32,
+}
+
+/// What is missing before a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gap {
+    /// Nothing.
+    None,
+    /// So many samples.
+    Missing(u32),
+    /// The packet's samples come before those that were there already: the stream was started anew, or the packet is
+    /// late.
+    Backwards,
+}
+
+impl Continuity {
+    /// At the start of a stream, whose first sample is number 0.
+    pub const fn at_start() -> Self {
+        Continuity { next: 0 }
+    }
+
+    /// What is missing before these samples; the next packet is expected behind them.
+    pub fn follow(&mut self, data: &Data) -> Gap {
+        let (first, count, lost) = data.extent();
+        let ahead = first.wrapping_sub(self.next);
+        // A packet has at most 255 samples.
+        self.next = first.wrapping_add(u32::try_from(count).unwrap_or(0));
+        match ahead.max(lost.into()) {
+            0 => Gap::None,
+            _ if ahead > u32::MAX / 2 => Gap::Backwards,
+            missing => Gap::Missing(missing),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::data::AnalogData;
+    use super::*;
+
+    fn data(first_index: u32, count: usize, lost: u16) -> Data {
+        Data::Analog(AnalogData { first_index, t0_us: 0, lost, samples: vec![(0, 0); count] })
+    }
+
+    #[test]
+    fn gaps_are_found_whoever_tells_them() {
+        let mut stream = Continuity::at_start();
+        let cases = [
+            (data(0, 10, 0), Gap::None),
+            (data(10, 10, 0), Gap::None),
+            (data(25, 5, 0), Gap::Missing(5)),
+            (data(30, 5, 3), Gap::Missing(3)),
+            (data(38, 2, 3), Gap::Missing(3)),
+            (data(50, 2, 3), Gap::Missing(10)),
+            (data(0, 2, 0), Gap::Backwards),
+            (data(2, 0, 0), Gap::None),
+            (data(2, 1, 0), Gap::None),
+            (data(u32::MAX - 1, 4, 0), Gap::Backwards),
+            (data(2, 1, 0), Gap::None),
+        ];
+        for (data, gap) in cases {
+            assert_eq!(stream.follow(&data), gap, "{:?}", data.extent());
+        }
+        assert_eq!(Continuity::at_start().follow(&data(7, 1, 0)), Gap::Missing(7), "the first packet was lost");
+    }
+}

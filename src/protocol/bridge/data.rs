@@ -1,0 +1,164 @@
+//! What streams bring, without being asked (reference 3).
+
+use super::fields::{BodyError, Fields};
+use super::packet::Packet;
+use super::reply::BissStatus;
+
+/// Samples of a stream.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Data {
+    /// Words of SSI.
+    Ssi(SsiData),
+    /// Frames of BiSS.
+    Biss(BissData),
+    /// Analogue samples.
+    Analog(AnalogData),
+}
+
+/// Words of SSI, equally far apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SsiData {
+    /// Number of the first, counted from the start of the stream, modulo 2³².
+    pub first_index: u32,
+    /// When the first was taken, microseconds of the adapter's clock.
+    pub t0_us: u64,
+    /// Microseconds from one to the next.
+    pub period_us: u32,
+    /// Samples that the adapter has lost since its last packet.
+    pub lost: u16,
+    /// Bytes of a value on the wire, 1…8.
+    pub width: u8,
+    /// Right-justified; at most 255.
+    pub values: Vec<u64>,
+}
+
+/// Frames of BiSS, equally far apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BissData {
+    /// Number of the first, counted from the start of the stream, modulo 2³².
+    pub first_index: u32,
+    /// When the first was taken, microseconds of the adapter's clock.
+    pub t0_us: u64,
+    /// Microseconds from one to the next.
+    pub period_us: u32,
+    /// Samples that the adapter has lost since its last packet.
+    pub lost: u16,
+    /// Bytes of a value on the wire without its status, 1…8.
+    pub width: u8,
+    /// Data and CRC right-justified, with the status of each; at most 255.
+    pub values: Vec<(BissStatus, u64)>,
+}
+
+/// Analogue samples, as far apart as their configuration says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnalogData {
+    /// Number of the first, counted from the start of the stream, modulo 2³².
+    pub first_index: u32,
+    /// When the first was taken, microseconds of the adapter's clock.
+    pub t0_us: u64,
+    /// Samples that the adapter has lost since its last packet.
+    pub lost: u16,
+    /// Sine and cosine in parts of the full scale; at most 255.
+    pub samples: Vec<(i16, i16)>,
+}
+
+impl Data {
+    const SSI: u8 = 0x93;
+    const BISS: u8 = 0xA5;
+    const ANALOG: u8 = 0xB2;
+
+    /// Number of the first sample, how many there are, and how many the adapter has lost before them.
+    pub const fn extent(&self) -> (u32, usize, u16) {
+        match self {
+            Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),
+            Data::Biss(data) => (data.first_index, data.values.len(), data.lost),
+            Data::Analog(data) => (data.first_index, data.samples.len(), data.lost),
+        }
+    }
+
+    /// `None` where the packet is none of a stream.
+    pub(super) fn parse(packet: &Packet) -> Result<Option<Self>, BodyError> {
+        let mut fields = Fields::new(packet.op, &packet.body);
+        let data = match packet.op {
+            Self::SSI => {
+                let (first_index, t0_us, period_us, lost) =
+                    (fields.u32()?, fields.u64()?, fields.u32()?, fields.u16()?);
+                let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
+                let values = (0..count).map(|_| fields.wide(width)).collect::<Result<_, _>>()?;
+                Data::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
+            }
+            Self::BISS => {
+                let (first_index, t0_us, period_us, lost) =
+                    (fields.u32()?, fields.u64()?, fields.u32()?, fields.u16()?);
+                let (width, count) = (width(&mut fields, packet.op)?, fields.u8()?);
+                let value = |fields: &mut Fields<'_>| Ok((BissStatus::new(fields.u8()?), fields.wide(width)?));
+                let values = (0..count).map(|_| value(&mut fields)).collect::<Result<_, _>>()?;
+                Data::Biss(BissData { first_index, t0_us, period_us, lost, width, values })
+            }
+            Self::ANALOG => {
+                let (first_index, t0_us, lost, count) = (fields.u32()?, fields.u64()?, fields.u16()?, fields.u8()?);
+                let sample = |fields: &mut Fields<'_>| Ok((fields.i16()?, fields.i16()?));
+                let samples = (0..count).map(|_| sample(&mut fields)).collect::<Result<_, _>>()?;
+                Data::Analog(AnalogData { first_index, t0_us, lost, samples })
+            }
+            _ => return Ok(None),
+        };
+        fields.end(Some(data))
+    }
+
+    pub(super) fn emit(&self, seq: u8) -> Packet {
+        let mut body = Vec::new();
+        let op = match self {
+            Data::Ssi(data) => {
+                head(&mut body, data.first_index, data.t0_us);
+                body.extend(data.period_us.to_le_bytes());
+                body.extend(data.lost.to_le_bytes());
+                body.extend([data.width, count(data.values.len())]);
+                data.values.iter().for_each(|value| push(&mut body, *value, data.width));
+                Self::SSI
+            }
+            Data::Biss(data) => {
+                head(&mut body, data.first_index, data.t0_us);
+                body.extend(data.period_us.to_le_bytes());
+                body.extend(data.lost.to_le_bytes());
+                body.extend([data.width, count(data.values.len())]);
+                for (status, value) in &data.values {
+                    body.push(status.byte());
+                    push(&mut body, *value, data.width);
+                }
+                Self::BISS
+            }
+            Data::Analog(data) => {
+                head(&mut body, data.first_index, data.t0_us);
+                body.extend(data.lost.to_le_bytes());
+                body.push(count(data.samples.len()));
+                for (sine, cosine) in &data.samples {
+                    body.extend(sine.to_le_bytes());
+                    body.extend(cosine.to_le_bytes());
+                }
+                Self::ANALOG
+            }
+        };
+        Packet { seq, op, body }
+    }
+}
+
+fn width(fields: &mut Fields<'_>, op: u8) -> Result<u8, BodyError> {
+    match fields.u8()? {
+        width @ 1..=8 => Ok(width),
+        got => Err(BodyError::Value { op, field: "width", got }),
+    }
+}
+
+fn head(body: &mut Vec<u8>, first_index: u32, t0_us: u64) {
+    body.extend(first_index.to_le_bytes());
+    body.extend(t0_us.to_le_bytes());
+}
+
+fn count(values: usize) -> u8 {
+    u8::try_from(values).unwrap_or(u8::MAX)
+}
+
+fn push(body: &mut Vec<u8>, value: u64, width: u8) {
+    body.extend(value.to_le_bytes().iter().take(width.into()));
+}

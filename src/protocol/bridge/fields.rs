@@ -1,0 +1,130 @@
+//! Bodies field by field: integers with their low byte first, texts with their length before them.
+
+/// Why a body is not that of its operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BodyError {
+    /// Another length than the operation has.
+    #[error("operation {op:02X}h: a body of {got} bytes is too short or too long")]
+    Length {
+        /// The operation.
+        op: u8,
+        /// Bytes there were.
+        got: usize,
+    },
+    /// Not an operation of this version.
+    #[error("{0:02X}h is no operation")]
+    Operation(u8),
+    /// A value that its field cannot have.
+    #[error("operation {op:02X}h: {field} cannot be {got}")]
+    Value {
+        /// The operation.
+        op: u8,
+        /// Which field.
+        field: &'static str,
+        /// What stood there.
+        got: u8,
+    },
+    /// Bytes that are no UTF-8.
+    #[error("operation {op:02X}h: a text is not UTF-8")]
+    Text {
+        /// The operation.
+        op: u8,
+    },
+    /// The adapter speaks another version of the protocol.
+    #[error("the adapter speaks version {got} of the bridge protocol, this program version {expected}")]
+    Version {
+        /// This program's.
+        expected: u8,
+        /// The adapter's.
+        got: u8,
+    },
+}
+
+/// What is left of a body to be read.
+pub(super) struct Fields<'a> {
+    op: u8,
+    whole: usize,
+    rest: &'a [u8],
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(op: u8, body: &'a [u8]) -> Self {
+        Fields { op, whole: body.len(), rest: body }
+    }
+
+    pub(super) fn u8(&mut self) -> Result<u8, BodyError> {
+        self.array().map(|[byte]| byte)
+    }
+
+    pub(super) fn u16(&mut self) -> Result<u16, BodyError> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    pub(super) fn i16(&mut self) -> Result<i16, BodyError> {
+        self.array().map(i16::from_le_bytes)
+    }
+
+    pub(super) fn u32(&mut self) -> Result<u32, BodyError> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Result<u64, BodyError> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    /// 0 or 1.
+    pub(super) fn switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
+        match self.u8()? {
+            0 => Ok(false),
+            1 => Ok(true),
+            got => Err(BodyError::Value { op: self.op, field, got }),
+        }
+    }
+
+    /// A number of `width` bytes, at most eight.
+    pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
+        let bytes = self.bytes(width.into())?;
+        Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
+    }
+
+    pub(super) fn text(&mut self) -> Result<String, BodyError> {
+        let length = self.u8()?;
+        let bytes = self.bytes(length.into())?;
+        let text = std::str::from_utf8(bytes).map_err(|_| BodyError::Text { op: self.op })?;
+        Ok(text.to_owned())
+    }
+
+    /// Everything that is left.
+    pub(super) fn tail(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.rest)
+    }
+
+    /// Nothing may be left.
+    pub(super) fn end<T>(self, value: T) -> Result<T, BodyError> {
+        if self.rest.is_empty() { Ok(value) } else { Err(self.length()) }
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], BodyError> {
+        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or_else(|| self.length())?;
+        self.rest = rest;
+        Ok(*array)
+    }
+
+    fn bytes(&mut self, count: usize) -> Result<&'a [u8], BodyError> {
+        let (bytes, rest) = self.rest.split_at_checked(count).ok_or_else(|| self.length())?;
+        self.rest = rest;
+        Ok(bytes)
+    }
+
+    fn length(&self) -> BodyError {
+        BodyError::Length { op: self.op, got: self.whole }
+    }
+}
+
+/// Appends a text of at most 255 bytes with its length; what is longer is cut between two characters.
+pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
+    let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
+    // At most 255.
+    body.push(end as u8);
+    body.extend(text.bytes().take(end));
+}

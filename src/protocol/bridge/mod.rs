@@ -1,0 +1,33 @@
+//! The bridge protocol, version 1: how a small open adapter gives a PC the clocked buses SSI and BiSS, analogue signals
+//! and a serial line (the project's own reference, `protocol/bridge.md`). Integers have their low byte first.
+//!
+//! ```text
+//! COBS( seq  op  body…  crc16 ) 00
+//! ```
+
+mod cobs;
+mod continuity;
+mod data;
+mod fields;
+mod packet;
+mod receiver;
+mod reply;
+mod request;
+#[cfg(test)]
+mod vectors;
+
+use std::time::Duration;
+
+pub use cobs::{CobsError, decode as cobs_decode, encode as cobs_encode};
+pub use continuity::{Continuity, Gap};
+pub use data::{AnalogData, BissData, Data, SsiData};
+pub use fields::BodyError;
+pub use packet::{MAX_BODY, Packet, PacketError, crc16};
+pub use receiver::Receiver;
+pub use reply::{BissStatus, Capabilities, ErrorCode, Hello, Message, Reply};
+pub use request::{Operation, Request, SsiFlags};
+
+/// The version of the protocol that this program speaks.
+pub const VERSION: u8 = 1;
+/// An unanswered request is repeated once after this, and given up after as much again.
+pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

@@ -1,0 +1,143 @@
+//! The packet: sequence number, operation, body, checksum (reference 1).
+
+use super::cobs::{self, CobsError};
+
+/// Longest body.
+pub const MAX_BODY: usize = 512;
+
+/// A packet whose checksum was right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Packet {
+    /// Chosen by the host and repeated in the reply; what comes unasked has a count of its own.
+    pub seq: u8,
+    /// The operation; in a reply its bit 7 is set.
+    pub op: u8,
+    /// Up to [`MAX_BODY`] bytes.
+    pub body: Vec<u8>,
+}
+
+/// Why bytes are no packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PacketError {
+    /// The stuffing is broken.
+    #[error(transparent)]
+    Cobs(#[from] CobsError),
+    /// Fewer than the four bytes that every packet has, or more than the longest.
+    #[error("{0} bytes are not the length of a packet")]
+    Length(usize),
+    /// The checksum does not fit.
+    #[error("CRC {got:04X} where {expected:04X} was expected")]
+    Crc {
+        /// What the other bytes give.
+        expected: u16,
+        /// What stood there.
+        got: u16,
+    },
+}
+
+impl Packet {
+    /// Bytes around the body.
+    const OVERHEAD: usize = 4;
+    /// A stuffed packet never has more.
+    pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
+
+    /// Reads what stood between two 00.
+    ///
+    /// # Errors
+    /// [`PacketError`].
+    pub fn parse(stuffed: &[u8]) -> Result<Self, PacketError> {
+        let mut bytes = cobs::decode(stuffed)?;
+        let length = bytes.len();
+        if !(Self::OVERHEAD..=MAX_BODY + Self::OVERHEAD).contains(&length) {
+            return Err(PacketError::Length(length));
+        }
+        let Some((content, [low, high])) = bytes.split_last_chunk::<2>() else {
+            return Err(PacketError::Length(length));
+        };
+        let (expected, got) = (crc16(content), u16::from_le_bytes([*low, *high]));
+        if expected != got {
+            return Err(PacketError::Crc { expected, got });
+        }
+        let [seq, op, ..] = content else { return Err(PacketError::Length(length)) };
+        let (seq, op) = (*seq, *op);
+        bytes.truncate(length - 2);
+        bytes.drain(..2);
+        Ok(Packet { seq, op, body: bytes })
+    }
+
+    /// The stuffed bytes and the 00 that ends them.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
+        bytes.extend([self.seq, self.op]);
+        bytes.extend(&self.body);
+        bytes.extend(crc16(&bytes).to_le_bytes());
+        let mut stuffed = cobs::encode(&bytes);
+        stuffed.push(0);
+        stuffed
+    }
+}
+
+/// CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, the highest bit first.
+pub fn crc16(bytes: &[u8]) -> u16 {
+    bytes.iter().fold(0xFFFF, |crc: u16, byte| {
+        let [high, _] = crc.to_be_bytes();
+        crc << 8 ^ TABLE.get(usize::from(high ^ byte)).copied().unwrap_or(0)
+    })
+}
+
+/// What eight bits at the register's upper end leave behind.
+const TABLE: [u16; 256] = table();
+
+#[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]
+const fn table() -> [u16; 256] {
+    let mut table = [0; 256];
+    let mut index = 0;
+    while index < 256 {
+        let mut register = (index as u16) << 8;
+        let mut bit = 0;
+        while bit < 8 {
+            register = if register & 0x8000 == 0 { register << 1 } else { register << 1 ^ 0x1021 };
+            bit += 1;
+        }
+        table[index] = register;
+        index += 1;
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The check value of the catalogue of parametrised CRC algorithms.
+    #[test]
+    fn the_published_check_value() {
+        assert_eq!(crc16(b"123456789"), 0x29B1);
+        assert_eq!(crc16(b""), 0xFFFF);
+    }
+
+    #[test]
+    fn what_is_no_packet_is_refused() {
+        assert_eq!(Packet::parse(&[]), Err(PacketError::Length(0)));
+        assert_eq!(Packet::parse(&cobs::encode(&[0xFF, 0xFF])), Err(PacketError::Length(2)));
+        let long = Packet { seq: 0, op: 1, body: vec![7; MAX_BODY + 1] }.emit();
+        assert_eq!(Packet::parse(&long[..long.len() - 1]), Err(PacketError::Length(517)));
+        assert_eq!(Packet::parse(&[9, 1]), Err(PacketError::Cobs(CobsError::Short(7))));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_emitted_is_parsed(seq: u8, op: u8, body in proptest::collection::vec(any::<u8>(), 0..=MAX_BODY)) {
+            let packet = Packet { seq, op, body };
+            let bytes = packet.emit();
+            prop_assert!(bytes.len() <= Packet::MAX_STUFFED + 1);
+            prop_assert_eq!(Packet::parse(&bytes[..bytes.len() - 1]), Ok(packet));
+        }
+
+        #[test]
+        fn no_bytes_panic(bytes: Vec<u8>) {
+            let _ = Packet::parse(&bytes);
+        }
+    }
+}

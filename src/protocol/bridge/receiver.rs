@@ -1,0 +1,120 @@
+//! Packets out of a stream of bytes. What is broken is dropped and counted (reference 1).
+
+use super::packet::{Packet, PacketError};
+
+/// What has come and is no whole packet yet.
+#[derive(Clone, Debug, Default)]
+pub struct Receiver {
+    bytes: Vec<u8>,
+    /// Where the search for the next 00 goes on.
+    searched: usize,
+    /// The packet under way is too long to be one: its bytes are let go until it ends.
+    overlong: bool,
+    dropped: u64,
+}
+
+impl Receiver {
+    /// Bytes that have come.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend(bytes);
+    }
+
+    /// The next whole packet.
+    pub fn next_packet(&mut self) -> Option<Packet> {
+        loop {
+            let behind = self.bytes.get(self.searched..).unwrap_or_default();
+            let Some(end) = behind.iter().position(|byte| *byte == 0) else {
+                self.searched = self.bytes.len();
+                self.overlong |= self.bytes.len() > Packet::MAX_STUFFED;
+                if self.overlong {
+                    (self.bytes, self.searched) = (Vec::new(), 0);
+                }
+                return None;
+            };
+            let end = self.searched + end;
+            let parsed = match self.bytes.get(..end) {
+                Some([]) if !self.overlong => None,
+                Some(stuffed) if !self.overlong && end <= Packet::MAX_STUFFED => Some(Packet::parse(stuffed)),
+                _ => Some(Err(PacketError::Length(end))),
+            };
+            self.bytes.drain(..=end);
+            (self.searched, self.overlong) = (0, false);
+            match parsed {
+                Some(Ok(packet)) => return Some(packet),
+                Some(Err(_)) => self.dropped += 1,
+                // Nothing between two 00.
+                None => {}
+            }
+        }
+    }
+
+    /// Broken packets so far.
+    pub const fn dropped(&self) -> u64 {
+        self.dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn packets(receiver: &mut Receiver, bytes: &[u8]) -> Vec<Packet> {
+        receiver.push(bytes);
+        std::iter::from_fn(|| receiver.next_packet()).collect()
+    }
+
+    fn packet(seq: u8, length: usize) -> Packet {
+        Packet { seq, op: 0x93, body: vec![seq; length] }
+    }
+
+    #[test]
+    fn packets_are_found_in_any_portions() {
+        let sent = [packet(0, 0), packet(1, 20), packet(0, 300), packet(2, 512)];
+        let mut bytes = vec![0, 0];
+        sent.iter().for_each(|packet| bytes.extend(packet.emit()));
+        for size in [1, 2, 3, 7, 64, 519, bytes.len()] {
+            let mut receiver = Receiver::default();
+            let found: Vec<Packet> = bytes.chunks(size).flat_map(|part| packets(&mut receiver, part)).collect();
+            assert_eq!(found, sent, "portions of {size}");
+            assert_eq!(receiver.dropped(), 0);
+        }
+    }
+
+    #[test]
+    fn what_is_broken_is_dropped_and_counted() {
+        let mut receiver = Receiver::default();
+        let good = packet(1, 20).emit();
+        let mut damaged = good.clone();
+        damaged[5] ^= 2;
+        assert_eq!(packets(&mut receiver, &[damaged, good.clone()].concat()), [packet(1, 20)]);
+        assert_eq!(receiver.dropped(), 1);
+        // The end of one packet is lost, and the beginning of the next.
+        let cut = [&good[..10], &good[4..], &good].concat();
+        assert_eq!(packets(&mut receiver, &cut), [packet(1, 20)]);
+        assert_eq!(receiver.dropped(), 2);
+    }
+
+    #[test]
+    fn noise_without_an_end_is_not_kept() {
+        let mut receiver = Receiver::default();
+        for _ in 0..100 {
+            assert_eq!(packets(&mut receiver, &[0x55; 100]), []);
+            assert!(receiver.bytes.len() <= Packet::MAX_STUFFED + 100);
+        }
+        let good = packet(1, 20).emit();
+        assert_eq!(packets(&mut receiver, &good), [], "the first 00 ends the noise");
+        assert_eq!(receiver.dropped(), 1);
+        assert_eq!(packets(&mut receiver, &good), [packet(1, 20)]);
+    }
+
+    proptest! {
+        #[test]
+        fn after_noise_and_a_zero_packets_are_found(noise: Vec<u8>) {
+            let mut receiver = Receiver::default();
+            let bytes = [noise, vec![0], packet(3, 9).emit()].concat();
+            let found = packets(&mut receiver, &bytes);
+            prop_assert_eq!(found.last(), Some(&packet(3, 9)));
+        }
+    }
+}
