@@ -45,8 +45,17 @@ pub struct Commutation {
     readings: [Option<Reading>; 3],
     /// What was read last: there the shaft still is, as far as anybody knows.
     last: Option<Slot>,
-    /// What the reading is for that is under way.
-    asked: Option<Slot>,
+    /// The reading that is under way.
+    asked: Option<Asked>,
+}
+
+/// A reading that is under way: what it is for, and how it was asked for, whatever is chosen or typed meanwhile.
+#[derive(Debug)]
+struct Asked {
+    slot: Slot,
+    source: Source,
+    /// As typed.
+    phase: String,
 }
 
 /// A position at rest.
@@ -92,7 +101,12 @@ impl Commutation {
 
     /// What is being read.
     pub fn asked(&self) -> Option<Slot> {
-        self.asked
+        self.asked.as_ref().map(|asked| asked.slot)
+    }
+
+    /// The encoder is asked for a position at rest.
+    fn ask(&mut self, slot: Slot) {
+        self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
 
     fn note(&mut self, slot: Slot, reading: Reading) {
@@ -114,9 +128,9 @@ impl Commutation {
 
     /// The encoder was read at rest: is it for a slot?
     pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
-        let Some(slot) = self.asked.take() else { return };
-        match self.reading_of(rest, geometry) {
-            Ok(reading) => self.note(slot, reading),
+        let Some(asked) = self.asked.take() else { return };
+        match asked.reading(rest, geometry) {
+            Ok(reading) => self.note(asked.slot, reading),
             Err(why) => self.problem = Some(why),
         }
     }
@@ -141,8 +155,10 @@ impl Commutation {
             Err(why) => self.problem = Some(why),
         }
     }
+}
 
-    fn reading_of(&self, rest: Rest, geometry: Option<Geometry>) -> Result<Reading, Text> {
+impl Asked {
+    fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<Reading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
         }
@@ -151,9 +167,9 @@ impl Commutation {
             kind: Kind::Absolute,
             raw: Some(rest.raw),
         };
-        match (self.form.source, rest.signals) {
+        match (self.source, rest.signals) {
             (Source::Absolute, _) | (Source::Signals, None) => Ok(absolute),
-            (Source::Typed, _) => fine(rest.raw, self.form.phase()?, geometry, None),
+            (Source::Typed, _) => fine(rest.raw, form::phase(&self.phase)?, geometry, None),
             (Source::Signals, Some(signals)) => {
                 let volts = signals.sine_v.hypot(signals.cosine_v);
                 let no_signal = || Text::new("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
@@ -195,9 +211,19 @@ mod tests {
     }
 
     fn read(source: Source, phase: &str, rest: Rest) -> Result<Reading, &'static str> {
-        let form = Form { source, phase: phase.to_owned(), ..Form::default() };
-        let commutation = Commutation { form, ..Commutation::default() };
-        commutation.reading_of(rest, SKM36).map_err(|text| text.id())
+        let asked = Asked { slot: Slot::OneSide, source, phase: phase.to_owned() };
+        asked.reading(rest, SKM36).map_err(|text| text.id())
+    }
+
+    #[test]
+    fn a_reading_counts_as_it_was_asked_for() {
+        let form = Form { source: Source::Typed, phase: "0.27".to_owned(), ..Form::default() };
+        let mut commutation = Commutation { form, ..Commutation::default() };
+        commutation.ask(Slot::OneSide);
+        commutation.form = Form { source: Source::Absolute, phase: String::new(), ..Form::default() };
+        commutation.take(rest(40, None), SKM36);
+        let reading = commutation.reading(Slot::OneSide).unwrap();
+        assert!((reading.fine_periods - 1.27).abs() < 1e-12, "{reading:?}");
     }
 
     #[test]

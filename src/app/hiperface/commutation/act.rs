@@ -48,7 +48,7 @@ impl Encoder {
         }
         self.commutation.problem = None;
         if self.try_submit(HiperfaceJob::Rest, services) {
-            self.commutation.asked = Some(slot);
+            self.commutation.ask(slot);
         }
     }
 }

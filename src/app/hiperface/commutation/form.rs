@@ -199,8 +199,7 @@ impl Form {
     /// # Errors
     /// In words.
     pub fn phase(&self) -> Result<Phase, Text> {
-        let periods = within("commutation.phase", &self.phase, 0.0, 0.999_999_999)?;
-        Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))
+        phase(&self.phase)
     }
 
     /// The fine position in periods that was typed for a slot.
@@ -249,4 +248,10 @@ impl Form {
 
 fn missing(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", Text::new(what))
+}
+
+/// A typed position inside a period.
+pub(super) fn phase(text: &str) -> Result<Phase, Text> {
+    let periods = within("commutation.phase", text, 0.0, 0.999_999_999)?;
+    Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))
 }
