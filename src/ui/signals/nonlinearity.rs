@@ -52,6 +52,7 @@ fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
         height: 180.0,
         x_unit: "°",
         y_unit: "°",
+        x_step: (told.revolutions <= 2.0).then_some(90.0),
         ..Chart::default()
     };
     chart(ui, skin, &own);
