@@ -197,6 +197,7 @@ fn sides_that_are_too_far_apart_are_refused() {
 fn the_second_vector_tells_what_is_wrong() {
     let mut desk = Desk::begun("");
     desk.prepare();
+    desk.edit(|form| form.address = "0".to_owned());
     desk.type_in(Slot::OneSide, "4");
     for (second, pairs, verdict, id) in [
         ("12", "4", Verdict::Ok, "commutation.fits"),
@@ -367,6 +368,9 @@ fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
     desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
     desk.prepare();
     desk.type_in(Slot::OneSide, "339.02");
+    desk.assist(Assistant::Store);
+    assert_eq!(desk.why_not(), Some("commutation.no_room"), "the motor's data stay");
+    assert!(desk.edits().is_empty());
     desk.edit(|form| (form.periods, form.address) = ("1024".to_owned(), "8".to_owned()));
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("commutation.block"));

@@ -1,7 +1,8 @@
 //! The commutation page as a person uses it: ticked, typed and clicked.
 
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::hiperface::commutation::Slot;
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::hiperface::commutation::{Action as Assistant, Slot};
 use encoder_studio::app::{Action, Language};
 
 use crate::screen::Screen;
@@ -60,10 +61,35 @@ fn the_page_is_gone_through_by_hand() {
     screen.click("commutation.use_second");
     assert!(screen.encoder().commutation.is_confirmed(screen.encoder().geometry()));
     screen.check_language();
+    assert!(!screen.is_enabled("commutation.store") && screen.shows("Create a new field on page Memory"));
+    screen.fill("commutation.address", "0");
+    assert!(screen.shows("\"EMD71K-4 3000rpm\" would be replaced"), "before anything is put there");
     screen.click("commutation.store");
     assert!(screen.encoder().staged.is_edited(0, 0));
+    assert!(screen.shows("\"EMD71K-4 3000rpm\" would be replaced"), "and until it is written");
     screen.click("commutation.review");
     assert!(screen.encoder().review.is_some(), "the usual review writes it");
     screen.act(Action::SetLanguage(Language::German));
+    screen.check_language();
+}
+
+#[test]
+fn what_is_wrong_with_an_entry_stands_beside_it() {
+    let mut screen = Screen::begun(TALL);
+    screen.click("page.commutation");
+    let numbers =
+        ["is no number from 0.001 to 1000", "is no number from 0.1 to 600", "The encoder has 128 periods a turn"];
+    assert!(!numbers.iter().any(|words| screen.shows(words)), "an empty entry is not wrong yet");
+    let mut form = screen.encoder().commutation.form.clone();
+    (form.current_a, form.time_s, form.periods) = ("−5".to_owned(), "abc".to_owned(), "1024".to_owned());
+    form.pole_pairs = "4".to_owned();
+    form.typed[0] = "339.02".to_owned();
+    screen.ask(Hiperface::Commutation(Assistant::Edit(Box::new(form))));
+    for words in numbers {
+        assert!(screen.shows(words), "{words}");
+    }
+    assert!(!screen.shows("One side only"));
+    screen.ask(Hiperface::Commutation(Assistant::Use(Slot::OneSide)));
+    assert!(screen.shows("One side only"));
     screen.check_language();
 }

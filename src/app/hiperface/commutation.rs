@@ -6,6 +6,7 @@
 mod act;
 mod form;
 mod outcome;
+mod place;
 mod report;
 
 use crate::app::Text;
@@ -17,6 +18,7 @@ use crate::signal::synchronise::Synchroniser;
 
 pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
+pub use place::Place;
 pub use report::kind_words;
 
 /// What can be done in the assistant.

@@ -74,8 +74,11 @@ fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
         ui.checkbox(&mut form.disabled, skin.say("commutation.disabled"));
         ui.checkbox(&mut form.uncoupled, skin.say("commutation.uncoupled"));
         ui.checkbox(&mut form.released, skin.say("commutation.released"));
+        let (current, time) = form.limit_problems();
         number(ui, skin, "commutation.current", &mut form.current_a, "");
+        problem_ui(ui, skin, current.as_ref());
         number(ui, skin, "commutation.time", &mut form.time_s, "");
+        problem_ui(ui, skin, time.as_ref());
         entry(ui, skin, &skin.say("commutation.vector"), |ui| {
             let vectors = Vector::ALL.map(|vector| (vector, skin.say(vector.word())));
             choice(ui, &skin.say("commutation.vector"), &mut form.vector, vectors);
@@ -86,11 +89,21 @@ fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
     });
 }
 
+/// What is wrong with the entry above.
+fn problem_ui(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
+    if let Some(why) = problem {
+        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.bad));
+    }
+}
+
 fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
     card(ui, skin, "commutation.motor", |ui| {
         number(ui, skin, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
         number(ui, skin, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
+        if let Some(words) = form.other_periods(encoder.geometry()) {
+            verdict_ui(ui, skin, Verdict::Warn, &words);
+        }
         entry(ui, skin, &skin.say("commutation.direction"), |ui| {
             let directions = [(false, "commutation.with"), (true, "commutation.against")];
             let directions = directions.map(|(reversed, id)| (reversed, skin.say(id)));
@@ -140,15 +153,16 @@ fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &
                     row(ui, skin, &skin.say("commutation.apart"), skin.mono(skin.words(&text)));
                 }
                 row(ui, skin, &skin.say("commutation.mean"), skin.mono(skin.number(offset.fine_periods, 5)));
+                if offset.apart_deg.is_none() {
+                    verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.only_one_side"));
+                }
             }
             Err(why) if any => {
                 paragraph(ui, RichText::new(skin.words(&why)).color(skin.palette.warn));
             }
             Err(_) => {}
         }
-        if let Some(problem) = &commutation.problem {
-            paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
-        }
+        problem_ui(ui, skin, commutation.problem.as_ref());
     });
     if clear {
         actions.push(ask(encoder, Assistant::Clear));

@@ -17,9 +17,11 @@ impl Encoder {
             Action::Read(slot) => self.read_for(slot, services),
             Action::Use(slot) => self.commutation.use_typed(slot),
             Action::Clear => self.commutation.forget_readings(),
-            Action::Store => match self.commutation.bytes(self.geometry()) {
+            Action::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
+                    // What is put there once more goes to the same place, whatever is empty then.
+                    (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
                     let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
                     if (address..).zip(&bytes).all(is_there) {
                         let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));

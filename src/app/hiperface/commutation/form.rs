@@ -41,9 +41,9 @@ pub struct Form {
     pub typed: [String; 3],
     /// How the offset is stored.
     pub storage: Storage,
-    /// The data field that gets it.
-    pub field: u8,
-    /// Its first byte there, as typed.
+    /// The data field that gets it; `None` is the one that is proposed.
+    pub field: Option<u8>,
+    /// Its first byte there, as typed; empty is the one that is proposed.
     pub address: String,
     /// The period that the position is to have by method 2, as typed.
     pub period: String,
@@ -138,8 +138,8 @@ impl Default for Form {
             second_deg: "90".to_owned(),
             typed: Default::default(),
             storage: Storage::Record,
-            field: 0,
-            address: "0".to_owned(),
+            field: None,
+            address: String::new(),
             period: "0".to_owned(),
         }
     }
@@ -151,8 +151,20 @@ impl Form {
     /// # Errors
     /// In words.
     pub fn limits(&self) -> Result<(f64, f64), Text> {
-        let current = within("commutation.current", &self.current_a, 0.001, 1000.0)?;
-        Ok((current, within("commutation.time", &self.time_s, 0.1, 600.0)?))
+        let (current, time) = self.each_limit();
+        Ok((current?, time?))
+    }
+
+    /// What is wrong with the current and with the time that are typed, in words; an empty entry is not wrong yet.
+    pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
+        let typed = |text: &str| !text.trim().is_empty();
+        let (current, time) = self.each_limit();
+        (current.err().filter(|_| typed(&self.current_a)), time.err().filter(|_| typed(&self.time_s)))
+    }
+
+    fn each_limit(&self) -> (Result<f64, Text>, Result<f64, Text>) {
+        let current = within("commutation.current", &self.current_a, 0.001, 1000.0);
+        (current, within("commutation.time", &self.time_s, 0.1, 600.0))
     }
 
     /// All that has to be so before the motor is energised is ticked and written down.
@@ -226,6 +238,13 @@ impl Form {
             (true, Some(Geometry::Rotary { periods, .. })) => Ok(periods.max(1)),
             _ => whole("commutation.periods", &self.periods, 1, MOST_PERIODS),
         }
+    }
+
+    /// The number of periods that is typed is not that of the encoder's type, in words.
+    pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
+        let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
+        let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
+        Some(Text::new("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
     /// All numbers that the offset needs.

@@ -1,7 +1,7 @@
 //! What comes of the readings: the mean of both sides, the offset, what a second vector says, the bytes of method 1 and
 //! the position of method 2.
 
-use super::{Commutation, Inputs, Kind, Slot, Source, Storage};
+use super::{Commutation, Inputs, Kind, Place, Slot, Source, Storage};
 use crate::app::Text;
 use crate::app::hiperface::{Allowed, Staged};
 use crate::app::number::whole;
@@ -139,13 +139,13 @@ impl Commutation {
     ///
     /// # Errors
     /// What is missing, in words.
-    pub fn bytes(&self, geometry: Option<Geometry>) -> Result<(u8, usize, Vec<u8>), Text> {
+    pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         // What was found wrong is not stored, what was not looked at may be.
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
             return Err(Text::new("commutation.second_refuses"));
         }
-        let address = whole("commutation.address", &self.form.address, 0, 127)? as usize;
+        let Place { field, address } = self.place(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
             Storage::Record => {
@@ -160,7 +160,7 @@ impl Commutation {
                 record.emit().to_vec()
             }
         };
-        Ok((self.form.field, address, bytes))
+        Ok((field, address, bytes))
     }
 
     /// Method 2: the position to be set where the shaft rests now.

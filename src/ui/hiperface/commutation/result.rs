@@ -43,12 +43,19 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
         if form.storage == Storage::Number {
             verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.number_words"));
         }
+        let place = encoder.commutation.place(&encoder.staged).ok();
         entry(ui, skin, &skin.say("commutation.field"), |ui| {
-            let fields = encoder.staged.device().iter().map(|field| (field.number, field.number.to_string()));
-            choice(ui, &skin.say("commutation.field"), &mut form.field, fields);
+            let fields = encoder.staged.device().iter().map(|field| (Some(field.number), field.number.to_string()));
+            let shown = form.field.or(place.map(|place| place.field));
+            let mut chosen = shown;
+            choice(ui, &skin.say("commutation.field"), &mut chosen, fields);
+            if chosen != shown {
+                form.field = chosen;
+            }
         });
-        number(ui, skin, "commutation.address", &mut form.address, "0");
-        let bytes = encoder.commutation.bytes(encoder.geometry());
+        let proposed = place.map(|place| place.address.to_string()).unwrap_or_default();
+        number(ui, skin, "commutation.address", &mut form.address, &proposed);
+        let bytes = encoder.commutation.bytes(encoder.geometry(), &encoder.staged);
         if let Ok((_, _, bytes)) = &bytes {
             // Eight a line: sixteen do not fit beside the other column.
             let lines: Vec<String> = bytes.chunks(8).map(crate::bits::hex).collect();
@@ -56,6 +63,9 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
         }
         for found in stored(&encoder.staged) {
             found_ui(ui, skin, &found);
+        }
+        if let Some(words) = encoder.commutation.replaced(encoder.geometry(), &encoder.staged) {
+            verdict_ui(ui, skin, Verdict::Warn, &words);
         }
         ui.horizontal_wrapped(|ui| {
             let allowed = bytes.as_ref().map(|_| ()).map_err(Clone::clone);
