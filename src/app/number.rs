@@ -3,6 +3,9 @@
 
 use super::Text;
 
+/// Most signal periods in a revolution that can be entered: encoders have no more.
+pub(super) const MOST_PERIODS: u32 = 65_536;
+
 /// A decimal number, with an exponent if need be; `None` where it is none.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('−', "-");
@@ -118,7 +121,7 @@ fn filled(what: &'static str, text: &str) -> Result<(), Text> {
 }
 
 /// As many decimals as a limit needs, three at most.
-fn decimals(value: f64) -> usize {
+pub(super) fn decimals(value: f64) -> usize {
     (0..3).find(|count| (value * 10_f64.powi(*count)).fract() == 0.0).unwrap_or(3) as usize
 }
 

@@ -5,6 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{Skin, icons};
+use crate::signal::quality::Verdict;
 
 /// Inside a line of text, so that it is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
@@ -280,6 +281,38 @@ pub(super) fn spinner(ui: &mut Ui, skin: &Skin) {
         ui.painter().circle_filled(place, 1.5, colour);
     }
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
+}
+
+/// A one-line entry behind its label, which is also its name for screen readers.
+pub(super) fn labelled_entry(
+    ui: &mut Ui,
+    skin: &Skin,
+    id: &'static str,
+    text: &mut String,
+    width: f32,
+    hint: &str,
+) -> Response {
+    let word = skin.say(id);
+    entry(ui, skin, &word, |ui| text_entry(ui, text, width, &word, hint))
+}
+
+/// A verdict on a signal: icon and colour.
+pub(super) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
+    let palette = skin.palette;
+    match verdict {
+        Verdict::Ok => (icons::CHECK_CIRCLE, palette.good),
+        Verdict::Warn => (icons::WARNING, palette.warn),
+        Verdict::Fault => (icons::X_CIRCLE, palette.bad),
+    }
+}
+
+/// A verdict with its words, in its colour.
+pub(super) fn verdict_ui(ui: &mut Ui, skin: &Skin, own: Verdict, words: &crate::app::Text) {
+    let (icon, colour) = verdict(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, RichText::new(skin.words(words)).color(colour));
+    });
 }
 
 /// How much a notice matters: icon and colour.

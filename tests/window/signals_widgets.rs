@@ -123,10 +123,10 @@ fn periods_are_typed_and_refused_in_words() {
     assert_eq!(screen.studio().signals.periods(), 512);
     type_in(&mut screen, "0");
     assert_eq!(screen.studio().signals.periods(), 512);
-    assert!(screen.shows("Periods: 0 is not possible."));
+    assert!(screen.shows("\"0\" is no whole number from 1 to 65536."));
     type_in(&mut screen, "64");
     assert_eq!(screen.studio().signals.periods(), 64);
-    assert!(!screen.shows("is not possible"));
+    assert!(!screen.shows("is no whole number"));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::file;
 use crate::app::Text;
+use crate::app::number::decimals;
 use crate::app::signals::NoOffset;
 use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
@@ -188,12 +189,6 @@ fn hertz(text: Text, frequency_hz: f64) -> Text {
 
 fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
-}
-
-/// Decimals that a number has, three at most.
-fn decimals(value: f64) -> usize {
-    let whole = |decimals: usize| (value * 10_f64.powi(decimals as i32)).fract() == 0.0;
-    (0..3).find(|decimals| whole(*decimals)).unwrap_or(3)
 }
 
 /// What of a signal's parameters is out of its limits.

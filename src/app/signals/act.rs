@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
-use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Scope, Source, Table, forms, promise};
+use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Scope, Source, Table, promise};
 use crate::app::hiperface::Encoder;
+use crate::app::number::MOST_PERIODS;
 use crate::app::recorder;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
@@ -136,7 +137,7 @@ impl Signals {
 
     /// Another number of periods a revolution: what is shown is judged again.
     pub(super) fn set_periods(&mut self, periods: u32, services: &mut Services) {
-        self.periods = periods.clamp(1, forms::MOST_PERIODS);
+        self.periods = periods.clamp(1, MOST_PERIODS);
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
             self.judge_again(services);
         }

@@ -1,20 +1,14 @@
 //! What a person types in the Signals tab, read. An entry that cannot be used says what could be.
 
 use crate::app::Text;
-
-/// Most signal periods in a revolution that can be entered; encoders have up to 65 536.
-pub const MOST_PERIODS: u32 = 1_000_000;
+use crate::app::number::{MOST_PERIODS, whole};
 
 /// Signal periods in a revolution.
 ///
 /// # Errors
 /// In words.
 pub fn periods(text: &str) -> Result<u32, Text> {
-    let digits = text.trim();
-    let number = digits.parse().ok().filter(|_| digits.bytes().all(|c| c.is_ascii_digit()));
-    number
-        .filter(|number| (1..=MOST_PERIODS).contains(number))
-        .ok_or_else(|| Text::new("signals.bad_periods").with("entry", text).with("most", MOST_PERIODS))
+    whole("quality.periods_per_turn", text, 1, MOST_PERIODS)
 }
 
 /// A number with a point or a comma; finite.
@@ -54,10 +48,10 @@ mod tests {
 
     #[test]
     fn periods_are_whole_and_in_range() {
-        for (text, value) in [("1", 1), (" 1024 ", 1024), ("1000000", 1_000_000)] {
+        for (text, value) in [("1", 1), (" 1024 ", 1024), ("65536", 65_536)] {
             assert_eq!(periods(text), Ok(value), "{text}");
         }
-        for text in ["", "0", "-5", "+5", "1000001", "99999999999", "10.0", "1e3", "x"] {
+        for text in ["", "0", "-5", "+5", "65537", "99999999999", "10.0", "1e3", "x"] {
             assert!(periods(text).is_err(), "{text}");
         }
     }

@@ -2,9 +2,8 @@
 //! ahead of the other over many readings. SICK 8010701, forming the absolute position; section 4 of the project's
 //! sine/cosine reference.
 
-use super::forms::MOST_PERIODS;
 use crate::app::hiperface::Encoder;
-use crate::app::number::{number_or_hex, whole, within};
+use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SessionId, Text};
 use crate::device::hiperface::{Rest, Signals as Volts};
 use crate::protocol::hiperface::Geometry;

@@ -7,9 +7,9 @@ use egui::{RichText, Ui};
 use crate::app::hiperface::commutation::{Action as Assistant, Form, Slot, Source, Vector, kind_words, may_read};
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Text};
-use crate::signal::quality::Verdict;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, icon_button, paragraph, row, split, text_entry,
+    allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
+    verdict_ui,
 };
 use crate::ui::{Skin, icons};
 
@@ -130,8 +130,7 @@ fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
 }
 
 fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
-    let label = skin.say(id);
-    entry(ui, skin, &label, |ui| text_entry(ui, text, NUMBER, &label, hint))
+    labelled_entry(ui, skin, id, text, NUMBER, hint)
 }
 
 fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
@@ -180,19 +179,6 @@ fn second(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions:
             Some(Err(why)) => paragraph(ui, skin.label(skin.words(&why))),
             None => {}
         }
-    });
-}
-
-/// A verdict: its sign and its words, in its colour.
-fn verdict_ui(ui: &mut Ui, skin: &Skin, verdict: Verdict, words: &Text) {
-    let (icon, colour) = match verdict {
-        Verdict::Ok => (icons::CHECK_CIRCLE, skin.palette.good),
-        Verdict::Warn => (icons::WARNING, skin.palette.warn),
-        Verdict::Fault => (icons::X_CIRCLE, skin.palette.bad),
-    };
-    ui.horizontal_top(|ui| {
-        ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, RichText::new(skin.words(words)).color(colour));
     });
 }
 

@@ -6,7 +6,7 @@ use crate::app::Text;
 use crate::app::signals::Unit;
 use crate::app::signals::input_circuit::{Circuit, Form, Point};
 use crate::signal::input_circuit::BANDWIDTH_HZ;
-use crate::ui::controls::{card, entry, paragraph, problem, row, split, text_entry};
+use crate::ui::controls::{card, labelled_entry, paragraph, problem, row, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Skin, icons};
 
@@ -54,8 +54,7 @@ fn entries(ui: &mut Ui, skin: &Skin, form: &mut Form, refused: Option<&Text>) {
             ("input.resistance", &mut form.resistance, "10k"),
             ("input.capacitance", &mut form.capacitance, "47p"),
         ] {
-            let word = skin.say(id);
-            entry(ui, skin, &word, |ui| text_entry(ui, text, ENTRY, &word, hint));
+            labelled_entry(ui, skin, id, text, ENTRY, hint);
         }
         problem(ui, skin, refused);
     });

@@ -5,7 +5,7 @@ use egui::{RichText, Ui, WidgetInfo};
 
 use crate::app::signals::{Bound, Quantity, Unit};
 use crate::signal::quality::Verdict;
-use crate::ui::{Skin, icons};
+use crate::ui::{Skin, controls};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.
 const WIDE: f32 = 390.0;
@@ -117,11 +117,11 @@ fn unit_behind(words: String, unit: Unit) -> String {
 
 /// An icon in its colour, which says its word to a screen reader, and with the limit under the pointer.
 fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict, limit: &str) {
-    let palette = skin.palette;
-    let (icon, colour, id) = match verdict {
-        Verdict::Ok => (icons::CHECK_CIRCLE, palette.good, "quality.inside"),
-        Verdict::Warn => (icons::WARNING, palette.warn, "quality.outside"),
-        Verdict::Fault => (icons::X_CIRCLE, palette.bad, "quality.fault"),
+    let (icon, colour) = controls::verdict(skin, verdict);
+    let id = match verdict {
+        Verdict::Ok => "quality.inside",
+        Verdict::Warn => "quality.outside",
+        Verdict::Fault => "quality.fault",
     };
     let word = skin.say(id);
     let response = ui.label(RichText::new(icon).color(colour));

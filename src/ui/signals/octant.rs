@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::signals::interpolation::{INTERVALS, interpolate, table_errors};
 use crate::signal::arctan::OctantTable;
 use crate::ui::Skin;
-use crate::ui::controls::{card, choice, entry, paragraph, problem, row, split, text_entry};
+use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 
 /// What is typed.
 pub(super) struct View {
@@ -48,8 +48,7 @@ fn tables(ui: &mut Ui, skin: &Skin) {
 
 fn pair(ui: &mut Ui, skin: &Skin, view: &mut View) {
     for (id, text) in [("octant.sine", &mut view.sine), ("octant.cosine", &mut view.cosine)] {
-        let word = skin.say(id);
-        entry(ui, skin, &word, |ui| text_entry(ui, text, 88.0, &word, ""));
+        labelled_entry(ui, skin, id, text, 88.0, "");
     }
     let word = skin.say("octant.intervals");
     entry(ui, skin, &word, |ui| {

@@ -1,17 +1,17 @@
 //! Absolute and analogue position brought together: typed, or as the encoder gives them.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
 use crate::app::signals::{Action as Signals, Signals as State, synchronise::Told};
 use crate::app::{Action, Text, explain};
-use crate::signal::quality::Verdict;
 use crate::ui::controls::{
-    card, card_with, choice, enabled_button, entry, icon_button, paragraph, problem, row, split, text_entry,
+    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
+    verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series, step_ring};
-use crate::ui::{Skin, icons};
+use crate::ui::{Skin, controls, icons};
 
 /// Width of an entry.
 const ENTRY: f32 = 112.0;
@@ -64,8 +64,7 @@ fn ask(action: Page) -> Action {
 }
 
 fn typed(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) {
-    let word = skin.say(id);
-    entry(ui, skin, &word, |ui| text_entry(ui, text, ENTRY, &word, hint));
+    labelled_entry(ui, skin, id, text, ENTRY, hint);
 }
 
 fn positions(
@@ -159,11 +158,7 @@ fn captured(ui: &mut Ui, skin: &Skin, signals: &State, actions: &mut Vec<Action>
 
 fn result(ui: &mut Ui, skin: &Skin, told: &Told) {
     let (verdict, words) = told.words();
-    let (icon, colour) = match verdict {
-        Verdict::Ok => (icons::CHECK_CIRCLE, skin.palette.good),
-        Verdict::Warn => (icons::WARNING, skin.palette.warn),
-        Verdict::Fault => (icons::X_CIRCLE, skin.palette.bad),
-    };
+    let (_, colour) = controls::verdict(skin, verdict);
     card(ui, skin, "synchronise.result", |ui| {
         let fine = told.result.ok();
         let (label, value) = (skin.say("synchronise.ring"), skin.words(&words));
@@ -177,10 +172,7 @@ fn result(ui: &mut Ui, skin: &Skin, told: &Told) {
         };
         let shown = fine.map_or_else(|| "–".to_owned(), |fine| skin.number(fine.periods(), 5));
         ui.label(skin.value(shown));
-        ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, RichText::new(&value).color(colour));
-        });
+        verdict_ui(ui, skin, verdict, &words);
         ui.add_space(skin.space.inside);
         split(
             ui,

@@ -3,7 +3,7 @@
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::app::signals::{Action as Signals, Source, SourceAction};
-use crate::app::{Action, Text, explain};
+use crate::app::{Action, Text, explain, number};
 use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
@@ -99,7 +99,7 @@ fn sliders(ui: &mut Ui, skin: &Skin, settings: &Settings, list: &[Slid], ask: &m
                 .suffix(suffix)
                 .max_decimals(own.decimals)
                 .custom_formatter(move |value, _| skin_.number(value, decimals))
-                .custom_parser(|text| text.trim().replace(',', ".").parse().ok());
+                .custom_parser(number);
             let response = ui.add(slider);
             response.widget_info(|| WidgetInfo::slider(true, value, &word));
             if response.on_hover_text(&word).changed() {

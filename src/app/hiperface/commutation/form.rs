@@ -1,7 +1,7 @@
 //! What is ticked, chosen and typed in the commutation assistant, and what it means.
 
 use crate::app::Text;
-use crate::app::number::{whole, within};
+use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::protocol::hiperface::Geometry;
 use crate::signal::arctan::Phase;
 use crate::signal::commutation::Motor;
@@ -112,7 +112,6 @@ pub struct Inputs {
 
 /// More pole pairs than any motor has.
 const MOST_POLE_PAIRS: u32 = 500;
-const MOST_PERIODS: u32 = 65_536;
 
 impl Slot {
     /// In the order in which they are read.

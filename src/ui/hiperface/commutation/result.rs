@@ -2,12 +2,14 @@
 
 use egui::{RichText, Ui};
 
-use super::{ask, number, verdict_ui};
+use super::{ask, number};
 use crate::app::hiperface::commutation::{Action as Assistant, Form, Storage, Stored, stored};
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Text};
 use crate::signal::quality::Verdict;
-use crate::ui::controls::{allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row};
+use crate::ui::controls::{
+    allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
+};
 use crate::ui::{Skin, icons};
 
 pub(super) fn offset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
