@@ -9,7 +9,7 @@ use super::recorder::{self, Exported, Recorder};
 use super::signals;
 use super::studio::Studio;
 use super::{Picture, Severity, Text, explain};
-use crate::store::{FileError, write_atomically};
+use crate::store::FileError;
 
 impl Studio {
     /// A path was typed: what is there already is not replaced without a question.
@@ -31,7 +31,7 @@ impl Studio {
             FileQuestion::Save { session, .. } => self.act_hiperface(session, hiperface::Action::Save(path)),
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
-                let result = write_atomically(&path, &picture.png());
+                let result = picture.save(&path);
                 Action::Done(Done::PictureSaved(path, result))
             }),
         }

@@ -1,7 +1,10 @@
 //! A picture of a part of the window, to be saved as PNG.
 
 use std::fmt;
+use std::path::Path;
 use std::sync::Arc;
+
+use crate::store::{FileError, FileProblem, FileTask, write_atomically};
 
 /// Pixels, row by row from the top.
 #[derive(Clone, PartialEq, Eq)]
@@ -26,16 +29,27 @@ impl Picture {
         fits.then(|| Picture { width, height, bytes: bytes.into() })
     }
 
+    /// Writes it as PNG.
+    ///
+    /// # Errors
+    /// With the old content in place.
+    pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
+        let refused = |error: std::io::Error| FileError {
+            path: path.to_owned(),
+            task: FileTask::Write,
+            problem: FileProblem::from(error),
+        };
+        write_atomically(path, &self.png().map_err(refused)?)
+    }
+
     /// The file's content.
-    pub(super) fn png(&self) -> Vec<u8> {
+    fn png(&self) -> Result<Vec<u8>, std::io::Error> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        // It goes into memory, and the size was checked.
-        let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&self.bytes));
-        debug_assert!(written.is_ok(), "{written:?}");
-        file
+        encoder.write_header()?.write_image_data(&self.bytes)?;
+        Ok(file)
     }
 }
 
@@ -49,9 +63,19 @@ mod tests {
         assert!(Picture::new(0, 7, Vec::new()).is_none());
         let pixels = vec![255, 0, 0, 0, 0, 255];
         let picture = Picture::new(2, 1, pixels.clone()).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(picture.png())).read_info().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(picture.png().unwrap())).read_info().unwrap();
         let mut read = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut read).unwrap();
         assert_eq!((info.width, info.height, read), (2, 1, pixels));
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_up_is_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.png");
+        let short = Picture { width: 2, height: 2, bytes: vec![0; 5].into() };
+        assert!(short.save(&path).is_err() && !path.exists());
+        Picture { height: 1, bytes: vec![0; 6].into(), ..short }.save(&path).unwrap();
+        assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
     }
 }
