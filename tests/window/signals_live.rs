@@ -86,6 +86,22 @@ fn a_file_that_is_being_read_does_not_take_the_place_of_a_source_started_meanwhi
 }
 
 #[test]
+fn a_kept_capture_keeps_no_samples() {
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("large.csv");
+    std::fs::write(&path, circle(1_500)).unwrap();
+    desk.act(Action::Open(path));
+    desk.until_measured();
+    let samples = std::sync::Arc::downgrade(&desk.studio.signals.measurement().unwrap().capture);
+    desk.signals(Signals::Keep);
+    desk.signals(Signals::Example(encoder_studio::app::signals::Example::Healthy));
+    desk.until_measured();
+    desk.until("the samples are gone", |_| samples.strong_count() == 0);
+    // A circle of 100 samples a period.
+    assert_eq!(desk.studio.signals.comparison().unwrap().analysis.as_ref().unwrap().samples, 150_001);
+}
+
+#[test]
 fn a_kept_capture_is_judged_by_the_limits_that_are_chosen() {
     let mut desk = Desk::fresh("");
     // 0.84 V: too little for HIPERFACE, good for AFS/AFM60.

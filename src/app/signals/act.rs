@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
-use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Scope, Source, Table, promise};
+use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, Table, promise};
 use crate::app::hiperface::Encoder;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder;
@@ -25,7 +25,7 @@ pub struct Signals {
     /// The signals over time.
     pub(super) scope: Scope,
     measurement: Option<Arc<Measurement>>,
-    comparison: Option<Arc<Measurement>>,
+    comparison: Option<Arc<Results>>,
     table: Option<Table>,
     problem: Option<Text>,
     reading: Option<Reading>,
@@ -83,8 +83,8 @@ impl Signals {
         &self.source
     }
 
-    /// The capture that it is compared with.
-    pub fn comparison(&self) -> Option<&Arc<Measurement>> {
+    /// What is known about the capture that it is compared with.
+    pub fn comparison(&self) -> Option<&Arc<Results>> {
         self.comparison.as_ref()
     }
 
@@ -181,7 +181,10 @@ impl Signals {
                 self.family = family;
                 self.judge_again(services);
             }
-            Action::Keep => self.comparison = self.measurement.clone().or(self.comparison.take()),
+            Action::Keep => {
+                let shown = self.measurement.as_ref().map(|own| own.results().clone());
+                self.comparison = shown.or(self.comparison.take());
+            }
             Action::DropComparison => self.comparison = None,
             Action::Synchronise(action) => self.synchronise.act(action),
             Action::SetPeriods(periods) => self.set_periods(periods, services),
@@ -204,6 +207,7 @@ impl Signals {
             }
             Done::Measured { number, measurement } => self.measured(number, *measurement, services),
             Done::Failed(failed) => self.failed(failed, services),
+            Done::LetGo => {}
         }
     }
 
@@ -222,14 +226,24 @@ impl Signals {
     }
 
     /// Other samples: a table of those before that is still being written cannot be ended.
-    pub(super) fn replace_scope(&mut self, scope: Scope) {
+    pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::Action::CancelExport);
-        self.scope = scope;
+        promise::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
+    }
+
+    fn show(&mut self, measurement: Measurement, services: &Services) {
+        /// Samples whose memory takes longer to give back than a thread to start.
+        const LARGE: usize = 100_000;
+        if let Some(before) = self.measurement.replace(Arc::new(measurement))
+            && before.capture.sine_v.len() > LARGE
+        {
+            promise::let_go(&services.tasks, before);
+        }
     }
 
     /// The newest samples of the virtual encoder take the place of what was shown.
-    pub(super) fn show_live(&mut self, measurement: Measurement) {
-        self.measurement = Some(Arc::new(measurement));
+    pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
+        self.show(measurement, services);
         self.problem = None;
         self.table = None;
     }
@@ -240,9 +254,9 @@ impl Signals {
         match result {
             Ok((measurement, scope)) => {
                 self.source.stop();
-                self.replace_scope(scope);
+                self.replace_scope(scope, services);
                 let judge = measurement.judge;
-                self.measurement = Some(Arc::new(measurement));
+                self.show(measurement, services);
                 if judge != self.judge() {
                     self.judge_again(services);
                 }

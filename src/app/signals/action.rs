@@ -67,6 +67,8 @@ pub enum Done {
     },
     /// A task could not be started, or broke off.
     Failed(Failed),
+    /// Something large is no more.
+    LetGo,
 }
 
 /// What did not come.

@@ -165,7 +165,7 @@ impl Signals {
             SourceAction::Start => {
                 if self.source.start(services) {
                     self.forget_reading();
-                    self.replace_scope(Scope::live());
+                    self.replace_scope(Scope::live(), services);
                     self.set_periods(settings.periods as u32, services);
                 }
             }
@@ -249,7 +249,7 @@ impl Signals {
             return;
         }
         let judge = measurement.judge;
-        self.show_live(measurement);
+        self.show_live(measurement, services);
         // It was set differently meanwhile.
         if judge != self.judge() {
             self.judge_again(services);

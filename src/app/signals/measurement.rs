@@ -1,6 +1,7 @@
 //! A capture with all that is computed from it once, on a task: the analysis, the diagnosis, the spectra and the picture of
 //! its Lissajous figure.
 
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -63,10 +64,16 @@ impl Place {
 /// A capture and what is known about it.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// Where it comes from.
-    pub origin: Origin,
     /// The samples.
     pub capture: Arc<Capture>,
+    results: Arc<Results>,
+}
+
+/// What is known about a capture; needs its samples no more.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// Where it comes from.
+    pub origin: Origin,
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
     /// What there is to look at.
@@ -110,7 +117,7 @@ impl Measurement {
         let samples = samples(&capture);
         let analysis = Analysis::of(samples);
         let mean = |column: &[f64]| column.iter().sum::<f64>() / column.len().max(1) as f64;
-        Measurement {
+        let results = Results {
             diagnosis: diagnosis(&capture, &analysis, judge),
             judge,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
@@ -121,21 +128,37 @@ impl Measurement {
             corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
             analysis,
             origin,
-            capture,
-        }
+        };
+        Measurement { capture, results: Arc::new(results) }
+    }
+
+    /// What is known about the capture, without its samples.
+    pub fn results(&self) -> &Arc<Results> {
+        &self.results
     }
 
     /// The same, judged by something else.
     #[must_use]
     pub fn judged(&self, judge: Judge) -> Self {
-        Measurement {
+        let results = Results {
             diagnosis: diagnosis(&self.capture, &self.analysis, judge),
             nonlinearities: beside_reference(&self.capture, &self.analysis, judge),
             judge,
-            ..self.clone()
-        }
+            ..(*self.results).clone()
+        };
+        Measurement { capture: self.capture.clone(), results: Arc::new(results) }
     }
+}
 
+impl Deref for Measurement {
+    type Target = Results;
+
+    fn deref(&self) -> &Results {
+        &self.results
+    }
+}
+
+impl Results {
     /// Why there is no analysis, in words.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;

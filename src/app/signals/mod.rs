@@ -22,7 +22,7 @@ pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};
 pub use beside::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
 pub use live::{Source, SourceAction};
-pub use measurement::{Judge, Measurement, Origin, Place};
+pub use measurement::{Judge, Measurement, Origin, Place, Results};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
 pub use scope::{NoTimes, Scope};

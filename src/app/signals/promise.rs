@@ -39,6 +39,14 @@ pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -
     });
 }
 
+/// Lets something large go on a thread: giving its memory back takes a while.
+pub(super) fn let_go(tasks: &Tasks, large: impl Send + 'static) {
+    tasks.run("let go", move || {
+        drop(large);
+        action(Done::LetGo)
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! What is measured of a signal, as a list: each number with its unit, its limit and whether it is inside. Limits as
 //! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
 
-use super::Measurement;
+use super::Results;
 use crate::signal::analysis::{Analysis, LEAST_OCTANTS};
 use crate::signal::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::signal::quality::{Family, Verdict};
@@ -120,7 +120,7 @@ impl Quantity {
 
 /// What was measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed. Nothing
 /// where there is no ellipse.
-pub fn quantities(measurement: &Measurement, family: Family, periods: u32) -> Vec<Quantity> {
+pub fn quantities(measurement: &Results, family: Family, periods: u32) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = of_ellipse(analysis, family);
     let (least, most) = family.limits().level_v;
@@ -195,7 +195,7 @@ pub fn error_quantities(analysis: &Analysis, periods: u32) -> Vec<Quantity> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::signals::{Judge, Origin};
+    use crate::app::signals::{Judge, Measurement, Origin};
     use crate::signal::capture::Capture;
     use std::sync::Arc;
 
@@ -258,7 +258,7 @@ mod tests {
             cosine_v: (0..1000).map(|at| 0.5 * angle(at).cos()).collect(),
             ..Capture::default()
         };
-        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.unwrap();
+        let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.clone().unwrap();
         let list = error_quantities(&analysis, 1024);
         assert!((list[0].value - 1.1459).abs() < 1e-3 && list[0].unit == Unit::Degrees, "{:?}", list[0]);
         let (arc_seconds, _, unit) = list[0].also.unwrap();

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::{View, nonlinearity, numbers, octant, quality, source};
-use crate::app::signals::{Measurement, Signals, error_quantities};
+use crate::app::signals::{Results, Signals, error_quantities};
 use crate::app::{Action, Text};
 use crate::signal::position_error::{Basis, PositionError, harmonics};
 use crate::ui::Skin;
@@ -31,8 +31,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
             card(ui, skin, "error.numbers", |ui| {
                 quality::periods_ui(ui, skin, signals, periods, actions);
                 ui.add_space(skin.space.inside);
-                let of =
-                    |own: &Measurement| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
+                let of = |own: &Results| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
                 let others = compared.and_then(|own| of(own));
                 let own = error_quantities(analysis, signals.periods());
                 numbers::rows_ui(ui, skin, "error.numbers", &own, others.as_deref());
@@ -57,11 +56,11 @@ fn basis(basis: Basis) -> Text {
 }
 
 /// The error of the capture that is compared, where it has one.
-fn other(compared: Option<&Measurement>) -> Option<&PositionError> {
+fn other(compared: Option<&Results>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
 
-fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Measurement>) {
+fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
@@ -90,7 +89,7 @@ fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Mea
     });
 }
 
-fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Measurement>) {
+fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
         Trace { name: skin.say(id), points, colour, dashed }

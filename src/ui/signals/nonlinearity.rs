@@ -3,14 +3,14 @@
 use egui::Ui;
 
 use super::numbers;
-use crate::app::signals::{Measurement, Nonlinearities, nonlinearity_quantities};
+use crate::app::signals::{Nonlinearities, Results, nonlinearity_quantities};
 use crate::app::{Text, explain};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
 /// Draws the card; with a capture that it is compared with also its values.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, measurement: &Measurement, compared: Option<&Measurement>) {
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, measurement: &Results, compared: Option<&Results>) {
     card(ui, skin, "nonlinearity.title", |ui| match &measurement.nonlinearities {
         Some(Ok(told)) => {
             curve(ui, skin, told);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{View, numbers, source};
-use crate::app::signals::{Action as Signals_, Measurement, Signals, forms, quantities};
+use crate::app::signals::{Action as Signals_, Measurement, Results, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
 use crate::signal::analysis::Analysis;
 use crate::signal::diagnosis::{Changes, Finding, Severity};
@@ -71,7 +71,7 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
             let picture = other.of(ui, skin, kept, corrected, 1);
             figure_of(kept, corrected, picture, (1, true))
         });
-        let picture = own.of(ui, skin, measurement, corrected, 0);
+        let picture = own.of(ui, skin, measurement.results(), corrected, 0);
         let shown = figure_of(measurement, corrected, picture, (0, false));
         let figures: Vec<Figure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
@@ -89,21 +89,21 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
 
 /// The samples of a capture as a texture, kept until they or the colour are others.
 #[derive(Default)]
-pub(super) struct Picture(Option<(Arc<Measurement>, bool, Color32, TextureHandle)>);
+pub(super) struct Picture(Option<(Arc<Results>, bool, Color32, TextureHandle)>);
 
 impl Picture {
     fn of(
         &mut self,
         ui: &Ui,
         skin: &Skin,
-        measurement: &Arc<Measurement>,
+        measurement: &Arc<Results>,
         corrected: bool,
         colour: usize,
     ) -> Option<(TextureId, Square)> {
         let colour = series(skin, colour);
         let density = if corrected { &measurement.corrected } else { &measurement.raw };
         let density = density.as_ref()?;
-        let same = |(own, own_corrected, own_colour, _): &(Arc<Measurement>, bool, Color32, TextureHandle)| {
+        let same = |(own, own_corrected, own_colour, _): &(Arc<Results>, bool, Color32, TextureHandle)| {
             Arc::ptr_eq(own, measurement) && *own_corrected == corrected && *own_colour == colour
         };
         if !self.0.as_ref().is_some_and(same) {
@@ -117,7 +117,7 @@ impl Picture {
 }
 
 fn figure_of(
-    measurement: &Measurement,
+    measurement: &Results,
     corrected: bool,
     picture: Option<(TextureId, Square)>,
     (colour, dashed): (usize, bool),
@@ -137,7 +137,7 @@ fn figure_of(
 }
 
 /// Why there is nothing to be measured in a capture, and what there is to look at.
-pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Measurement) {
+pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Results) {
     let Some(why) = measurement.refusal(skin.language) else { return };
     card(ui, skin, "quality.findings", |ui| {
         line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
@@ -227,7 +227,7 @@ fn values(
         });
         periods_ui(ui, skin, signals, &mut view.periods, actions);
         ui.add_space(skin.space.inside);
-        let of = |own: &Measurement| quantities(own, signals.family(), signals.periods());
+        let of = |own: &Results| quantities(own, signals.family(), signals.periods());
         let others = signals.comparison().map(|own| of(own));
         numbers::rows_ui(ui, skin, "quality.numbers", &of(measurement), others.as_deref());
     });

@@ -171,7 +171,8 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 /// Putting the capture aside, and what is put aside.
 fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
     let word = skin.say("compare.keep");
-    let same = signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b));
+    let same =
+        signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
     if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(skin.say("compare.keep_hint")).clicked() {
         actions.push(Action::Signals(Signals_::Keep));
     }
