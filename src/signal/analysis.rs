@@ -2,6 +2,7 @@
 //! period it covers, and the position error it stands for. Sections 2, 6 and 7 of the project's sine/cosine reference.
 //! Single samples far off are left out of all of it, and told.
 
+use super::continuity::Continuity;
 use super::coverage::Coverage;
 use super::ellipse::{Ellipse, FitError};
 use super::outliers::{self, Found, Outliers};
@@ -13,6 +14,10 @@ pub const LEAST_OCTANTS: u32 = 6;
 /// point has 0.4 and more, a signal with a residual of 0.02 is already bad.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
+/// Median angle from one sample to the next, in degrees, above which the direction is not certain: fewer than four samples
+/// a period, where noise or an uneven motion soon makes half a period of it (U).
+const LARGEST_STEP_DEG: f64 = 90.0;
+
 /// The result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
@@ -20,6 +25,10 @@ pub struct Analysis {
     pub ellipse: Ellipse,
     /// What the samples do on it.
     pub coverage: Coverage,
+    /// What the times of the samples do.
+    pub continuity: Continuity,
+    /// Median angle from one sample to the next, in degrees, 0 to 180.
+    pub step_deg: f64,
     /// The position error over one period.
     pub error: PositionError,
     /// Samples, with those that were left out.
@@ -43,6 +52,9 @@ pub enum AnalysisError {
         /// Octants that hold samples.
         octants: u32,
     },
+    /// All samples lie around one point, away from zero: the signal is there, and the shaft stands.
+    #[error("all samples lie around one point")]
+    AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
     #[error("the samples are {share:.2} of the amplitude off the ellipse")]
     NoSignal {
@@ -58,6 +70,9 @@ impl Analysis {
     /// [`AnalysisError`] where they determine no ellipse or cover less than six octants of a period.
     pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         Self::attempt(samples).map_err(|error| match error {
+            // Few samples and such that are no numbers say nothing more; equal points may be a dead cable as well.
+            AnalysisError::Fit(FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant) => error,
+            _ if is_at_rest(samples.sine_v, samples.cosine_v) => AnalysisError::AtRest,
             // One spark on a dead channel makes it look alive, and what it gives then says nothing about the cause.
             AnalysisError::Fit(FitError::NotAnEllipse)
             | AnalysisError::Coverage { .. }
@@ -79,7 +94,9 @@ impl Analysis {
             Found::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
         };
         let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
-        let coverage = Coverage::without(sine_v, cosine_v, left_out, &ellipse).ok_or(FitError::TooFew { points: 0 })?;
+        let continuity = Continuity::of(time_s);
+        let coverage = Coverage::without(sine_v, cosine_v, left_out, &continuity.breaks, &ellipse);
+        let coverage = coverage.ok_or(FitError::TooFew { points: 0 })?;
         if coverage.residual_rms > LARGEST_RESIDUAL {
             return Err(AnalysisError::NoSignal { share: coverage.residual_rms });
         }
@@ -89,16 +106,61 @@ impl Analysis {
         let duration = time_s.last().zip(time_s.first()).map(|(last, first)| last - first);
         Ok(Analysis {
             error: PositionError::of(samples, left_out, &ellipse, &coverage),
-            ellipse,
             coverage,
+            continuity,
+            step_deg: step_deg(sine_v, cosine_v, &ellipse),
             samples: sine_v.len().min(cosine_v.len()),
             duration_s: duration.filter(|duration| duration.is_finite() && *duration > 0.0),
             outliers,
+            ellipse,
         })
     }
 
-    /// Periods a second on average; negative when the angle falls, `None` without times.
+    /// Periods a second on average, of continuous stretches only; negative when the angle falls. Where it turned back, the
+    /// mean of both directions, which is positive. `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
-        self.duration_s.map(|duration| self.coverage.travel_periods / duration)
+        let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
+        self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
+
+    /// There are samples enough in a period for the angle to be followed, and with it the frequency.
+    pub fn is_followed(&self) -> bool {
+        self.step_deg <= LARGEST_STEP_DEG
+    }
+}
+
+/// The samples scatter by little around a point that is no zero.
+fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
+    /// Scatter of one channel, rms, as a share of the point's distance from zero: 6° of a signal (U).
+    const SCATTER: f64 = 0.1;
+    /// Nearer to zero there may be no signal at all, in volts (U).
+    const LEAST_V: f64 = 0.1;
+    let of = |values: &[f64]| {
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        (mean, (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / count).sqrt())
+    };
+    let ((sine, sine_rms), (cosine, cosine_rms)) = (of(sine_v), of(cosine_v));
+    let away = sine.hypot(cosine);
+    away >= LEAST_V && sine_rms.max(cosine_rms) <= SCATTER * away
+}
+
+/// Median angle from one sample to the next, in degrees.
+fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
+    /// Steps that are looked at.
+    const SAMPLED: usize = 1 << 13;
+    let correction = ellipse.correction();
+    // An odd stride does not keep step with a period of 2ⁿ samples.
+    let stride = (sine_v.len() / SAMPLED) | 1;
+    let step = |pair: (&[f64], &[f64])| match pair {
+        ([y, later_y], [x, later_x]) => {
+            let (y, x) = correction.apply(*y, *x);
+            let (later_y, later_x) = correction.apply(*later_y, *later_x);
+            Some((later_y * x - later_x * y).atan2(later_x * x + later_y * y).abs().to_degrees())
+        }
+        _ => None,
+    };
+    let mut steps: Vec<f64> = sine_v.windows(2).zip(cosine_v.windows(2)).step_by(stride).filter_map(step).collect();
+    let middle = steps.len() / 2;
+    if middle < steps.len() { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 } else { 0.0 }
 }

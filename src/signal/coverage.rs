@@ -13,8 +13,12 @@ pub struct Coverage {
     pub octants: u32,
     /// Periods from the lowest to the highest angle, with the fraction.
     pub periods: f64,
-    /// Periods from the first to the last sample; negative when the angle falls.
+    /// Periods from the first to the last sample, without what nobody saw of them in a gap; negative when the angle falls.
     pub travel_periods: f64,
+    /// All the way, forward and back, likewise.
+    pub path_periods: f64,
+    /// How often the angle turned back by more than half a period.
+    pub reversals: usize,
     /// Distance from the ellipse, rms, as a share of the amplitude.
     pub residual_rms: f64,
     /// Shortest and longest amplitude vector √(sin² + cos²) as measured, in volts.
@@ -58,6 +62,107 @@ impl Angle {
     }
 }
 
+/// Where an angle went: how far in all, and how often it turned back.
+struct Way {
+    /// Highest and lowest of all.
+    top: Angle,
+    bottom: Angle,
+    /// Highest and lowest since it turned back last.
+    high: Angle,
+    low: Angle,
+    /// Where the stretch began, where it turned back last, and where it is.
+    begun: Angle,
+    turned: Angle,
+    here: Angle,
+    direction: Direction,
+    travel: f64,
+    path: f64,
+    reversals: usize,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Direction {
+    Unknown,
+    Up,
+    Down,
+}
+
+impl Way {
+    /// Quarters of a period that an angle has to come back by to have turned back: noise does not.
+    const BACK: i64 = 3;
+
+    fn from(first: Angle) -> Self {
+        Way {
+            top: first,
+            bottom: first,
+            high: first,
+            low: first,
+            begun: first,
+            turned: first,
+            here: first,
+            direction: Direction::Unknown,
+            travel: 0.0,
+            path: 0.0,
+            reversals: 0,
+        }
+    }
+
+    fn go_to(&mut self, here: Angle) {
+        self.here = here;
+        self.high = if here.is_ahead_of(&self.high) { here } else { self.high };
+        self.low = if self.low.is_ahead_of(&here) { here } else { self.low };
+        if self.direction != Direction::Down && self.high.quarters - here.quarters >= Self::BACK {
+            self.turn_at(self.high, Direction::Down);
+            self.low = here;
+        } else if self.direction != Direction::Up && here.quarters - self.low.quarters >= Self::BACK {
+            self.turn_at(self.low, Direction::Up);
+            self.high = here;
+        }
+    }
+
+    /// The direction shows for the first time, or it is another one since `at`.
+    fn turn_at(&mut self, at: Angle, direction: Direction) {
+        self.keep_ends();
+        if self.direction != Direction::Unknown {
+            self.path += (at.periods() - self.turned.periods()).abs();
+            self.turned = at;
+            self.reversals += 1;
+        }
+        self.direction = direction;
+    }
+
+    /// Nobody knows how the angle came here.
+    fn begin_at(&mut self, here: Angle) {
+        self.end_stretch();
+        (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
+        self.direction = Direction::Unknown;
+    }
+
+    fn ended(mut self) -> Self {
+        self.end_stretch();
+        self
+    }
+
+    fn end_stretch(&mut self) {
+        self.keep_ends();
+        self.path += (self.here.periods() - self.turned.periods()).abs();
+        self.travel += self.here.periods() - self.begun.periods();
+    }
+
+    fn keep_ends(&mut self) {
+        self.top = if self.high.is_ahead_of(&self.top) { self.high } else { self.top };
+        self.bottom = if self.bottom.is_ahead_of(&self.low) { self.low } else { self.bottom };
+    }
+}
+
+/// A part of the samples, cut before each of `breaks` in it.
+fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
+    let inside = breaks.get(breaks.partition_point(|at| *at <= part.start)..).unwrap_or_default();
+    let inside = inside.get(..inside.partition_point(|at| *at < part.end)).unwrap_or_default();
+    let starts = std::iter::once(part.start).chain(inside.iter().copied());
+    starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
+}
+
 /// 0 to 3, counted as the angle grows. Made for speed: comparisons without branches.
 fn quarter(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
@@ -74,11 +179,18 @@ impl Coverage {
     /// Follows the samples in their order; from one to the next the angle must move by less than half a period.
     /// `None` without samples.
     pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
-        Coverage::without(sine, cosine, &[], ellipse)
+        Coverage::without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Likewise, without the samples in `left_out`: stretches in their order that do not overlap.
-    pub(super) fn without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], ellipse: &Ellipse) -> Option<Self> {
+    /// Likewise, without the samples in `left_out`: stretches in their order that do not overlap. How the angle came to the
+    /// samples in `breaks` from those before is not known.
+    pub(super) fn without(
+        sine: &[f64],
+        cosine: &[f64],
+        left_out: &[Range<usize>],
+        breaks: &[usize],
+        ellipse: &Ellipse,
+    ) -> Option<Self> {
         /// Samples summed before their sum is added: less rounding.
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
@@ -86,32 +198,45 @@ impl Coverage {
         let start = kept(length, left_out).next()?.start;
         let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
         let first = Angle::of(first_y, first_x);
-        let (mut here, mut lowest, mut highest) = (first, first, first);
+        let (mut here, mut way) = (first, Way::from(first));
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        let parts = kept(length, left_out).filter_map(|part| Some((sine.get(part.clone())?, cosine.get(part)?)));
-        for (ys, xs) in parts.flat_map(|(sine, cosine)| sine.chunks(BLOCK).zip(cosine.chunks(BLOCK))) {
-            let mut sum = 0.0;
-            for (y, x) in ys.iter().zip(xs) {
-                let raw = y * y + x * x;
-                least = if raw < least { raw } else { least };
-                most = if raw > most { raw } else { most };
-                let (y, x) = correction.apply(*y, *x);
-                let off = (y * y + x * x).sqrt() - ellipse.amplitude_v;
-                sum += off * off;
-                here = here.moved_to(y, x);
-                octants |= 1 << (((here.quarters & 3) as u32) << 1 | u32::from((y.abs() > x.abs()) ^ (y * x < 0.0)));
-                highest = if here.is_ahead_of(&highest) { here } else { highest };
-                lowest = if lowest.is_ahead_of(&here) { here } else { lowest };
+        let parts = kept(length, left_out).flat_map(|part| cut(part, breaks));
+        let parts = parts.filter_map(|part| Some((part.start, sine.get(part.clone())?, cosine.get(part)?)));
+        let mut seen = 0;
+        for (start, sine, cosine) in parts {
+            // What is before a break may have been left out.
+            let begun = breaks.partition_point(|at| *at <= start);
+            let mut begins = begun > std::mem::replace(&mut seen, begun);
+            for (ys, xs) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)) {
+                let mut sum = 0.0;
+                for (y, x) in ys.iter().zip(xs) {
+                    let raw = y * y + x * x;
+                    least = if raw < least { raw } else { least };
+                    most = if raw > most { raw } else { most };
+                    let (y, x) = correction.apply(*y, *x);
+                    let off = (y * y + x * x).sqrt() - ellipse.amplitude_v;
+                    sum += off * off;
+                    here = here.moved_to(y, x);
+                    octants |=
+                        1 << (((here.quarters & 3) as u32) << 1 | u32::from((y.abs() > x.abs()) ^ (y * x < 0.0)));
+                    if std::mem::take(&mut begins) {
+                        way.begin_at(here);
+                    }
+                    way.go_to(here);
+                }
+                squares += sum;
+                count += ys.len().min(xs.len());
             }
-            squares += sum;
-            count += ys.len().min(xs.len());
         }
+        let way = way.ended();
         Some(Coverage {
             octants: octants.count_ones(),
-            periods: highest.periods() - lowest.periods(),
-            travel_periods: here.periods() - first.periods(),
+            periods: way.top.periods() - way.bottom.periods(),
+            travel_periods: way.travel,
+            path_periods: way.path,
+            reversals: way.reversals,
             residual_rms: (squares / count as f64).sqrt() / ellipse.amplitude_v,
             vector_v: (least.sqrt(), most.sqrt()),
         })
@@ -163,6 +288,23 @@ mod tests {
     fn there_and_back_is_covered_once() {
         let told = coverage((0..1000).map(|at| 0.2 + 1.5 * (TAU * f64::from(at) / 1000.0).sin()));
         assert!((told.periods - 3.0).abs() < 1e-4 && told.travel_periods.abs() < 0.02, "{told:?}");
+        // Up by 1.5, down by 3, up by 1.5 but for the last step.
+        assert_eq!(told.reversals, 2);
+        assert!((told.path_periods - 6.0).abs() < 0.02, "{told:?}");
+        let steady = coverage((0..1000).map(|at| 0.2 - 0.013 * f64::from(at)));
+        assert!(steady.reversals == 0 && (steady.path_periods - 12.987).abs() < 1e-8, "{steady:?}");
+    }
+
+    #[test]
+    fn what_happened_in_a_gap_is_not_counted() {
+        // 2.7 periods, a jump by 40.4, 1.1 periods back with a sample left out where they begin.
+        let angles =
+            (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
+        let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.at(TAU * periods)).unzip();
+        let told = Coverage::without(&sine, &cosine, &[100..101, 150..152], &[100], &ELLIPSE).unwrap();
+        assert!((told.travel_periods - (99.0 * 0.027 - 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
+        assert!((told.path_periods - (99.0 * 0.027 + 98.0 * 0.011)).abs() < 1e-8, "{told:?}");
+        assert_eq!((told.reversals, told.octants), (0, 8), "which way it went in between is not known");
     }
 
     /// Section 7: r runs from 0.44595 to 0.53764 V.

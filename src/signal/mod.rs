@@ -8,6 +8,7 @@ pub mod analysis;
 pub mod arctan;
 pub mod capture;
 pub mod commutation;
+pub mod continuity;
 pub mod coverage;
 pub mod diagnosis;
 pub mod ellipse;

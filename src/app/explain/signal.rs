@@ -56,6 +56,7 @@ pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
         AnalysisError::Coverage { octants } => {
             text("signal.coverage").with("octants", octants).with("least", LEAST_OCTANTS)
         }
+        AnalysisError::AtRest => text("signal.at_rest"),
         AnalysisError::NoSignal { share } => text("signal.no_signal").with_number("percent", share * 100.0, 0),
     }
 }
@@ -122,6 +123,7 @@ pub fn diagnosis(finding: &Finding) -> Text {
     };
     match finding.what {
         What::Limit(parameter) => self::finding(&parameter),
+        What::AtRest => Text::new("diagnosis.at_rest"),
         What::Still => Text::new("diagnosis.still"),
         What::Same => Text::new("diagnosis.same"),
         What::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
@@ -162,6 +164,25 @@ pub fn diagnosis(finding: &Finding) -> Text {
             Text::new("diagnosis.spikes").with("count", count).with_number("volts", volts, 2)
         }
         What::LetsGo { count, longest } => Text::new("diagnosis.lets_go").with("count", count).with("longest", longest),
+        What::Missing { gaps, longest_s } => {
+            Text::new("diagnosis.missing").with("count", gaps).with_number("longest", longest_s * 1e3, 3)
+        }
+        What::TimeBack { sample } => Text::new("diagnosis.time_back").with("sample", sample + 1),
+        What::Reversed { times } => Text::new("diagnosis.reversed").with("count", times),
+        What::Coarse { step_deg } => Text::new("diagnosis.coarse").with_number("degrees", step_deg, 0).with_number(
+            "samples",
+            360.0 / step_deg,
+            1,
+        ),
+        What::Uncertain { share } => Text::new("diagnosis.uncertain")
+            .with_number("percent", share * 100.0, 1)
+            .with_number("degrees", share.to_degrees(), 1),
+        What::CorrectionHarms { raw_deg, corrected_deg } => Text::new("diagnosis.correction_harms")
+            .with_number("raw", raw_deg, 2)
+            .with_number("corrected", corrected_deg, 2),
+        What::SingleEnded { sine_v, cosine_v } => {
+            Text::new("diagnosis.single_ended").with_number("sine", sine_v, 2).with_number("cosine", cosine_v, 2)
+        }
         What::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
         What::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
             hertz(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)

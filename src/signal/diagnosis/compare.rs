@@ -79,10 +79,12 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
 fn is_worse(finding: &Finding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.what {
         // Without an ellipse to compare with, only these can be told.
-        What::Still | What::Same | What::Dead { .. } | What::Level { .. } => {}
+        What::Still | What::AtRest | What::Same | What::Dead { .. } | What::Level { .. } => {}
         _ if before.amplitude_v.is_none() => return false,
         // Compared by their size.
         What::Hum { .. } | What::Interference { .. } | What::Noise { .. } => return false,
+        // What follows from those, and what the shaft did.
+        What::Uncertain { .. } | What::Reversed { .. } => return false,
         // Something else may have explained it in the first.
         What::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
@@ -132,6 +134,7 @@ fn amount(what: &What) -> f64 {
         What::Harmonics { share, .. } | What::Modulation { share } => share,
         What::Clipping { samples, .. } => samples,
         What::Spikes { count, .. } | What::LetsGo { count, .. } => count as f64,
+        What::Missing { gaps, .. } => gaps as f64,
         What::Half { share, .. } => 1.0 / share,
         // Where they are, they are: nothing makes them more.
         _ => f64::NAN,

@@ -6,10 +6,13 @@
 //! Thresholds without a source are assumptions (U) and stand in one place, below.
 
 mod compare;
+mod finding;
 mod lines;
 mod shape;
+mod trust;
 
 pub use compare::{Changes, Untold, compare};
+pub use finding::{Finding, Severity, Stuck, What};
 pub use lines::Interference;
 
 use super::analysis::{Analysis, AnalysisError};
@@ -37,162 +40,6 @@ const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// The part of the residual's mean square that other findings have to explain.
 const EXPLAINED: f64 = 0.7;
-
-/// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Good to know; the signal is usable.
-    Notice,
-    /// Outside of its limits, or a disturbance that costs accuracy.
-    Warning,
-    /// The position is wrong or will be.
-    Fault,
-}
-
-/// Something to look at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finding {
-    /// How bad it is.
-    pub severity: Severity,
-    /// What it is.
-    pub what: What,
-}
-
-/// What can be found. Shares are of the amplitude of the cosine channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
-    /// A parameter outside of the family's limits.
-    Limit(OutOfLimits),
-    /// Neither channel moves.
-    Still,
-    /// One channel does not move while the other does.
-    Dead {
-        /// Which.
-        channel: Channel,
-        /// Where its wires stand.
-        stuck: Stuck,
-    },
-    /// One channel has half of the other's amplitude: one of its two wires is open.
-    Half {
-        /// Which.
-        channel: Channel,
-        /// Its amplitude over the other's.
-        share: f64,
-    },
-    /// Both channels show the same, or one the opposite of the other.
-    Same,
-    /// The mean level of a reference is outside of the family's limits.
-    Level {
-        /// REFSIN or REFCOS.
-        wire: Wire,
-        /// Its mean in volts.
-        volts: f64,
-        /// Good from, good to, in volts.
-        ok_v: (f64, f64),
-    },
-    /// The mains and its multiples.
-    Hum {
-        /// 50 or 60 Hz.
-        mains_hz: f64,
-        /// All of its lines together, peak, in volts.
-        volts: f64,
-        /// As a share.
-        share: f64,
-        /// In phase and about equally strong in both channels: it comes in by the screen or the ground.
-        common: bool,
-    },
-    /// A line that is no harmonic of the signal.
-    Interference {
-        /// Its frequency in hertz.
-        frequency_hz: f64,
-        /// Peak in the channel that has more of it, in volts.
-        volts: f64,
-        /// As a share.
-        share: f64,
-        /// As of the hum.
-        common: bool,
-    },
-    /// White noise.
-    Noise {
-        /// Of one channel, rms, in volts.
-        volts: f64,
-        /// As a share.
-        share: f64,
-    },
-    /// The distance from the ellipse repeats so many times a period: harmonics one below and one above that.
-    Harmonics {
-        /// How many times, 3 to 8.
-        order: usize,
-        /// As a share, peak; so many radians are what it costs.
-        share: f64,
-    },
-    /// A channel is cut off.
-    Clipping {
-        /// Which.
-        channel: Channel,
-        /// Where, in volts.
-        volts: f64,
-        /// Share of the samples that stand there.
-        samples: f64,
-    },
-    /// The amplitude changes over a revolution.
-    Modulation {
-        /// Half of the difference between largest and least, over the mean.
-        share: f64,
-    },
-    /// Single samples far off were left out.
-    Spikes {
-        /// How many.
-        count: usize,
-        /// The farthest, in volts off the ellipse.
-        volts: f64,
-    },
-    /// Several samples in a row were far off and left out.
-    LetsGo {
-        /// How many in all.
-        count: usize,
-        /// The most in a row.
-        longest: usize,
-    },
-    /// Of two captures, the second has more noise.
-    NoiseRose {
-        /// First, rms, in volts.
-        from_v: f64,
-        /// Second.
-        to_v: f64,
-    },
-    /// Of two captures, only the second has this interference, or has more of it.
-    InterferenceRose {
-        /// Its frequency in hertz.
-        frequency_hz: f64,
-        /// First, peak, in volts; 0 where there was none to be seen.
-        from_v: f64,
-        /// Second.
-        to_v: f64,
-        /// In the second, as of the hum.
-        common: bool,
-    },
-    /// Of two captures, the second has another amplitude.
-    AmplitudeChanged {
-        /// First, peak, in volts.
-        from_v: f64,
-        /// Second.
-        to_v: f64,
-    },
-}
-
-/// Where the wires of a channel that does not move stand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stuck {
-    /// Both at the same level: one is open, or they are shorted to each other.
-    Together,
-    /// This wire is at ground.
-    Ground(Wire),
-    /// This wire is at a supply.
-    Supply(Wire),
-    /// So many volts apart: one of them is shorted to something, or open where no resistor joins them.
-    Apart(f64),
-}
 
 /// What there is to judge by.
 #[derive(Clone, Copy, Debug)]
@@ -241,6 +88,11 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             let harmonics = shape::harmonics(&record.samples, analysis);
             let modulation = record.periods.and_then(|periods| shape::modulation(&record.samples, analysis, periods));
             shapes(record, analysis, harmonics, modulation, &mut say);
+            trust::times(analysis, &mut say);
+            trust::correction(analysis, &mut say);
+            if let Some(what) = trust::uncertain(&diagnosis.findings) {
+                diagnosis.findings.push(Finding { severity: Severity::Warning, what });
+            }
             let by_lines =
                 seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
             let by_shape = [harmonics.map(|(_, share)| share), modulation].into_iter().flatten();
@@ -270,7 +122,9 @@ impl Diagnosis {
         limits: &Limits,
     ) -> Self {
         let mut diagnosis = self.clone();
-        let depends = |what: &What| matches!(what, What::Limit(_) | What::Level { .. } | What::Half { .. });
+        let depends = |what: &What| {
+            matches!(what, What::Limit(_) | What::Level { .. } | What::Half { .. } | What::SingleEnded { .. })
+        };
         diagnosis.findings.retain(|finding| !depends(&finding.what));
         let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
         levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
@@ -310,6 +164,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
 /// Where there is no ellipse, how the samples lie still tells why.
 fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, What)) {
     match error {
+        AnalysisError::AtRest => say(Severity::Warning, What::AtRest),
         AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, What::Still),
         AnalysisError::Fit(FitError::Line) => say(Severity::Fault, What::Same),
         AnalysisError::Fit(FitError::Dead(channel)) => {
@@ -351,7 +206,14 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
     if let Some((channel, share)) = half {
         say(Severity::Fault, What::Half { channel, share });
     }
+    let single = trust::single_ended(&analysis.ellipse);
+    if let Some(what) = single {
+        say(Severity::Fault, what);
+    }
     for found in limits.judge(&analysis.ellipse, analysis.coverage.residual_rms) {
+        if single.is_some() && trust::is_of_single_ended(&found) {
+            continue;
+        }
         let explained = matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_));
         let severity = match found {
             OutOfLimits::Amplitude { verdict: Verdict::Fault, .. } => Severity::Fault,

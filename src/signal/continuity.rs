@@ -1,0 +1,158 @@
+//! How the times of a capture follow each other: where samples are missing and where the time goes back. Whatever is
+//! counted from one sample to the next, as the periods of a frequency, is counted within a continuous stretch only.
+//!
+//! A step of more than one and a half usual steps is a gap (U). Times of a table have few digits, so that even samples can
+//! have steps of two lengths: one digit more or less is no gap.
+
+/// A step is a gap beyond so many usual ones.
+const GAP: f64 = 1.5;
+/// Steps of which the usual one is the median.
+const SAMPLED: usize = 1 << 14;
+/// Steps within this share of the usual one are the same.
+const SAME: f64 = 0.01;
+/// With fewer of the same than this share, the digits of the times are what makes the difference.
+const MOSTLY: f64 = 0.9;
+
+/// What the times tell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Continuity {
+    /// Samples that are missing; `None` where none are, or there are no times.
+    pub missing: Option<Missing>,
+    /// The first sample whose time is before that of the sample before it, counted from 0.
+    pub back: Option<usize>,
+    /// Time within continuous stretches in seconds; `None` without times.
+    pub stretches_s: Option<f64>,
+    /// Samples with which a stretch begins, the first of all not among them.
+    pub(super) breaks: Vec<usize>,
+}
+
+/// Samples that are missing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Missing {
+    /// In how many places.
+    pub gaps: usize,
+    /// The longest time from one sample to the next, in seconds.
+    pub longest_s: f64,
+}
+
+impl Continuity {
+    /// Looks at times in seconds.
+    pub fn of(times_s: &[f64]) -> Self {
+        let Some(longest_even) = longest_even(times_s) else { return Continuity::default() };
+        let mut told = Continuity::default();
+        let mut lost_s = 0.0;
+        for (before, pair) in times_s.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            let step = to - from;
+            if (0.0..=longest_even).contains(&step) {
+                continue;
+            }
+            lost_s += step;
+            told.breaks.push(before + 1);
+            if step < 0.0 {
+                told.back = told.back.or(Some(before + 1));
+            } else {
+                let missing = told.missing.get_or_insert(Missing { gaps: 0, longest_s: 0.0 });
+                missing.gaps += 1;
+                missing.longest_s = missing.longest_s.max(step);
+            }
+        }
+        let whole_s = times_s.last().zip(times_s.first()).map(|(last, first)| last - first - lost_s);
+        told.stretches_s = whole_s.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+        told
+    }
+}
+
+/// The longest step that is no gap, in seconds; `None` where no time passes.
+fn longest_even(times_s: &[f64]) -> Option<f64> {
+    // An odd stride does not keep step with a pattern of 2ⁿ.
+    let stride = (times_s.len() / SAMPLED) | 1;
+    let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
+    let middle = steps.len() / 2;
+    let median = (middle < steps.len()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)?;
+    let forward = || steps.iter().filter(|step| **step >= 0.0);
+    // With more samples than the digits tell apart, most steps are none.
+    let usual = if median > 0.0 { median } else { forward().sum::<f64>() / forward().count().max(1) as f64 };
+    let same = steps.iter().filter(|step| (**step / usual - 1.0).abs() <= SAME).count();
+    let digit = if same as f64 >= MOSTLY * steps.len() as f64 { 0.0 } else { last_digit(times_s, stride) };
+    // Rounding must not make a gap of a step that is just at the limit.
+    let longest = (GAP * usual + digit) * (1.0 + 1e-6);
+    (longest.is_finite() && longest > 0.0).then_some(longest)
+}
+
+fn step(pair: &[f64]) -> Option<f64> {
+    match pair {
+        [from, to] => Some(to - from),
+        _ => None,
+    }
+}
+
+/// The place of the last decimal digit that the times have, in seconds; 0 below a nanosecond.
+fn last_digit(times_s: &[f64], stride: usize) -> f64 {
+    let is_whole = |value: f64| (value - value.round()).abs() <= 1e-3;
+    let fits = |places: &i32| times_s.iter().step_by(stride).all(|time| is_whole(time * 10_f64.powi(*places)));
+    (0..=9).find(fits).map_or(0.0, |places| 10_f64.powi(-places))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(count: i32, of: impl Fn(f64) -> f64) -> Vec<f64> {
+        (0..count).map(|at| of(f64::from(at))).collect()
+    }
+
+    #[track_caller]
+    fn near(found: Option<f64>, expected: f64) {
+        assert!(found.is_some_and(|found| (found - expected).abs() < 1e-9), "{found:?} instead of {expected}");
+    }
+
+    #[test]
+    fn missing_rows_are_a_gap() {
+        // 2.5 µs a row, 799 rows missing after the thousandth: 800 steps instead of one.
+        let mut capture = times(4000, |at| at * 2.5e-6);
+        capture.drain(1000..1799);
+        let told = Continuity::of(&capture);
+        let missing = told.missing.unwrap();
+        assert_eq!((missing.gaps, told.breaks.as_slice(), told.back), (1, [1000].as_slice(), None));
+        near(Some(missing.longest_s), 2e-3);
+        // 3201 rows have 3199 usual steps.
+        near(told.stretches_s, 3199.0 * 2.5e-6);
+        let mut one = times(100, |at| at * 1e-3);
+        one.remove(50);
+        assert_eq!(Continuity::of(&one).breaks, [50], "a single sample");
+    }
+
+    #[test]
+    fn a_time_that_goes_back_is_told_with_its_sample() {
+        // Two recordings in one file.
+        let capture = times(2000, |at| (at % 1000.0) * 1e-5);
+        let told = Continuity::of(&capture);
+        assert_eq!((told.back, told.missing, told.breaks.as_slice()), (Some(1000), None, [1000].as_slice()));
+        near(told.stretches_s, 2.0 * 999e-5);
+    }
+
+    #[test]
+    fn few_digits_are_no_gaps() {
+        for (label, step, digit) in [
+            ("two and three digits", 2.5e-6, 1e-6),
+            ("one and two", 1.5e-6, 1e-6),
+            ("none and one", 0.3e-6, 1e-6),
+            ("exact", 1e-3, 1e-3),
+        ] {
+            let told = Continuity::of(&times(5000, |at| (at * step / digit + 1e-6).floor() * digit));
+            assert_eq!((told.missing, told.back, told.breaks.len()), (None, None, 0), "{label}");
+        }
+        let mut gap = times(5000, |at| (at * 2.5).floor() * 1e-6);
+        gap.drain(100..110);
+        assert_eq!(Continuity::of(&gap).breaks, [100], "27 or 28 µs are one");
+    }
+
+    #[test]
+    fn without_times_nothing_is_told() {
+        for nothing in [&[][..], &[1.0], &[1.0, 1.0, 1.0], &[f64::NAN, f64::NAN, f64::NAN]] {
+            assert_eq!(Continuity::of(nothing), Continuity::default(), "{nothing:?}");
+        }
+        assert_eq!(Continuity::of(&[3.0, 2.0, 1.0]).stretches_s, None, "backwards all along");
+    }
+}

@@ -1,0 +1,121 @@
+//! Captures whose numbers are not to be trusted as they are, and what is said of that.
+
+use super::*;
+
+fn found(made: &Made) -> Vec<What> {
+    made.diagnosed().findings.iter().map(|finding| finding.what).collect()
+}
+
+fn plain(_: f64, _: f64, signal: (f64, f64)) -> (f64, f64) {
+    signal
+}
+
+fn analysed(made: &Made) -> Analysis {
+    Analysis::of(made.record().samples).unwrap()
+}
+
+#[test]
+fn missing_samples_are_told_and_leave_the_frequency_right() {
+    let mut capture = made(|time| 2_000.0 * time, plain);
+    for column in [&mut capture.time, &mut capture.sine, &mut capture.cosine] {
+        // 2.003 ms, a quarter of a period short of a whole number of them.
+        column.drain(10_000..10_212);
+    }
+    let finding = capture.finding();
+    let What::Missing { gaps: 1, longest_s } = finding.what else { panic!("{finding:?}") };
+    near(longest_s, 213e-5, 1e-9);
+    assert_eq!(finding.severity, Severity::Warning);
+    near(analysed(&capture).frequency_hz().unwrap(), 2_000.0, 0.01);
+}
+
+#[test]
+fn a_time_that_goes_back_is_told() {
+    let mut capture = made(|time| 2_000.0 * time, plain);
+    let shift = capture.time[20_000];
+    capture.time.iter_mut().skip(20_000).for_each(|time| *time -= shift);
+    assert_eq!(found(&capture), [What::TimeBack { sample: 20_000 }]);
+    near(analysed(&capture).frequency_hz().unwrap(), 2_000.0, 0.01);
+}
+
+#[test]
+fn a_shaft_that_turns_back_has_the_mean_of_both_directions() {
+    // 12 periods to either side, eight times a second: 0.4 s are 3.2 of these, 153.6 periods and what the rest comes to.
+    let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
+    assert_eq!(found(&capture), [What::Reversed { times: 6 }]);
+    // 6 turning points: 12 + 5·24 to the last one at −12, and back to 12·sin(6.4π) = 11.413.
+    near(analysed(&capture).frequency_hz().unwrap(), (12.0 + 5.0 * 24.0 + 23.413) / 0.399_99, 0.05);
+}
+
+#[test]
+fn few_samples_a_period_are_told() {
+    for (hertz, followed) in [(20_000.0, true), (24_000.0, true), (26_000.0, false), (49_000.0, false)] {
+        let capture = made(|time| hertz * time, plain);
+        let found = found(&capture);
+        assert_eq!(analysed(&capture).is_followed(), followed, "{hertz}");
+        match found.as_slice() {
+            [] => assert!(followed, "{hertz}"),
+            [What::Coarse { step_deg }] => near(*step_deg, hertz / RATE * 360.0, 0.1),
+            _ => panic!("{hertz}: {found:?}"),
+        }
+    }
+}
+
+#[test]
+fn beside_a_disturbance_the_parameters_are_uncertain() {
+    let uncertain = |what: &What| match what {
+        What::Uncertain { share } => Some(*share),
+        _ => None,
+    };
+    let hum = found(&made(steady, added(0.05, 0.05, 50.0)));
+    near(hum.iter().find_map(uncertain).unwrap(), 0.1, 2e-3);
+    let two = found(&made(steady, added(0.03, 0.0, 8_000.0)));
+    near(two.iter().find_map(uncertain).unwrap(), 0.06, 1e-3);
+    let little = found(&made(steady, added(0.004, 0.0, 8_000.0)));
+    assert!(!little.is_empty() && little.iter().find_map(uncertain).is_none(), "{little:?}");
+}
+
+#[test]
+fn a_correction_that_harms_is_told() {
+    // Against each other: the distance from the ellipse repeats twice a period, which passes for a gain of 1.04.
+    let third =
+        |_, angle: f64, (sine, cosine)| (sine - 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
+    let other =
+        |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine + 0.01 * (3.0 * angle).cos());
+    for capture in [made(steady, third), made(steady, other)] {
+        let found = found(&capture);
+        let [What::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
+        // 0.02·sin 2θ, and with the gain as much again: Python gives 2.29° and 4.59°.
+        near(*raw_deg, 2.29, 0.02);
+        near(*corrected_deg, 4.59, 0.1);
+    }
+    let helps = made(steady, |_, _, (sine, cosine)| (sine + 0.02, cosine));
+    assert!(!found(&helps).iter().any(|what| matches!(what, What::CorrectionHarms { .. })));
+}
+
+#[test]
+fn columns_against_ground_are_told_instead_of_an_offset() {
+    for amplitude in [0.5, 1.0] {
+        let capture = made(steady, |_, _, (sine, cosine)| (2.5 + amplitude * sine, 2.6 + amplitude * cosine));
+        let finding = capture.finding();
+        let What::SingleEnded { sine_v, cosine_v } = finding.what else { panic!("{finding:?}") };
+        near(sine_v, 2.5, 1e-3);
+        near(cosine_v, 2.6, 1e-3);
+        let analysis = analysed(&capture);
+        let again = capture.diagnosed().by_limits(Ok(&analysis), None, &Limits::TTK70);
+        assert_eq!(again.findings.len(), 1, "{again:?}");
+    }
+    let offset = made(steady, |_, _, (sine, cosine)| (sine + 0.3, cosine));
+    assert!(matches!(offset.finding().what, What::Limit(OutOfLimits::OffsetSine(_))));
+}
+
+#[test]
+fn a_shaft_that_stands_is_told_so() {
+    for periods in [0.0, 0.13, 0.5, 0.88] {
+        let capture = made(|_| periods, plain);
+        assert_eq!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");
+        assert_eq!(found(&capture), [What::AtRest]);
+    }
+    // Noise around zero may be an open cable.
+    let capture = made(|_| 0.0, |_, _, _| (0.0, 0.0));
+    assert_ne!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest);
+}

@@ -1,0 +1,67 @@
+//! What makes the numbers of an analysis doubtful: times with gaps, a shaft that turned back, few samples a period,
+//! disturbances in what the ellipse was fitted to, columns that are no differences.
+
+use super::{Finding, OutOfLimits, Severity, WARNING_SHARE, What};
+use crate::signal::analysis::Analysis;
+use crate::signal::ellipse::Ellipse;
+use crate::signal::position_error::Basis;
+
+/// Mean level of a wire, and its amplitude, peak, in volts: 2.0 … 3.0 V and 0.5 Vpp by section 1 of the project's
+/// sine/cosine reference, with room for levels and amplitudes that are not in order.
+const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
+const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
+/// A correction harms where it makes the error larger by this factor and by so many electrical degrees.
+const LARGER: f64 = 1.1;
+const LARGER_DEG: f64 = 0.2;
+
+/// What the times of the samples say.
+pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
+    if let Some(sample) = analysis.continuity.back {
+        say(Severity::Warning, What::TimeBack { sample });
+    }
+    if let Some(missing) = analysis.continuity.missing {
+        say(Severity::Warning, What::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
+    }
+    if !analysis.is_followed() {
+        // What seems to turn back may be half a period too much.
+        say(Severity::Warning, What::Coarse { step_deg: analysis.step_deg });
+    } else if analysis.coverage.reversals > 0 {
+        say(Severity::Notice, What::Reversed { times: analysis.coverage.reversals });
+    }
+}
+
+/// An ellipse that takes harmonics for gain or phase adds them once more. Only a motion shows it: the distance from the
+/// ellipse has noise in it.
+pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
+    let Basis::Motion { noise_deg } = analysis.error.basis else { return };
+    let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
+    if corrected_deg > LARGER * raw_deg && corrected_deg - raw_deg > LARGER_DEG.max(noise_deg) {
+        say(Severity::Warning, What::CorrectionHarms { raw_deg, corrected_deg });
+    }
+}
+
+/// What was found disturbs the ellipse itself: about by its share.
+pub(super) fn uncertain(findings: &[Finding]) -> Option<What> {
+    let share = |finding: &Finding| match finding.what {
+        What::Hum { share, .. } | What::Interference { share, .. } | What::Harmonics { share, .. } => Some(share),
+        _ => None,
+    };
+    let squares = findings.iter().filter_map(share).filter(|share| *share >= WARNING_SHARE).map(|share| share * share);
+    let share = squares.sum::<f64>().sqrt();
+    (share > 0.0).then_some(What::Uncertain { share })
+}
+
+/// SIN and COS against ground instead of against their references.
+pub(super) fn single_ended(ellipse: &Ellipse) -> Option<What> {
+    let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
+    let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);
+    let levels = [sine_v, cosine_v].iter().all(|level| within(*level, WIRE_LEVEL_V));
+    let amplitudes = [ellipse.amplitude_v, ellipse.amplitude_sine_v()];
+    let amplitudes = amplitudes.iter().all(|amplitude| within(*amplitude, WIRE_AMPLITUDE_V));
+    (levels && amplitudes).then_some(What::SingleEnded { sine_v, cosine_v })
+}
+
+/// Such columns have the wire's level for an offset and half of the amplitude.
+pub(super) fn is_of_single_ended(found: &OutOfLimits) -> bool {
+    matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
+}
