@@ -139,7 +139,8 @@ impl Told<'_> {
             .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
         if let Some(frequency) = self.analysis.frequency_hz() {
             let speed = self.speed_rpm().map_or_else(String::new, |speed| format!(", {speed:.3} 1/min"));
-            lines.add("frequency", format!("{frequency:.3} Hz{speed}"));
+            let mark = if self.analysis.is_followed() { "" } else { " (uncertain: too few samples a period)" };
+            lines.add("frequency", format!("{frequency:.3} Hz{speed}{mark}"));
         }
         lines
             .add(

@@ -308,3 +308,31 @@ fn a_drive_and_a_broken_wire_are_told() {
     let file = bench.write("wire.csv", wires);
     bench.run(&["analyse", &file]).fails(1, &["cosine channel is dead", "COS is at ground"]);
 }
+
+/// 2 kHz at 2.5 µs, and what a slow recorder, a second recording in the file or too few samples make of it.
+#[test]
+fn a_frequency_is_told_of_what_was_seen_and_marked_where_it_is_uncertain() {
+    let bench = Bench::new();
+    let row = |at: usize, step: f64| {
+        let angle = TAU * 2_000.0 * step * at as f64;
+        format!("{:.7},{:.6},{:.6}\n", at as f64 * step, 0.5 * angle.sin(), 0.5 * angle.cos())
+    };
+    let capture = |step: f64, rows: &mut dyn Iterator<Item = usize>| rows.map(|at| row(at, step)).collect::<String>();
+    for (label, text, words) in [
+        (
+            "gap",
+            capture(2.5e-6, &mut (0..2_000).chain(2_799..4_799)),
+            "Samples are missing (gaps: 1, the longest 2.000 ms)",
+        ),
+        ("back", capture(2.5e-6, &mut (0..2_000).chain(0..2_000)), "The time goes back at sample 2001"),
+        ("coarse", capture(2.1e-4, &mut (0..2_000)), "About 2.4 samples a period (151° from one to the next)"),
+    ] {
+        let file = bench.write("c.csv", text);
+        let told = bench.run(&["analyse", &file, "--json"]).json();
+        near(&told, "frequency_hz", 2_000.0, 0.1);
+        let findings: Vec<&str> = told["findings"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+        assert!(findings.iter().any(|finding| finding.starts_with(words)), "{label}: {findings:?}");
+        let text = bench.run(&["analyse", &file]).out;
+        assert_eq!(text.contains("Hz (uncertain"), label == "coarse", "{text}");
+    }
+}

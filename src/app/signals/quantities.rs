@@ -130,10 +130,9 @@ pub fn quantities(measurement: &Results, family: Family, periods: u32) -> Vec<Qu
         list.extend(volts.map(level));
     }
     if let Some(frequency_hz) = analysis.frequency_hz() {
-        list.push(
-            Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
-                .bounded(Bound::Within(BANDWIDTH_HZ / 1e3)),
-        );
+        let frequency = Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
+            .bounded(Bound::Within(BANDWIDTH_HZ / 1e3));
+        list.push(if analysis.is_followed() { frequency } else { frequency.judged(Verdict::Warn) });
         list.extend(speed_rpm_at(periods, frequency_hz).map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
     }
     list.push(Quantity::new("quality.samples", analysis.samples as f64, 0, Unit::One));
