@@ -4,6 +4,7 @@
 //! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of `device/` or `link/`; only
 //! the tables of `protocol/` are shared with the host's side.
 
+pub mod biss;
 mod fault;
 pub mod hiperface;
 pub mod sine_cosine;

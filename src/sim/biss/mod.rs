@@ -1,0 +1,29 @@
+//! The virtual kit encoder with BiSS C: registers, banks, device modes, the guided procedures with their durations and
+//! failures, the flash and its wear, restarts; and the lines to it. Rules that the manual leaves open (`U`) follow one
+//! documented choice each.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `config` | the settings of a `sim:` link |
+//! | `shaft` | the turning shaft |
+//! | `flash` | what survives a loss of power, and how often it was written |
+//! | `calibration`, `wiegand` | the two procedures that need a turning motor |
+//! | `entry` | the three that enter and save something: data, filter, preset |
+//! | `encoder` | registers, modes, restarts: what a read or a write does at a moment |
+//! | `ubicom` | the line of the configuration pin, byte for byte |
+
+mod calibration;
+mod config;
+mod encoder;
+mod entry;
+mod flash;
+mod shaft;
+#[cfg(test)]
+mod tests;
+mod ubicom;
+mod wiegand;
+
+pub use config::{Config, ConfigError};
+pub use encoder::Encoder;
+pub use flash::Flash;
+pub use ubicom::Port;

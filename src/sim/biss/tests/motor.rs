@@ -1,0 +1,173 @@
+//! The procedures that need a turning motor: durations, results, failures (reference 5.1 and 5.2).
+
+use super::*;
+
+#[test]
+fn a_calibration_takes_two_runs() {
+    let mut host = Host::with("rpm=-500&cycles=5");
+    host.enter(0x01);
+    host.put("0x00:0x00", 0x01);
+    assert!(!host.answers(), "it may not respond while it runs");
+    assert_eq!(host.encoder.reading(host.now).map(|reading| reading.error), Some(true));
+    host.wait(4.999);
+    host.expect("0x00:0x01", 0x01);
+    host.wait(0.001);
+    assert!(host.answers());
+    host.expect("0x00:0x01", 0x02);
+    assert_eq!(host.encoder.flash().cycles(), 5);
+    host.turn(500.0);
+    host.put("0x00:0x00", 0x02);
+    host.wait(5.0);
+    host.expect("0x00:0x01", 0x22);
+    assert!(host.encoder.flash().is_calibrated());
+    assert_eq!(host.encoder.flash().cycles(), 6, "saved by itself");
+    host.put("0x6A", 0x00);
+    host.expect("0x00:0x01", 0x00);
+}
+
+#[test]
+fn a_calibration_fails_for_its_reasons() {
+    let cases = [
+        ("rpm=500", 0x30),
+        ("rpm=-500&temperature=24", 0x31),
+        ("rpm=-500&temperature=41", 0x31),
+        ("rpm=-299", 0x32),
+        ("rpm=-701", 0x32),
+        ("rpm=0", 0x32),
+        ("rpm=-500&waver=2.5", 0x33),
+        ("rpm=-500&filter=dynamic", 0x33),
+        ("rpm=-300&temperature=25", 0x02),
+        ("rpm=-700&temperature=40&waver=2", 0x02),
+    ];
+    for (query, status) in cases {
+        let mut host = Host::with(query);
+        host.enter(0x01);
+        host.put("0x00:0x00", 0x01);
+        host.expect("0x00:0x01", 0x01);
+        host.wait(5.0);
+        host.expect("0x00:0x01", status);
+        assert!(host.encoder.flash().is_calibrated(), "{query}: the first run loses nothing");
+    }
+}
+
+#[test]
+fn a_failure_of_the_second_run_loses_the_table() {
+    let after_first_run = || {
+        let mut host = Host::with("rpm=-500&cycles=0&calibration-silent=off");
+        host.enter(0x01);
+        host.put("0x00:0x00", 0x01);
+        host.wait(5.0);
+        host
+    };
+    // The motor still turns the other way.
+    let mut host = after_first_run();
+    host.put("0x00:0x00", 0x02);
+    assert!(host.answers(), "this one answers while it runs");
+    host.wait(1.0);
+    host.expect("0x00:0x01", 0x30);
+    assert!(!host.encoder.flash().is_calibrated());
+    // The mode is left, the speed changes, power is lost.
+    for end in [0, 1, 2] {
+        let mut host = after_first_run();
+        host.turn(500.0);
+        host.put("0x00:0x00", 0x02);
+        host.wait(2.0);
+        match end {
+            0 => host.put("0x6A", 0x00),
+            1 => host.turn(510.0),
+            _ => host.encoder.power_cycle(host.now),
+        }
+        assert!(!host.encoder.flash().is_calibrated(), "{end}");
+        assert_eq!(host.encoder.flash().cycles(), 0);
+    }
+    // Left in the first run, the table stays.
+    let mut host = Host::with("rpm=-500");
+    host.enter(0x01);
+    host.put("0x00:0x00", 0x01);
+    host.put("0x6A", 0x00);
+    assert!(host.encoder.flash().is_calibrated());
+}
+
+#[test]
+fn the_second_run_needs_the_first() {
+    let mut host = Host::with("rpm=500");
+    host.enter(0x01);
+    assert!(!host.write("0x00:0x00", 0x02));
+    assert!(!host.write("0x00:0x00", 0x07), "no command");
+    host.turn(-500.0);
+    host.put("0x00:0x00", 0x01);
+    assert!(!host.write("0x00:0x00", 0x01), "it runs already");
+}
+
+/// Reference 5.1: 515 revolutions, 61.8 s at 500 and 15.45 s at 2000 revolutions a minute.
+#[test]
+fn a_wiegand_test_takes_515_revolutions_each_way() {
+    for (rpm, seconds) in [(500.0, 61.8), (2000.0, 15.45)] {
+        let mut host = Host::with("pulses=6.3,5.8&cycles=0");
+        host.enter(0x02);
+        host.turn(rpm);
+        host.put("0x00:0x06", 0x01);
+        host.wait(seconds - 0.01);
+        host.expect("0x00:0x07", 0x01);
+        host.wait(0.02);
+        host.expect("0x00:0x07", 0x03);
+        host.turn(-rpm);
+        host.put("0x00:0x06", 0x02);
+        host.wait(seconds - 0.01);
+        host.expect("0x00:0x07", 0x04);
+        host.wait(0.02);
+        host.expect("0x00:0x07", 0x06);
+        let result = ["0x00:0x09", "0x00:0x0A", "0x00:0x0B", "0x00:0x0C"].map(|register| host.read(register));
+        assert_eq!(result, [63, 58, 63, 58]);
+        host.put("0x00:0x06", 0x05);
+        host.expect("0x00:0x11", 0); // visible after a restart
+        host.put("0x00:0x06", 0x03);
+        host.expect("0x00:0x07", 0x00);
+        host.put("0x6A", 0x00);
+        assert_eq!(host.encoder.flash().cycles(), 1);
+        host.encoder.power_cycle(host.now);
+        host.wait(0.5);
+        let saved = ["0x00:0x11", "0x00:0x12", "0x00:0x13", "0x00:0x14"].map(|register| host.read(register));
+        assert_eq!(saved, [63, 58, 63, 58]);
+        host.expect("0x00:0x09", 0);
+    }
+}
+
+#[test]
+fn a_motor_that_pauses_only_takes_longer() {
+    let mut host = Host::with("rpm=1000");
+    host.enter(0x02);
+    host.put("0x00:0x06", 0x01);
+    host.wait(15.0); // 250 revolutions
+    host.turn(0.0);
+    host.wait(1000.0);
+    host.expect("0x00:0x07", 0x01);
+    host.turn(1000.0);
+    host.wait(15.8);
+    host.expect("0x00:0x07", 0x01);
+    host.wait(0.2); // 265 and a little
+    host.expect("0x00:0x07", 0x03);
+}
+
+#[test]
+fn a_wiegand_test_fails_for_its_reasons() {
+    // The motor was not turned the other way.
+    let mut host = Host::with("rpm=1000&calibration-silent=off");
+    host.enter(0x02);
+    assert!(!host.write("0x00:0x06", 0x02), "the first run comes first");
+    assert!(!host.write("0x00:0x06", 0x05), "nothing to save");
+    host.put("0x00:0x06", 0x01);
+    host.wait(31.0);
+    host.put("0x00:0x06", 0x02);
+    host.wait(0.1);
+    host.expect("0x00:0x07", 0x30);
+    host.put("0x00:0x06", 0x03);
+    host.expect("0x00:0x07", 0x00);
+    // No pulses.
+    let mut host = Host::with("rpm=1000&pulses=0,0");
+    host.enter(0x02);
+    host.put("0x00:0x06", 0x01);
+    host.wait(31.0);
+    host.expect("0x00:0x07", 0x07);
+    host.expect("0x00:0x08", 0x01);
+}
