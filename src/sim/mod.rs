@@ -5,6 +5,7 @@
 //! the tables of `protocol/` are shared with the host's side.
 
 pub mod biss;
+pub mod bridge;
 mod fault;
 pub mod hiperface;
 pub mod sine_cosine;

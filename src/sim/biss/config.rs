@@ -123,6 +123,11 @@ impl Config {
         self.seed
     }
 
+    /// Revolutions a minute at the start.
+    pub const fn rpm(&self) -> f64 {
+        self.rpm
+    }
+
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
         let refuse =
             |allowed: &'static str| ConfigError::Value { key: key.to_owned(), value: value.to_owned(), allowed };

@@ -149,8 +149,14 @@ impl Encoder {
     /// Power goes and comes back at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.settle(now);
-        self.power_off();
+        self.disconnect();
         self.start(now);
+    }
+
+    /// Takes the power away.
+    pub fn disconnect(&mut self) {
+        self.abandon();
+        self.power = Power::Off;
     }
 
     /// Gives the power back to an encoder that has lost it.
@@ -344,7 +350,7 @@ impl Encoder {
         let whole = self.die_in_store != Some(self.stores_begun);
         change(&mut self.flash, whole);
         if !whole {
-            self.power_off();
+            self.disconnect();
         }
     }
 
@@ -357,11 +363,6 @@ impl Encoder {
         if self.power != Power::Off {
             self.start(now);
         }
-    }
-
-    fn power_off(&mut self) {
-        self.abandon();
-        self.power = Power::Off;
     }
 
     /// What was only in memory is gone.

@@ -1,0 +1,393 @@
+//! The adapter: requests in, replies and streams out, byte for byte, with its faults. Chosen here, where the reference
+//! says nothing: a reply comes a quarter of a millisecond after its request, one that needs a control frame after the 47
+//! cycles of that; HELLO ends all streams; SSI and BiSS share their wires, so that a stream of one keeps both busy.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::bus::Bus;
+use super::config::Config;
+use super::stream::{Analog, Clocked, Kind};
+use crate::protocol::bridge::{
+    BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
+};
+use crate::sim::biss::Encoder;
+use crate::sim::sine_cosine::{Checked, Quantity, Settings};
+use crate::sim::{ByteDevice, Faults};
+use crate::units::{CharacterFormat, Moment};
+
+/// The adapter with its encoders, seen from the host. Made of a [`Config`].
+#[derive(Clone)]
+pub struct Adapter {
+    bus: Bus,
+    faults: Faults,
+    rng: Rng,
+    switched_supply: bool,
+    version: u8,
+    receiver: Receiver,
+    biss: Option<BissSetting>,
+    ssi_clocks: Option<u8>,
+    analog: Settings,
+    clocked: Option<Clocked>,
+    sampled: Option<Analog>,
+    requests: u32,
+    pushed: u8,
+    now: Moment,
+    /// The last reply is on its way until then.
+    replied: Moment,
+    /// Bytes by the moment in which they have arrived.
+    to_host: VecDeque<(Moment, Vec<u8>)>,
+    inbox: Vec<u8>,
+}
+
+/// How BiSS is clocked.
+#[derive(Clone, Copy)]
+struct BissSetting {
+    clock_hz: u32,
+    bits: u8,
+    timeout_us: u16,
+}
+
+/// Why a request is refused.
+type Refusal = (ErrorCode, &'static str);
+
+const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
+const OUT_OF_RANGE: Refusal = (ErrorCode::BAD_ARGUMENT, "out of range");
+const STREAMING: Refusal = (ErrorCode::BUSY, "a stream is running");
+const SILENT: Refusal = (ErrorCode::NO_ANSWER, "the encoder does not answer");
+const NOT_THERE: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
+
+impl Adapter {
+    const MAX_CLOCK_HZ: u32 = 10_000_000;
+    const MIN_CLOCK_HZ: u32 = 80_000;
+    /// Clocks are whole parts of this.
+    const CRYSTAL_HZ: u32 = 60_000_000;
+    const MAX_SAMPLE_HZ: u32 = 1_000_000;
+    const LATENCY: Duration = Duration::from_micros(250);
+    /// Longest time that the encoder works on a frame.
+    const ACKNOWLEDGE_US: u32 = 7;
+    const CONTROL_CYCLES: u32 = 47;
+    /// The encoder's supply (manual, chapter 2).
+    const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
+    const SUPPLY_MILLIWATT: u32 = 300;
+
+    /// The virtual adapter as `config` wants it.
+    pub fn new(config: &Config) -> Self {
+        let mut adapter = Adapter {
+            bus: Bus::new(config),
+            faults: config.encoder.faults().clone(),
+            rng: Rng::with_seed(config.encoder.seed()),
+            switched_supply: config.switched_supply,
+            version: config.version,
+            receiver: Receiver::default(),
+            biss: None,
+            ssi_clocks: None,
+            analog: Settings { seed: config.encoder.seed(), ..Settings::default() }.with(Quantity::Speed, config.rpm),
+            clocked: None,
+            sampled: None,
+            requests: 0,
+            pushed: 0,
+            now: Moment::START,
+            replied: Moment::START,
+            to_host: VecDeque::new(),
+            inbox: Vec::new(),
+        };
+        adapter.switch_off();
+        adapter
+    }
+
+    /// The encoder at the clocked bus.
+    pub const fn encoder(&self) -> &Encoder {
+        &self.bus.encoder
+    }
+
+    /// The encoder, to warm it or to give it errors. Its shaft is turned by [`set_rpm`](Self::set_rpm).
+    pub const fn encoder_mut(&mut self) -> &mut Encoder {
+        &mut self.bus.encoder
+    }
+
+    /// Turns the shaft that all encoders share at another speed from `now` on.
+    pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        self.advance(now);
+        self.bus.encoder.set_rpm(self.now, rpm);
+        self.analog.speed_rpm = rpm;
+        if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().checked()) {
+            stream.change(self.now, settings);
+        }
+    }
+
+    fn advance(&mut self, to: Moment) {
+        self.now = self.now.max(to);
+        let mut packets = Vec::new();
+        if let Some(stream) = &mut self.clocked {
+            let (bus, kind) = (&mut self.bus, stream.kind);
+            let biss_bits = self.biss.map_or(0, |setting| setting.bits);
+            let ssi_bits = self.ssi_clocks.unwrap_or(0);
+            packets.extend(stream.run(self.now, |at| match kind {
+                Kind::Biss => bus.biss(at, biss_bits),
+                Kind::Ssi => (BissStatus::OK, bus.ssi(at, ssi_bits)),
+            }));
+        }
+        if let Some(stream) = &mut self.sampled {
+            packets.extend(stream.run(self.now));
+        }
+        packets.sort_by_key(|(at, _)| *at);
+        for (at, data) in packets {
+            let packet = Message::Data(data).emit(self.pushed);
+            self.pushed = self.pushed.wrapping_add(1);
+            self.send(at + Self::LATENCY, &packet);
+        }
+        while let Some((_, bytes)) = self.to_host.pop_front_if(|(at, _)| *at <= self.now) {
+            self.inbox.extend(bytes);
+        }
+    }
+
+    /// Over the noisy line.
+    fn send(&mut self, at: Moment, packet: &Packet) {
+        let bytes = noisy(&self.faults, &mut self.rng, &packet.emit());
+        let place = self.to_host.partition_point(|(other, _)| *other <= at);
+        self.to_host.insert(place, (at, bytes));
+    }
+
+    fn take(&mut self, packet: &Packet) {
+        let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
+        self.requests = self.requests.saturating_add(1);
+        if silent {
+            return;
+        }
+        let refused = |(code, text): Refusal| Message::Error { op: packet.op, code, text: text.to_owned() };
+        let (message, time) = match Request::parse(packet) {
+            Err(BodyError::Operation(_)) => (refused(NOT_THERE), Duration::ZERO),
+            Err(_) => (refused(OUT_OF_RANGE), Duration::ZERO),
+            Ok(request) => {
+                let time = self.time(&request);
+                (self.execute(request).map_or_else(refused, Message::Reply), time)
+            }
+        };
+        let mut reply = message.emit(packet.seq);
+        if let (Message::Reply(Reply::Hello(_)), Some(version)) = (&message, reply.body.first_mut()) {
+            *version = self.version;
+        }
+        self.replied = self.replied.max(self.now) + Self::LATENCY + time + self.faults.delay();
+        self.send(self.replied, &reply);
+    }
+
+    /// How long the adapter is at it, beside the way of the bytes.
+    fn time(&self, request: &Request) -> Duration {
+        let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
+        match request.operation() {
+            Operation::BissRead => frame,
+            Operation::BissRegisterRead | Operation::BissRegisterWrite => frame * Self::CONTROL_CYCLES,
+            _ => Duration::ZERO,
+        }
+    }
+
+    fn execute(&mut self, request: Request) -> Result<Reply, Refusal> {
+        let t_us = u64::try_from(self.now.since_start().as_micros()).unwrap_or(u64::MAX);
+        let operation = request.operation();
+        let stops = matches!(request, Request::SsiStream { period_us: 0 } | Request::BissStream { period_us: 0 });
+        let clocked = (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte());
+        if clocked && !stops && self.clocked.is_some() || operation == Operation::AnalogConfig && self.sampled.is_some()
+        {
+            return Err(STREAMING);
+        }
+        match request {
+            Request::Hello => Ok(Reply::Hello(self.hello())),
+            Request::Supply { on, millivolt } => self.supply(on, millivolt),
+            Request::SsiConfig { clocks, clock_hz, .. } => {
+                let actual = actual_clock(clock_hz).filter(|_| (1..=64).contains(&clocks)).ok_or(OUT_OF_RANGE)?;
+                self.ssi_clocks = Some(clocks);
+                Ok(Reply::SsiConfig { clock_hz: actual })
+            }
+            Request::SsiRead => {
+                let clocks = self.ssi_clocks.ok_or(NOT_CONFIGURED)?;
+                Ok(Reply::SsiRead { t_us, raw: self.bus.ssi(self.now, clocks) })
+            }
+            Request::SsiStream { period_us } => {
+                let clocks = self.ssi_clocks.ok_or(NOT_CONFIGURED)?;
+                let period_us = self.stream(Kind::Ssi, period_us, 20, clocks);
+                Ok(Reply::SsiStream { period_us })
+            }
+            Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {
+                let bits = data_bits.checked_add(crc_bits).filter(|bits| (1..=64).contains(bits) && data_bits > 0);
+                let (bits, clock_hz) = bits.zip(actual_clock(clock_hz)).ok_or(OUT_OF_RANGE)?;
+                self.biss = Some(BissSetting { clock_hz, bits, timeout_us });
+                Ok(Reply::BissConfig { clock_hz })
+            }
+            Request::BissRead => {
+                let setting = self.biss.ok_or(NOT_CONFIGURED)?;
+                let (status, raw) = self.bus.biss(self.now, setting.bits);
+                Ok(Reply::BissRead { t_us, status, raw })
+            }
+            Request::BissRegisterRead { slave, address } => {
+                let value = self.register(slave, address, None)?;
+                Ok(Reply::BissRegisterRead { value })
+            }
+            Request::BissRegisterWrite { slave, address, value } => {
+                let value = self.register(slave, address, Some(value))?;
+                Ok(Reply::BissRegisterWrite { value })
+            }
+            Request::BissStream { period_us } => {
+                let setting = self.biss.ok_or(NOT_CONFIGURED)?;
+                let least = u32::try_from(setting.frame().as_micros()).unwrap_or(u32::MAX);
+                let period_us = self.stream(Kind::Biss, period_us, least, setting.bits);
+                Ok(Reply::BissStream { period_us })
+            }
+            Request::AnalogConfig { sample_hz } => {
+                let checked = self.analog.clone().with(Quantity::Rate, f64::from(sample_hz)).checked();
+                self.analog = checked.map_err(|_| OUT_OF_RANGE)?.settings().clone();
+                let period_ns = self.analog.period_ns().unsigned_abs().max(1);
+                // At most a million.
+                let sample_hz = u32::try_from(1_000_000_000 / period_ns).unwrap_or(Self::MAX_SAMPLE_HZ);
+                let full_scale_microvolt = Analog::FULL_SCALE_MICROVOLT;
+                Ok(Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits: 16 })
+            }
+            Request::AnalogStream { on } => {
+                let settings: Checked = self.analog.clone().checked().map_err(|_| OUT_OF_RANGE)?;
+                match (on, &self.sampled) {
+                    (true, Some(_)) => return Err(STREAMING),
+                    (true, None) => self.sampled = Some(Analog::new(self.now, settings)),
+                    (false, _) => self.sampled = None,
+                }
+                Ok(Reply::AnalogStream { on })
+            }
+            Request::UartConfig { .. } | Request::UartTransfer { .. } => Err(NOT_THERE),
+        }
+    }
+
+    fn hello(&mut self) -> Hello {
+        (self.clocked, self.sampled) = (None, None);
+        self.switch_off();
+        let can = Capabilities::SSI
+            .and(Capabilities::BISS)
+            .and(Capabilities::BISS_REGISTERS)
+            .and(Capabilities::ANALOG)
+            .and(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) });
+        Hello {
+            capabilities: can,
+            max_clock_hz: Self::MAX_CLOCK_HZ,
+            max_sample_hz: Self::MAX_SAMPLE_HZ,
+            name: "virtual adapter".to_owned(),
+            serial: "V0001".to_owned(),
+            firmware: "1.0".to_owned(),
+        }
+    }
+
+    fn switch_off(&mut self) {
+        if self.switched_supply {
+            self.bus.encoder.disconnect();
+        }
+    }
+
+    fn supply(&mut self, on: bool, millivolt: u16) -> Result<Reply, Refusal> {
+        if !self.switched_supply {
+            return Err(NOT_THERE);
+        }
+        if !on {
+            self.switch_off();
+            return Ok(Reply::Supply { on, millivolt: 0, milliampere: 0 });
+        }
+        if !Self::SUPPLY.contains(&millivolt) {
+            return Err(OUT_OF_RANGE);
+        }
+        self.bus.encoder.connect(self.now);
+        let milliampere = u16::try_from(Self::SUPPLY_MILLIWATT * 1000 / u32::from(millivolt)).unwrap_or(u16::MAX);
+        Ok(Reply::Supply { on, millivolt, milliampere })
+    }
+
+    /// Reads a register, or writes it and reads it back.
+    fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, Refusal> {
+        self.biss.ok_or(NOT_CONFIGURED)?;
+        let place = self.bus.encoder.address(address).filter(|_| slave < 8).ok_or(OUT_OF_RANGE)?;
+        if slave != 0 || !self.bus.answers(self.now) {
+            return Err(SILENT);
+        }
+        if let Some(value) = value {
+            let accepted = self.bus.encoder.write(self.now, place, value);
+            if !self.bus.encoder.has_power() {
+                return Err(SILENT);
+            }
+            if accepted && !self.bus.answers(self.now) {
+                // It has given the value back before it restarted or began to calibrate.
+                return Ok(value);
+            }
+        }
+        self.bus.encoder.read(self.now, place).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
+    }
+
+    /// Starts or ends a stream and gives its period.
+    fn stream(&mut self, kind: Kind, period_us: u32, least_us: u32, bits: u8) -> u32 {
+        if period_us == 0 {
+            self.clocked = self.clocked.take().filter(|stream| stream.kind != kind);
+            return 0;
+        }
+        let period_us = period_us.max(least_us);
+        let start = self.replied.max(self.now) + Self::LATENCY;
+        self.clocked = Some(Clocked::new(kind, start, Duration::from_micros(period_us.into()), bits));
+        period_us
+    }
+}
+
+impl BissSetting {
+    /// Acknowledge, start and control bit, frame, time-out.
+    fn frame(self) -> Duration {
+        let clocks = u64::from(self.bits) + 2;
+        let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
+        let fixed = Adapter::ACKNOWLEDGE_US + u32::from(self.timeout_us);
+        Duration::from_micros(fixed.into()) + Duration::from_micros(clocked.as_nanos().div_ceil(1000) as u64)
+    }
+}
+
+/// The fastest clock that the adapter has and that is not above the one asked for; `None` below its slowest.
+fn actual_clock(clock_hz: u32) -> Option<u32> {
+    let wanted = clock_hz.min(Adapter::MAX_CLOCK_HZ);
+    (wanted >= Adapter::MIN_CLOCK_HZ).then(|| Adapter::CRYSTAL_HZ / Adapter::CRYSTAL_HZ.div_ceil(wanted))
+}
+
+fn noisy(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
+    let passages = bytes.iter().map(|byte| faults.passage(rng, *byte));
+    passages
+        .flat_map(|passage| passage.inserted.into_iter().chain(passage.carried.map(|carried| carried.byte)))
+        .collect()
+}
+
+impl ByteDevice for Adapter {
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
+        self.advance(now);
+        let heard = noisy(&self.faults, &mut self.rng, bytes);
+        self.receiver.push(&heard);
+        while let Some(packet) = self.receiver.next_packet() {
+            self.take(&packet);
+        }
+    }
+
+    fn poll(&mut self, now: Moment) -> Vec<u8> {
+        self.advance(now);
+        std::mem::take(&mut self.inbox)
+    }
+
+    fn poll_at(&self) -> Option<Moment> {
+        if !self.inbox.is_empty() {
+            return Some(self.now);
+        }
+        let arriving = self.to_host.front().map(|(at, _)| *at);
+        let clocked = self.clocked.as_ref().map(Clocked::due);
+        let sampled = self.sampled.as_ref().map(Analog::due);
+        [arriving, clocked, sampled].into_iter().flatten().min()
+    }
+
+    /// A serial port over USB has no speed of its own.
+    fn set_host_format(&mut self, now: Moment, _format: CharacterFormat) {
+        self.advance(now);
+    }
+
+    fn connect(&mut self, now: Moment) {
+        self.advance(now);
+        self.inbox.clear();
+        if !self.switched_supply {
+            self.bus.encoder.connect(self.now);
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Samples at equal distances, in packets of five milliseconds or as many as fit. What the host does not fetch for more
+//! than a second is lost, and told.
+
+use std::time::Duration;
+
+use crate::protocol::bridge::{AnalogData, BissData, BissStatus, Data, MAX_BODY, SsiData};
+use crate::signal::Time;
+use crate::sim::sine_cosine::{Checked, Source};
+use crate::units::Moment;
+
+/// Longest wait for a packet to fill.
+const FLUSH: Duration = Duration::from_millis(5);
+/// What the adapter keeps for a host that does not fetch.
+const BACKLOG: Duration = Duration::from_secs(1);
+
+/// Which clocked bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Ssi,
+    Biss,
+}
+
+/// Where a stream is.
+#[derive(Clone, Debug)]
+struct Pace {
+    start: Moment,
+    period: Duration,
+    /// Samples in a packet.
+    capacity: u64,
+    /// First sample of the next packet.
+    first: u64,
+    lost: u64,
+}
+
+impl Pace {
+    /// With so many bytes before the samples and in each.
+    fn new(start: Moment, period: Duration, head: usize, size: usize) -> Self {
+        let fit = (MAX_BODY - head) / size.max(1);
+        let in_time = FLUSH.as_nanos() / period.as_nanos().max(1);
+        // Neither is above 255 then.
+        let capacity = in_time.clamp(1, fit.min(255) as u128) as u64;
+        Pace { start, period, capacity, first: 0, lost: 0 }
+    }
+
+    fn moment(&self, index: u64) -> Moment {
+        let nanoseconds = self.period.as_nanos().saturating_mul(index.into());
+        self.start + Duration::from_nanos(u64::try_from(nanoseconds).unwrap_or(u64::MAX))
+    }
+
+    /// When the last sample of the next packet is taken.
+    fn due(&self) -> Moment {
+        self.moment(self.first + self.capacity - 1)
+    }
+
+    /// Gives up what is older than the backlog.
+    fn skip(&mut self, to: Moment) {
+        let behind = to.since(self.due());
+        if behind > BACKLOG {
+            let packet = self.period.as_nanos().max(1) * u128::from(self.capacity);
+            let packets = u64::try_from((behind - BACKLOG).as_nanos() / packet).unwrap_or(u64::MAX);
+            let samples = packets.saturating_mul(self.capacity);
+            self.first += samples;
+            self.lost += samples;
+        }
+    }
+
+    /// Number of the first sample, when it is taken, samples lost before it; then it is the next packet's turn.
+    fn next(&mut self) -> (u32, u64, u16) {
+        let first = (self.first % (1 << 32)) as u32;
+        let t0_us = u64::try_from(self.moment(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
+        let lost = u16::try_from(self.lost).unwrap_or(u16::MAX);
+        self.first += self.capacity;
+        self.lost = 0;
+        (first, t0_us, lost)
+    }
+}
+
+/// A stream of SSI words or BiSS frames.
+#[derive(Clone, Debug)]
+pub(super) struct Clocked {
+    pub(super) kind: Kind,
+    pace: Pace,
+    width: u8,
+    /// Samples that were taken for the next packet.
+    taken: Vec<(BissStatus, u64)>,
+}
+
+impl Clocked {
+    const HEAD: usize = 20;
+
+    /// `bits` of each value.
+    pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
+        let width = bits.div_ceil(8).clamp(1, 8);
+        let size = usize::from(width) + usize::from(kind == Kind::Biss);
+        Clocked { kind, pace: Pace::new(start, period, Self::HEAD, size), width, taken: Vec::new() }
+    }
+
+    pub(super) fn due(&self) -> Moment {
+        self.pace.due()
+    }
+
+    /// Takes the samples up to a moment, so that they are not changed by what happens then, and gives the packets that
+    /// are complete, each with its moment.
+    pub(super) fn run(&mut self, to: Moment, mut take: impl FnMut(Moment) -> (BissStatus, u64)) -> Vec<(Moment, Data)> {
+        let mut packets = Vec::new();
+        let before = self.pace.first;
+        self.pace.skip(to);
+        if self.pace.first != before {
+            self.taken.clear();
+        }
+        loop {
+            let at = self.pace.moment(self.pace.first + self.taken.len() as u64);
+            if at > to {
+                return packets;
+            }
+            self.taken.push(take(at));
+            if self.taken.len() as u64 == self.pace.capacity {
+                packets.push((at, self.packet()));
+            }
+        }
+    }
+
+    fn packet(&mut self) -> Data {
+        let values = std::mem::take(&mut self.taken);
+        let (first_index, t0_us, lost) = self.pace.next();
+        let (width, period_us) = (self.width, u32::try_from(self.pace.period.as_micros()).unwrap_or(u32::MAX));
+        match self.kind {
+            Kind::Ssi => {
+                let values = values.into_iter().map(|(_, value)| value).collect();
+                Data::Ssi(SsiData { first_index, t0_us, period_us, lost, width, values })
+            }
+            Kind::Biss => Data::Biss(BissData { first_index, t0_us, period_us, lost, width, values }),
+        }
+    }
+}
+
+/// A stream of analogue samples.
+#[derive(Clone, Debug)]
+pub(super) struct Analog {
+    pace: Pace,
+    source: Source,
+}
+
+impl Analog {
+    /// A value of 32 767, in microvolts.
+    pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
+    const HEAD: usize = 15;
+
+    pub(super) fn new(start: Moment, settings: Checked) -> Self {
+        let period = Duration::from_nanos(settings.settings().period_ns().unsigned_abs());
+        Analog { pace: Pace::new(start, period, Self::HEAD, 4), source: Source::new(settings, Time::ORIGIN) }
+    }
+
+    pub(super) fn due(&self) -> Moment {
+        self.pace.due()
+    }
+
+    /// Other settings from a moment on.
+    pub(super) fn change(&mut self, now: Moment, settings: Checked) {
+        let elapsed = now.since(self.pace.start).as_nanos();
+        let index = elapsed.div_ceil(self.pace.period.as_nanos().max(1));
+        self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
+    }
+
+    /// The packets that are complete at a moment, each with its own.
+    pub(super) fn run(&mut self, to: Moment) -> Vec<(Moment, Data)> {
+        let mut packets = Vec::new();
+        self.pace.skip(to);
+        while self.pace.due() <= to {
+            let at = self.pace.due();
+            let count = usize::try_from(self.pace.capacity).unwrap_or(0);
+            // Changes that are forgotten leave an empty packet: the gap is seen.
+            let samples = self.source.samples(self.pace.first, count).map_or(Vec::new(), |wires| {
+                wires
+                    .sine_v()
+                    .into_iter()
+                    .zip(wires.cosine_v())
+                    .map(|(sine, cosine)| (raw(sine), raw(cosine)))
+                    .collect()
+            });
+            let (first_index, t0_us, lost) = self.pace.next();
+            packets.push((at, Data::Analog(AnalogData { first_index, t0_us, lost, samples })));
+        }
+        packets
+    }
+}
+
+/// Parts of the full scale; what is beyond it stays at its end.
+fn raw(volts: f64) -> i16 {
+    // Saturates, as the converter does.
+    (volts * 1e6 / f64::from(Analog::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
+}
