@@ -134,6 +134,11 @@ fn own_bytes_come_back_on_one_wire() {
 fn a_request_while_the_encoder_works_or_talks_is_lost() {
     let mut line = Line::with("temperature=25");
     line.expect(&format!("{READ_TEMPERATURE} {READ_TEMPERATURE}"), TEMPERATURE);
+    line.wait(1.0);
+    // It talks from 1.69 to 2.30 ms; what began in between is not whole.
+    line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
+    line.wait(0.0018);
+    line.expect(READ_TEMPERATURE, TEMPERATURE);
 }
 
 #[test]
