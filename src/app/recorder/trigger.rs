@@ -157,11 +157,11 @@ impl Recorder {
     pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
-        let all = group.history.all();
-        let room = (all.end - all.start).saturating_add(more as u64) <= group.capacity as u64;
-        // Whole blocks go: what lies a block behind the oldest is the next to be the oldest.
-        let oldest = group.history.time(all.start.saturating_add(2 * 4096 + more as u64));
-        !room && oldest.is_none_or(|oldest| oldest > watch.window(at).0)
+        let history = &group.history;
+        let Some(oldest) = history.time(history.all().start) else { return false };
+        // What goes anyway before the picture begins is no loss to it.
+        let remains = history.oldest_after(more);
+        remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
     }
 
     pub(super) fn disarm(&mut self) {

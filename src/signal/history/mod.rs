@@ -193,6 +193,13 @@ impl History {
         self.times.first()..self.times.end()
     }
 
+    /// When the oldest sample was taken that is still there after so many more; `None` when none of the present ones is.
+    pub fn oldest_after(&self, more: usize) -> Option<Time> {
+        let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
+        let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
+        self.times.get(first.max(self.times.first()))
+    }
+
     /// The samples from `from` on, before `to`, by index.
     pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
         let from = self.times.search(from);

@@ -184,3 +184,19 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
     let history = history(&[1.0, 2.0], &[]);
     assert_eq!(picture(&history, 9, 0, 5).pixels.len(), 2, "the samples on both sides");
 }
+
+/// Blocks of 4096; for 5000 samples two and the one being filled are kept.
+#[test]
+fn what_will_be_the_oldest_is_known_before() {
+    let mut history = History::new(&[Kind::Whole], 5_000);
+    assert_eq!(history.oldest_after(1), None);
+    let mut next = 0;
+    for portion in [1, 4_095, 8_191, 1, 1, 4_095, 10_000] {
+        let expected = history.oldest_after(portion);
+        let times: Vec<Time> = (next..next + portion as i64).map(Time::from_nanoseconds).collect();
+        history.append(&times, &[Part::whole(&vec![0; portion])]).unwrap();
+        let oldest = history.time(history.all().start).filter(|oldest| oldest.nanoseconds() < next);
+        assert_eq!(expected, oldest, "{next} and {portion}");
+        next += portion as i64;
+    }
+}
