@@ -154,7 +154,7 @@ impl Bench {
     fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
         frame(&self.ctx, |ui| {
             let (skin, mut actions) = (self.skin, Vec::new());
-            let desk = Desk::Encoder(SessionId::default());
+            let desk = Desk::Device(SessionId::default());
             plot_ui(ui, &skin, recorder, desk, &mut self.view, "", &mut actions);
         })
     }

@@ -6,13 +6,14 @@ use super::connect;
 use super::hiperface;
 use super::keep::SettingsRead;
 use super::recorder::{self, Exported};
+use super::session::{DraftDone, Kind, Listed};
 use super::signals;
 use super::studio::{SessionId, Tab};
 use super::{Language, Picture, Text, Theme};
 use crate::link::LinkError;
 use crate::profile::{Document, ProfileError};
 use crate::protocol::hiperface::EncoderTypes;
-use crate::store::{FileError, StoreError};
+use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::hiperface::Hiperface;
 use crate::worker::{OpenError, Worker};
 
@@ -91,21 +92,14 @@ pub enum Done {
         /// There is.
         exists: bool,
     },
-    /// A link was opened, or not.
-    Opened {
-        /// For whom.
-        session: SessionId,
-        /// Which attempt of that session: only its latest counts.
-        attempt: u32,
-        /// The session on its thread.
-        result: Result<Box<Opened>, Box<OpenFailed>>,
-    },
+    /// A link to a HIPERFACE encoder was opened, or not.
+    OpenedHiperface(Attempt<Hiperface>),
     /// A link was opened for a search.
     OpenedForSearch {
         /// For which.
         number: u32,
         /// The session on its thread.
-        result: Result<Box<Opened>, Box<OpenFailed>>,
+        result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
     },
     /// The serial ports of this machine.
     Ports(Result<Vec<connect::Offer>, LinkError>),
@@ -147,16 +141,39 @@ pub enum Done {
     SettingsRead(SettingsRead),
     /// The settings were kept.
     SettingsKept(Result<(), FileError>),
-    /// About one session in the HIPERFACE tab.
-    Hiperface(SessionId, hiperface::Done),
+    /// About the draft of a session.
+    Draft(SessionId, DraftDone),
+    /// Backups and writes of a device were listed.
+    Listed(SessionId, DeviceKey, Box<Listed>),
+    /// A backup was read, or not.
+    Backup {
+        /// For which session.
+        session: SessionId,
+        /// For which device.
+        of: DeviceKey,
+        /// The file.
+        path: PathBuf,
+        /// What is in it.
+        result: Result<Box<Document>, ReadError>,
+    },
     /// In the Signals tab.
     Signals(signals::Done),
 }
 
+/// What came of opening a link for a session.
+pub struct Attempt<D: Kind> {
+    /// For whom.
+    pub session: SessionId,
+    /// Which attempt of that session: only its latest counts.
+    pub attempt: u32,
+    /// The session on its thread.
+    pub result: Result<Box<Opened<D>>, Box<OpenFailed>>,
+}
+
 /// A session on its thread, with the ring that its trace goes into.
-pub struct Opened {
+pub struct Opened<D: Kind> {
     /// The session.
-    pub(super) worker: Worker<Hiperface>,
+    pub(super) worker: Worker<D>,
     /// Where it talks.
     pub(super) url: crate::link::LinkUrl,
     /// Its trace.
@@ -203,8 +220,8 @@ pub enum ReadError {
 /// Whose recorder it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Desk {
-    /// An encoder's.
-    Encoder(SessionId),
+    /// A device's.
+    Device(SessionId),
     /// The Signals tab's.
     Signals,
 }

@@ -1,10 +1,11 @@
 //! Closing a session or the window: what would be lost or cut off is asked about once, and waited for.
 
+use super::AnyDevice;
 use super::Text;
 use super::action::{Action, Done, Question, Then, Waited};
-use super::hiperface::{Encoder, Source};
 use super::recorder;
 use super::services::JobEnd;
+use super::session::Source;
 use super::studio::{SessionId, Studio};
 
 /// Nanoseconds of a recording that nobody wants to lose by a click.
@@ -15,9 +16,9 @@ impl Studio {
     /// on disk; or it has had time enough.
     pub fn may_close(&self) -> bool {
         let services = &self.services;
-        let drafts = services.drafts_on_their_way == 0 && self.encoders.iter().all(Encoder::is_draft_kept);
-        let writes = services.leaves_writing() || self.encoders.iter().any(Encoder::is_writing);
-        let runs = !services.leaving.is_empty() || self.encoders.iter().any(Encoder::is_busy);
+        let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(AnyDevice::is_draft_kept);
+        let writes = services.leaves_writing() || self.devices.iter().any(AnyDevice::is_writing);
+        let runs = !services.leaving.is_empty() || self.devices.iter().any(AnyDevice::is_busy);
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
             && over(Waited::Writes, !writes)
@@ -26,15 +27,15 @@ impl Studio {
     }
 
     pub(super) fn close_session(&mut self, id: SessionId) {
-        let Some(encoder) = self.encoder_mut(id) else { return };
-        if encoder.is_busy() || encoder.staged.is_dirty() {
-            let text = match (&encoder.source, encoder.staged.is_dirty() && !encoder.keeps_edits()) {
+        let Some(device) = self.device_mut(id) else { return };
+        if device.is_busy() || device.is_dirty() {
+            let text = match (device.source(), device.is_dirty() && !device.keeps_edits()) {
                 (_, true) => "question.session_lost",
-                _ if encoder.is_busy() => "question.session_busy",
+                _ if device.is_busy() => "question.session_busy",
                 (Source::Link(_), false) => "question.session_edits",
                 (Source::File { .. }, false) => "question.profile_edits",
             };
-            let text = Text::new(text).with("name", encoder.name());
+            let text = Text::new(text).with("name", device.name());
             let confirm = Text::new("question.close_session");
             self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
         } else {
@@ -43,24 +44,22 @@ impl Studio {
     }
 
     fn remove(&mut self, id: SessionId) {
-        self.with_encoder(id, |encoder, services| {
-            encoder.leave_draft(services);
-            encoder.let_go(JobEnd::Cancelled, services);
+        self.with_device(id, |device, services| {
+            device.leave_draft(services);
+            device.let_go(JobEnd::Cancelled, services);
         });
-        self.encoders.retain(|encoder| encoder.id != id);
-        if self.shown == Some(id) {
-            self.shown = self.encoders.last().map(|encoder| encoder.id);
-        }
+        self.devices.retain(|device| device.id() != id);
+        self.shown.remove(&self.devices, id);
     }
 
     pub(super) fn close(&mut self) {
-        let busy = self.encoders.iter().any(Encoder::is_busy);
-        let edits = self.encoders.iter().any(|encoder| encoder.staged.is_dirty());
-        let recorded = self.encoders.iter().any(|encoder| encoder.record.recorder.unsaved() >= MUCH);
+        let busy = self.devices.iter().any(AnyDevice::is_busy);
+        let edits = self.devices.iter().any(AnyDevice::is_dirty);
+        let recorded = self.devices.iter().any(|device| device.recorder().unsaved() >= MUCH);
         if busy || edits || recorded {
-            let lost = |encoder: &Encoder| encoder.staged.is_dirty() && !encoder.keeps_edits();
-            let text = match self.encoders.iter().find(|encoder| lost(encoder)) {
-                Some(encoder) => Text::new("question.session_lost").with("name", encoder.name()),
+            let lost = |device: &AnyDevice| device.is_dirty() && !device.keeps_edits();
+            let text = match self.devices.iter().find(|device| lost(device)) {
+                Some(device) => Text::new("question.session_lost").with("name", device.name()),
                 None if busy => Text::new("question.busy"),
                 None => Text::new(if edits { "question.edits" } else { "question.recording" }),
             };

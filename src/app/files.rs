@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
 use super::closing::MUCH;
-use super::hiperface;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
-use super::studio::Studio;
-use super::{Picture, Severity, Text, explain};
+use super::studio::{SessionId, Studio};
+use super::{AnyDevice, Picture, Severity, Text, explain};
 use crate::store::FileError;
 
 impl Studio {
@@ -28,7 +27,7 @@ impl Studio {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
             FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
-            FileQuestion::Save { session, .. } => self.act_hiperface(session, hiperface::Action::Save(path)),
+            FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
                 let result = picture.save(&path);
@@ -37,19 +36,21 @@ impl Studio {
         }
     }
 
+    fn save(&mut self, session: SessionId, path: PathBuf) {
+        self.with_device(session, |device, services| device.save(path, services));
+    }
+
     /// The recorder of a desk.
     pub fn recorder(&self, desk: Desk) -> Option<&Recorder> {
         match desk {
-            Desk::Encoder(id) => {
-                self.encoders.iter().find(|encoder| encoder.id == id).map(|encoder| &encoder.record.recorder)
-            }
+            Desk::Device(id) => self.device(id).map(AnyDevice::recorder),
             Desk::Signals => Some(&self.signals.scope().recorder),
         }
     }
 
     fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
         match desk {
-            Desk::Encoder(id) => self.encoder_mut(id).map(|encoder| &mut encoder.record.recorder),
+            Desk::Device(id) => self.device_mut(id).map(AnyDevice::recorder_mut),
             Desk::Signals => Some(&mut self.signals.scope_mut().recorder),
         }
     }
@@ -81,12 +82,12 @@ impl Studio {
 
     /// A name after the encoder and the time of day: what is recorded is not recorded again.
     fn suggested(&self, desk: Option<Desk>, ending: &str) -> PathBuf {
-        let encoder = match desk {
-            Some(Desk::Encoder(id)) => self.encoders.iter().find(|encoder| encoder.id == id),
+        let device = match desk {
+            Some(Desk::Device(id)) => self.device(id),
             Some(Desk::Signals) => None,
-            None => self.encoder(),
+            None => self.shown(),
         };
-        let whose = encoder.and_then(|encoder| encoder.suggested_file().file_stem().map(ToOwned::to_owned));
+        let whose = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
         let whose = whose.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
         PathBuf::from(format!("{whose}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
     }
@@ -139,8 +140,8 @@ impl Studio {
 
     /// Hands samples over to the tables that are being written.
     pub(super) fn feed_exports(&mut self) {
-        for encoder in &mut self.encoders {
-            encoder.record.recorder.feed_export();
+        for device in &mut self.devices {
+            device.recorder_mut().feed_export();
         }
         self.signals.scope_mut().recorder.feed_export();
     }

@@ -6,12 +6,11 @@ use std::time::Duration;
 use crossbeam_channel::Sender;
 
 use super::action::{Action, Done};
-use super::hiperface;
 use super::services::{JobEnd, Services};
+use super::session::{Kind, LastWords};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::LinkUrl;
-use crate::worker::hiperface::Hiperface;
 use crate::worker::{Ending, JobId, Worker};
 
 /// How long closing waits, and opening for a wire that somebody still holds.
@@ -46,7 +45,33 @@ pub(super) struct Leaver {
 /// A session that was let go and has not ended.
 pub(super) struct Leaving {
     who: Leaver,
-    ending: Arc<Ending<Hiperface>>,
+    ending: Arc<dyn Left>,
+}
+
+/// A worker that was let go, of whatever device.
+pub(super) trait Left: Send + Sync {
+    /// The thread has ended and the wire is free.
+    fn is_ended(&self) -> bool;
+
+    /// Waits at most `patience` for the end; true when it has come.
+    fn wait(&self, patience: Duration) -> bool;
+
+    /// How jobs ended that it has told of since the last time.
+    fn last_words(&self) -> Vec<LastWords>;
+}
+
+impl<D: Kind> Left for Ending<D> {
+    fn is_ended(&self) -> bool {
+        Ending::is_ended(self)
+    }
+
+    fn wait(&self, patience: Duration) -> bool {
+        Ending::wait(self, patience)
+    }
+
+    fn last_words(&self) -> Vec<LastWords> {
+        self.events().try_iter().filter_map(|event| D::last_words(&event)).collect()
+    }
 }
 
 /// Two links that lead to the same wire.
@@ -56,8 +81,8 @@ pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 
 impl Services {
     /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
-    pub(super) fn leave(&mut self, worker: Worker<Hiperface>, who: Leaver, turn: Option<Sender<()>>) {
-        let ending = Arc::new(worker.end());
+    pub(super) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
+        let ending: Arc<dyn Left> = Arc::new(worker.end());
         let (watched, patience) = (ending.clone(), self.patience_with(who.write.is_some()));
         self.tasks.run("leave", move || {
             watched.wait(patience);
@@ -73,10 +98,8 @@ impl Services {
         self.leaving.retain_mut(|leaving| {
             // In this order: what has ended tells nothing more.
             let ended = leaving.ending.is_ended();
-            for event in leaving.ending.events().try_iter() {
-                if let Some(end) = hiperface::last_words(&event)
-                    && leaving.who.write == Some(end.job)
-                {
+            for end in leaving.ending.last_words() {
+                if leaving.who.write == Some(end.job) {
                     leaving.who.write = None;
                     told.push((leaving.who.session, leaving.who.about.clone(), end));
                 }
@@ -84,7 +107,7 @@ impl Services {
             if ended && let Some(job) = leaving.who.write.take() {
                 let why = Text::new("session.ended");
                 let end = JobEnd::Failed(why.clone());
-                let end = hiperface::LastWords { job, end, severity: Severity::Error, texts: vec![why] };
+                let end = LastWords { job, end, severity: Severity::Error, texts: vec![why] };
                 told.push((leaving.who.session, leaving.who.about.clone(), end));
             }
             !ended
@@ -101,7 +124,7 @@ impl Services {
     }
 
     /// Those that still hold a wire, with the time they get.
-    pub(super) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<Ending<Hiperface>>, Duration)> {
+    pub(super) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
         let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
         own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()
     }

@@ -7,8 +7,8 @@ use jiff::Zoned;
 
 use super::Text;
 use super::action::Opened;
+use super::session::Kind;
 use crate::link::TraceEntry;
-use crate::worker::hiperface::Hiperface;
 use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker};
 
 /// A job that runs.
@@ -37,15 +37,31 @@ pub struct Line<D: Device> {
     pub is_virtual: bool,
 }
 
-impl Line<Hiperface> {
+/// A job that runs, for whoever does not know the device.
+#[derive(Clone, Debug)]
+pub struct Progressing {
+    /// What it is.
+    pub what: Text,
+    /// Steps done, steps in all, and what is being done.
+    pub progress: Option<(u64, u64, Text)>,
+    /// It has been asked to end.
+    pub stopping: bool,
+}
+
+impl<D: Kind> Line<D> {
     /// Takes over what was opened.
-    pub(super) fn new(opened: Opened) -> Self {
+    pub(super) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
         Line { worker, trace, running: None, is_virtual }
     }
-}
 
-impl<D: Device> Line<D> {
+    /// The job that runs, in words.
+    pub fn progressing(&self) -> Option<Progressing> {
+        let running = self.running.as_ref()?;
+        let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::doing(&own.what)));
+        Some(Progressing { what: running.what.clone(), progress, stopping: running.stopping })
+    }
+
     /// Starts a job.
     ///
     /// # Errors

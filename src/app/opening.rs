@@ -2,74 +2,96 @@
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use super::action::{Action, Done, OpenFailed, Opened};
-use super::hiperface::{self, Encoder, Opening, Phase, Source};
+use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::leaving::{Leaver, same_wire};
 use super::services::{JobEnd, World};
-use super::studio::{SessionId, Studio};
+use super::session::{Kind, Opening, Phase, Source, without_codes};
+use super::studio::{SessionId, Studio, Tab};
 use super::tasks::Wake;
-use super::{Severity, Text, explain};
+use super::{AnyDevice, Severity, Text, explain};
 use crate::link::{LinkUrl, TraceEntry};
-use crate::protocol::hiperface::{AccessCode, CodeNumber};
-use crate::worker::{Ring, Worker};
+use crate::worker::hiperface::Hiperface;
+use crate::worker::{Ring, Session, Worker};
 
 /// Frames that wait for the window, at most.
 const FRAMES: usize = 2_000;
 
 impl Studio {
-    /// Opens a link: in the session that has this wire already, else in a new one.
-    pub(super) fn open_link(&mut self, url: LinkUrl) {
-        let known = |encoder: &&mut Encoder| matches!(&encoder.source, Source::Link(own) if same_wire(own, &url));
-        let id = match self.encoders.iter_mut().find(known) {
-            Some(encoder) if encoder.is_writing() => {
-                self.services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&encoder.name()));
-                self.shown = Some(encoder.id);
-                return;
+    /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of
+    /// another kind lets go of the wire.
+    pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
+        let mut own = None;
+        for device in &mut self.devices {
+            let holds = matches!(device.source(), Source::Link(other) if same_wire(other, &url));
+            if !holds {
+                continue;
             }
-            Some(encoder) => {
-                encoder.let_go(JobEnd::Cancelled, &mut self.services);
-                encoder.source = Source::Link(url.clone());
-                encoder.id
+            if device.is_writing() {
+                self.services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
+                let (tab, id) = (device.tab(), device.id());
+                return self.show(tab, id);
             }
+            let held = device.is_connected();
+            device.let_go(JobEnd::Cancelled, &mut self.services);
+            if device.tab() == tab {
+                *device.source_mut() = Source::Link(url.clone());
+                own = Some(device.id());
+            } else if held {
+                *device.phase_mut() = Phase::Lost(Text::new("session.let_go_for_other"));
+            }
+        }
+        let id = match own {
+            Some(id) => id,
             None => {
                 let id = self.new_id();
-                self.encoders.push(Encoder::at_link(id, url.clone()));
+                let Some(device) = AnyDevice::at_link(tab, id, url.clone()) else { return };
+                self.devices.push(device);
                 id
             }
         };
-        self.shown = Some(id);
+        self.show(tab, id);
         self.open_for(id, url);
     }
 
-    pub(super) fn reconnect(&mut self, id: SessionId, url: LinkUrl) {
-        let Some(encoder) = self.encoders.iter_mut().find(|encoder| encoder.id == id && !encoder.is_writing()) else {
-            return;
-        };
-        encoder.let_go(JobEnd::Cancelled, &mut self.services);
+    pub(super) fn reconnect(&mut self, id: SessionId) {
+        let Some(device) = self.devices.iter_mut().find(|own| own.id() == id && !own.is_writing()) else { return };
+        let Source::Link(url) = device.source().clone() else { return };
+        device.let_go(JobEnd::Cancelled, &mut self.services);
         self.open_for(id, url);
     }
 
     /// Another attempt to open a link for a session: from now on only its result counts.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
-        let codes = self.services.world.codes.clone();
-        let earlier = self.encoder_mut(id).and_then(|encoder| encoder.opening.take()).map(|opening| opening.over);
-        let done = move |result| Done::Opened { session: id, attempt, result };
-        let over = self.open_task(url, earlier, codes, done);
-        if let Some(encoder) = self.encoder_mut(id) {
-            encoder.phase = Phase::Opening;
-            encoder.opening = Some(Opening { attempt: Some(attempt), over });
+        let Some(device) = self.device_mut(id) else { return };
+        let (tab, earlier) = (device.tab(), device.opening_mut().take().map(|opening| opening.over));
+        let over = match tab {
+            Tab::Hiperface => {
+                let codes = self.services.world.codes.clone();
+                let prepare = move |session: &mut Session<Hiperface>| {
+                    for (number, code) in codes {
+                        session.codes_mut().set(number, code);
+                    }
+                };
+                self.open_task(url, earlier, prepare, opened(id, attempt))
+            }
+            // No device is shown there.
+            Tab::Signals => return,
+        };
+        if let Some(device) = self.device_mut(id) {
+            *device.phase_mut() = Phase::Opening;
+            *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
         }
     }
 
     /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
     /// its end that the wire is free again, or in use.
-    pub(super) fn open_task(
+    pub(super) fn open_task<D: Kind>(
         &self,
         url: LinkUrl,
         earlier: Option<Receiver<()>>,
-        codes: Vec<(CodeNumber, AccessCode)>,
-        done: impl FnOnce(Result<Box<Opened>, Box<OpenFailed>>) -> Done + Send + 'static,
+        prepare: impl FnOnce(&mut Session<D>) + Send + 'static,
+        done: impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailed>>) -> Done + Send + 'static,
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.services.world.clone(), self.services.tasks.wake());
@@ -80,15 +102,17 @@ impl Studio {
                 let _ = earlier.recv_timeout(world.patience.job);
             }
             let free = endings.into_iter().all(|(ending, patience)| ending.wait(patience));
-            let result = if free { open(&world, &url, &codes, wake, turn) } else { Err(Box::new(OpenFailed::Held)) };
+            let result = if free { open(&world, &url, prepare, wake, turn) } else { Err(Box::new(OpenFailed::Held)) };
             Action::Done(done(result))
         });
         over
     }
 
-    pub(super) fn opened(&mut self, session: SessionId, attempt: u32, result: Result<Box<Opened>, Box<OpenFailed>>) {
-        let own = |encoder: &&mut Encoder| encoder.id == session && encoder.is_attempt(attempt);
-        let Some(encoder) = self.encoders.iter_mut().find(own) else {
+    /// A link was opened, or not; `take` gives it to the session that waits for it.
+    pub(super) fn opened<D: Kind>(&mut self, done: Attempt<D>, take: impl FnOnce(&mut Studio, SessionId, Opened<D>)) {
+        let Attempt { session, attempt, result } = done;
+        let own = |device: &&mut AnyDevice| device.id() == session && device.is_attempt(attempt);
+        let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(own)) else {
             if let Ok(opened) = result {
                 self.turn_away(*opened, session);
             }
@@ -96,34 +120,39 @@ impl Studio {
         };
         match result {
             Ok(opened) => {
-                if let Source::Link(url) = &encoder.source {
-                    self.settings.use_link(&hiperface::without_codes(url));
+                if let Source::Link(url) = device.source() {
+                    self.settings.use_link(&without_codes(url));
                 }
-                encoder.connect(*opened, &mut self.services);
+                take(self, session, *opened);
             }
-            Err(failed) => encoder.lose(explain::open_failed(&failed), &mut self.services),
+            Err(failed) => device.lose(explain::open_failed(&failed), &mut self.services),
         }
     }
 
     /// Nobody wants any more what was opened: its session was closed, or has opened another one since.
-    pub(super) fn turn_away(&mut self, opened: Opened, session: SessionId) {
+    pub(super) fn turn_away<D: Kind>(&mut self, opened: Opened<D>, session: SessionId) {
         let Opened { worker, url, turn, .. } = opened;
         self.services.leave(worker, Leaver { session, about: url.to_string(), url, write: None }, Some(turn));
     }
 }
 
-fn open(
+fn opened<D: Kind>(
+    session: SessionId,
+    attempt: u32,
+) -> impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailed>>) -> Done + Send + 'static {
+    move |result| D::opened(Attempt { session, attempt, result })
+}
+
+fn open<D: Kind>(
     world: &World,
     url: &LinkUrl,
-    codes: &[(CodeNumber, AccessCode)],
+    prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,
     turn: Sender<()>,
-) -> Result<Box<Opened>, Box<OpenFailed>> {
+) -> Result<Box<Opened<D>>, Box<OpenFailed>> {
     let began = (world.now)();
-    let mut session = (world.open)(url, world.store.clone()).map_err(|error| Box::new(OpenFailed::Link(error)))?;
-    for (number, code) in codes {
-        session.codes_mut().set(*number, *code);
-    }
+    let mut session = D::opener(world)(url, world.store.clone()).map_err(|error| Box::new(OpenFailed::Link(error)))?;
+    prepare(&mut session);
     let is_virtual = session.is_virtual();
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);
     let (ring, last) = (trace.clone(), WakeAtTheEnd(wake.clone()));

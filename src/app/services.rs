@@ -17,16 +17,16 @@ use crate::store::{Store, StoreError};
 use crate::worker::hiperface::{self, Hiperface};
 use crate::worker::{JobId, OpenError, Session};
 
-/// Opens links to HIPERFACE encoders.
-pub type Opener = Arc<dyn Fn(&LinkUrl, Store) -> Result<Session<Hiperface>, OpenError> + Send + Sync>;
+/// Opens links to a kind of device.
+pub type Opener<D> = Arc<dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync>;
 
 /// The world outside, as the studio reaches it; a test has one of its own.
 #[derive(Clone)]
 pub struct World {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
-    /// Opens links.
-    pub open: Opener,
+    /// Opens links to HIPERFACE encoders.
+    pub open_hiperface: Opener<Hiperface>,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -42,7 +42,7 @@ impl World {
     pub fn real(store: Store) -> Self {
         World {
             store,
-            open: Arc::new(hiperface::open),
+            open_hiperface: Arc::new(hiperface::open),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waited};
 use super::connect::{self, Connect};
-use super::hiperface::{self, Encoder, Phase, Source};
+use super::devices::{AnyDevice, Shown};
+use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
 use super::services::{Services, World};
+use super::session::{DraftDone, Source, file_key};
 use super::signals::{self, Signals};
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
@@ -20,7 +22,7 @@ use crate::store::{Store, StoreError, read_file};
 pub struct SessionId(pub(super) u32);
 
 /// A tab of the window: a kind of device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Tab {
     /// HIPERFACE motor-feedback encoders.
     #[default]
@@ -41,8 +43,8 @@ pub struct Studio {
     pub services: Services,
     /// The Signals tab.
     pub signals: Signals,
-    pub(super) encoders: Vec<Encoder>,
-    pub(super) shown: Option<SessionId>,
+    pub(super) devices: Vec<AnyDevice>,
+    pub(super) shown: Shown,
     next_id: u32,
     pub(super) keeper: Keeper,
     pub(super) closing: bool,
@@ -61,8 +63,8 @@ impl Studio {
             question: None,
             services,
             signals: Signals::default(),
-            encoders: Vec::new(),
-            shown: None,
+            devices: Vec::new(),
+            shown: Shown::default(),
             next_id: 0,
             keeper,
             closing: false,
@@ -73,11 +75,9 @@ impl Studio {
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
-        if link.is_none() && profile.is_none() {
-            self.open_link(LinkUrl::sim());
-        }
+        let link = link.or_else(|| profile.is_none().then(LinkUrl::sim));
         if let Some(link) = link {
-            self.open_link(link);
+            self.open_link(Tab::Hiperface, link);
         }
         if let Some(profile) = profile {
             self.act(Action::Open(profile));
@@ -92,7 +92,11 @@ impl Studio {
             Action::SetLanguage(language) => self.settings.language = language,
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
             Action::KeepSize(width, height) => self.settings.size = Some((width, height)),
-            Action::Select(id) => self.shown = Some(id),
+            Action::Select(id) => {
+                if let Some(tab) = self.device(id).map(AnyDevice::tab) {
+                    self.show(tab, id);
+                }
+            }
             Action::CloseSession(id) => self.close_session(id),
             Action::Stop => self.stop(),
             Action::Escape => self.escape(),
@@ -102,8 +106,8 @@ impl Studio {
             Action::Connect(action) => self.act_connect(action),
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
-                    Tab::Hiperface => FileQuestion::Open,
                     Tab::Signals => FileQuestion::OpenCapture,
+                    Tab::Hiperface => FileQuestion::Open,
                 });
             }
             Action::Open(path) if is_capture(&path) => {
@@ -139,9 +143,11 @@ impl Studio {
         while let Some(action) = self.services.tasks.next() {
             self.act(action);
         }
-        for encoder in &mut self.encoders {
-            encoder.pump(&mut self.services);
-            self.signals.follow(encoder);
+        for device in &mut self.devices {
+            device.pump(&mut self.services);
+            if let Some(encoder) = device.hiperface_mut() {
+                self.signals.follow(encoder);
+            }
         }
         self.signals.pump(&mut self.services);
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
@@ -154,8 +160,8 @@ impl Studio {
 
     fn keep(&mut self) {
         self.keeper.keep(&self.settings, &self.services);
-        for encoder in &mut self.encoders {
-            encoder.keep_draft(&mut self.services);
+        for device in &mut self.devices {
+            device.keep_draft(&mut self.services);
         }
     }
 
@@ -179,39 +185,53 @@ impl Studio {
         &self.services.opening_files
     }
 
-    /// All encoders, in the order in which they came.
-    pub fn encoders(&self) -> &[Encoder] {
-        &self.encoders
+    /// All devices, in the order in which they came.
+    pub fn devices(&self) -> &[AnyDevice] {
+        &self.devices
     }
 
-    /// The encoder that is shown.
-    pub fn encoder(&self) -> Option<&Encoder> {
-        let id = self.shown?;
-        self.encoders.iter().find(|encoder| encoder.id == id)
+    /// One of them.
+    pub fn device(&self, id: SessionId) -> Option<&AnyDevice> {
+        self.devices.iter().find(|device| device.id() == id)
+    }
+
+    /// The device that the open tab shows; where that shows none, the one that was shown last.
+    pub fn shown(&self) -> Option<&AnyDevice> {
+        let id = match self.settings.tab {
+            Tab::Signals => self.shown.last(),
+            tab => self.shown.of(tab),
+        };
+        self.device(id?)
+    }
+
+    /// The encoder that the HIPERFACE tab shows.
+    pub fn hiperface(&self) -> Option<&Encoder> {
+        self.device(self.shown.of(Tab::Hiperface)?)?.hiperface()
+    }
+
+    /// Shows a device in its tab.
+    pub(super) fn show(&mut self, tab: Tab, id: SessionId) {
+        self.settings.tab = tab;
+        self.shown.set(tab, id);
     }
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let active = |encoder: &Encoder| {
-            encoder.phase == Phase::Opening
-                || encoder.is_busy()
-                || encoder.line().is_some_and(|line| line.polling().is_some())
-        };
         let search = self.search().is_some_and(connect::Search::is_running);
-        self.encoders.iter().any(active) || search || self.signals.can_stop()
+        self.devices.iter().any(AnyDevice::is_active) || search || self.signals.can_stop()
     }
 
     /// Live values come in: the picture has to be drawn again and again.
     pub fn is_live(&self) -> bool {
-        self.encoders.iter().any(|encoder| encoder.line().is_some_and(|line| line.polling().is_some()))
+        self.devices.iter().any(AnyDevice::is_polling)
     }
 
     fn search(&self) -> Option<&connect::Search> {
         self.connect.as_ref()?.search.as_ref()
     }
 
-    pub(super) fn encoder_mut(&mut self, id: SessionId) -> Option<&mut Encoder> {
-        self.encoders.iter_mut().find(|encoder| encoder.id == id)
+    pub(super) fn device_mut(&mut self, id: SessionId) -> Option<&mut AnyDevice> {
+        self.devices.iter_mut().find(|device| device.id() == id)
     }
 
     pub(super) fn new_id(&mut self) -> SessionId {
@@ -225,29 +245,37 @@ impl Studio {
     }
 
     pub(super) fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
-        let Some(encoder) = self.encoders.iter().find(|encoder| encoder.id == id) else { return };
-        match (action, &encoder.source) {
-            (hiperface::Action::Reconnect, Source::Link(url)) => self.reconnect(id, url.clone()),
-            (hiperface::Action::WriteInto(target), Source::File { document, .. }) => {
-                let (document, wanted) = (document.clone(), encoder.staged.wanted());
-                let crate::profile::Body::Hiperface(mut profile) = document.body;
-                profile.fields = wanted;
-                self.shown = Some(target);
-                self.with_encoder(target, |encoder, services| encoder.plan_restore(profile, services));
+        match action {
+            hiperface::Action::Reconnect => self.reconnect(id),
+            hiperface::Action::WriteInto(target) => {
+                let profile = self.device(id).and_then(AnyDevice::hiperface).and_then(Encoder::wanted_profile);
+                let Some(profile) = profile else { return };
+                self.show(Tab::Hiperface, target);
+                self.with_hiperface(target, |encoder, services| encoder.plan_restore(profile, services));
             }
-            (action, _) => self.with_encoder(id, |encoder, services| encoder.act(action, services)),
+            action => self.with_hiperface(id, |encoder, services| encoder.act(action, services)),
         }
     }
 
-    pub(super) fn with_encoder(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
-        if let Some(encoder) = self.encoders.iter_mut().find(|encoder| encoder.id == id) {
-            act(encoder, &mut self.services);
+    pub(super) fn with_device(&mut self, id: SessionId, act: impl FnOnce(&mut AnyDevice, &mut Services)) {
+        if let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) {
+            act(device, &mut self.services);
         }
+    }
+
+    fn with_hiperface(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+        self.with_device(id, |device, services| {
+            if let Some(encoder) = device.hiperface_mut() {
+                act(encoder, services);
+            }
+        });
     }
 
     fn done(&mut self, done: Done) {
         match done {
-            Done::Opened { session, attempt, result } => self.opened(session, attempt, result),
+            Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {
+                studio.with_hiperface(id, |encoder, services| encoder.connect(opened, services));
+            }),
             Done::OpenedForSearch { number, result } => {
                 let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
                 match (search.filter(|search| search.number == number && search.is_running()), result) {
@@ -275,8 +303,8 @@ impl Studio {
             // That was to be looked at.
             Done::Left => {}
             Done::Written { session, path, key, document, remarks, result } => {
-                self.with_encoder(session, |encoder, services| {
-                    encoder.written((path, key), *document, remarks, result, services);
+                self.with_device(session, |device, services| {
+                    device.written((path, key), *document, remarks, result, services);
                 })
             }
             Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
@@ -285,22 +313,26 @@ impl Studio {
                     self.services.tell(Severity::Warning, vec![text], None);
                 }
             }
-            Done::Hiperface(id, done) => self.done_for_encoder(id, done),
+            Done::Draft(id, done) => self.draft_done(id, done),
+            Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
+            Done::Backup { session, of, path, result } => {
+                self.with_device(session, |device, services| device.take_backup(&of, &path, result, services));
+            }
             Done::Signals(done) => self.signals.done(done, &mut self.services),
         }
     }
 
-    fn done_for_encoder(&mut self, id: SessionId, done: hiperface::Done) {
-        if let hiperface::Done::DraftKept { result, .. } = &done {
+    fn draft_done(&mut self, id: SessionId, done: DraftDone) {
+        if let DraftDone::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
             if let Err(error) = result
-                && !self.encoders.iter().any(|encoder| encoder.id == id)
+                && self.device(id).is_none()
             {
                 let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
                 self.services.tell(Severity::Warning, vec![text], None);
             }
         }
-        self.with_encoder(id, |encoder, services| encoder.done(done, services));
+        self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
     fn read(
@@ -316,19 +348,18 @@ impl Studio {
         }
         match result {
             Ok(document) => {
-                let known = self
-                    .encoders
-                    .iter()
-                    .find(|encoder| matches!(&encoder.source, Source::File { key: own, .. } if *own == key))
-                    .map(|encoder| encoder.id);
+                let own = |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == key);
+                let known = self.devices.iter().find(own).map(AnyDevice::id);
                 let id = known.unwrap_or_else(|| self.new_id());
-                self.shown = Some(id);
                 if known.is_some() {
-                    self.with_encoder(id, |encoder, _| encoder.take_document(path, key, *document));
+                    self.with_device(id, |device, _| device.take_document(path, key, *document));
                 } else {
                     let types = self.services.encoder_types(types);
-                    let encoder = Encoder::in_file(id, (path, key), *document, &types, &self.services);
-                    self.encoders.push(encoder);
+                    let device = AnyDevice::in_file(id, (path, key), *document, &types, &self.services);
+                    self.devices.push(device);
+                }
+                if let Some(tab) = self.device(id).map(AnyDevice::tab) {
+                    self.show(tab, id);
                 }
             }
             Err(error) => self.services.tell(Severity::Error, vec![read_error(&path, &error)], None),
@@ -336,8 +367,8 @@ impl Studio {
     }
 
     pub(super) fn stop(&mut self) {
-        for encoder in &mut self.encoders {
-            encoder.stop(&mut self.services);
+        for device in &mut self.devices {
+            device.stop(&mut self.services);
         }
         self.signals.stop();
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
@@ -357,10 +388,8 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if let Some(id) = self.shown
-            && self.encoder().is_some_and(|encoder| encoder.review.is_some())
-        {
-            self.with_encoder(id, |encoder, _| encoder.close_review());
+        if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(AnyDevice::id) {
+            self.with_device(id, |device, _| device.close_review());
             return;
         }
         self.stop();
@@ -375,7 +404,7 @@ fn is_capture(path: &Path) -> bool {
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
     let result = read_profile(&path).map(Box::new);
-    let key = hiperface::file_key(&path);
+    let key = file_key(&path);
     // Where there is no profile, nobody waits for the table.
     let types = if result.is_ok() { store.encoder_types() } else { Ok(EncoderTypes::built_in()) };
     Action::Done(Done::Read { path, key, result, types })

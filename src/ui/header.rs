@@ -5,15 +5,15 @@ use egui::{RichText, Stroke, Ui};
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::{Skin, Views, icons};
 use crate::app::connect;
-use crate::app::hiperface::{self, Encoder, Phase};
-use crate::app::{Action, Language, Notice, Studio, Theme};
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, Language, Notice, Studio, Theme, Wish};
 
 /// Draws the header.
 pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         sessions(ui, skin, studio, actions);
-        if let Some(encoder) = studio.encoder() {
-            status(ui, skin, encoder);
+        if let Some(device) = studio.shown() {
+            status(ui, skin, device);
         }
         // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
         let width_id = ui.scope_id().with("tools");
@@ -48,9 +48,9 @@ fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: 
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
-    let savable = studio.encoder().is_some_and(Encoder::is_savable);
+    let savable = studio.shown().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(skin.say("shell.save_hint")).clicked() {
-        actions.extend(studio.encoder().map(|own| Action::Hiperface(own.id, hiperface::Action::AskSave)));
+        actions.extend(studio.shown().map(|own| own.wish(Wish::AskSave)));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::Action::Open));
@@ -86,26 +86,26 @@ fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: 
 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let shown = studio.encoder().map_or_else(|| skin.say("shell.no_session"), Encoder::name);
+    let shown = studio.shown().map_or_else(|| skin.say("shell.no_session"), AnyDevice::name);
     let text =
         RichText::new(format!("{}  {}", shortened(&shown), icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
         ui.label(skin.caption(skin.say("shell.sessions")));
-        for encoder in studio.encoders() {
+        for device in studio.devices() {
             ui.horizontal(|ui| {
-                phase_dot(ui, skin, encoder);
-                let is_shown = studio.encoder().is_some_and(|own| own.id == encoder.id);
-                if ui.selectable_label(is_shown, encoder.name()).clicked() {
-                    actions.push(Action::Select(encoder.id));
+                phase_dot(ui, skin, device);
+                let is_shown = studio.shown().is_some_and(|own| own.id() == device.id());
+                if ui.selectable_label(is_shown, device.name()).clicked() {
+                    actions.push(Action::Select(device.id()));
                     ui.close();
                 }
-                if encoder.staged.is_dirty() {
+                if device.is_dirty() {
                     ui.label(RichText::new(icons::PENCIL_SIMPLE).color(skin.palette.staged));
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if icon_button(ui, true, icons::X, &skin.say("shell.close_session")).clicked() {
-                        actions.push(Action::CloseSession(encoder.id));
+                        actions.push(Action::CloseSession(device.id()));
                         ui.close();
                     }
                 });
@@ -126,9 +126,9 @@ fn shortened(name: &str) -> String {
     if name.chars().count() <= MOST { name.to_owned() } else { name.chars().take(MOST - 1).chain(['…']).collect() }
 }
 
-fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     let palette = skin.palette;
-    let (filled, colour) = match &encoder.phase {
+    let (filled, colour) = match device.phase() {
         Phase::Connected => (true, palette.good),
         Phase::Opening => (false, palette.accent),
         Phase::Lost(_) | Phase::Silent(_) => (false, palette.bad),
@@ -138,14 +138,14 @@ fn phase_dot(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
 }
 
 /// *virtual*, *offline*, *connected*, *lost*: each with a word.
-fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     let palette = skin.palette;
-    if encoder.is_virtual() {
+    if device.is_virtual() {
         badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
     }
-    phase_dot(ui, skin, encoder);
-    let (id, colour) = match &encoder.phase {
-        Phase::Connected if encoder.is_writing() => ("shell.writing", palette.accent),
+    phase_dot(ui, skin, device);
+    let (id, colour) = match device.phase() {
+        Phase::Connected if device.is_writing() => ("shell.writing", palette.accent),
         Phase::Connected => ("shell.connected", palette.good),
         Phase::Opening => ("shell.opening", palette.accent),
         Phase::Lost(_) => ("shell.lost", palette.bad),
@@ -156,8 +156,8 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
 }
 
 fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
-    let Some(encoder) = studio.encoder() else { return };
-    let words = encoder.place();
+    let Some(device) = studio.shown() else { return };
+    let words = device.place();
     let label = egui::Label::new(skin.mono(&words).color(skin.palette.muted)).truncate().sense(egui::Sense::click());
     let hint = format!("{words}\n{}", skin.say("shell.copy_link"));
     if ui.add(label).on_hover_text(hint).clicked() {

@@ -10,8 +10,8 @@ use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
 use super::{Skin, header, icons, signals};
-use crate::app::hiperface::{Action as Hiperface, Encoder};
-use crate::app::{Action, Look, SessionId, Severity, Studio, Tab};
+use crate::app::hiperface::Encoder;
+use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
 /// What views remember while the window is open: text buffers and selections, nothing of the state.
 #[derive(Default)]
@@ -34,7 +34,7 @@ pub struct Views {
 impl Views {
     /// The HIPERFACE tab of a session.
     pub(super) fn hiperface(&mut self, encoder: &Encoder) -> &mut hiperface::View {
-        let view = self.hiperface.entry(encoder.id).or_default();
+        let view = self.hiperface.entry(encoder.session.id).or_default();
         view.follow(encoder);
         view
     }
@@ -126,7 +126,7 @@ impl Window {
     }
 
     fn dialogs(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
-        if let Some(encoder) = self.studio.encoder() {
+        if let Some(encoder) = self.studio.shown().and_then(AnyDevice::hiperface) {
             hiperface::review_ui(ctx, skin, encoder, actions);
         }
         dialogs::connect_ui(ctx, skin, &self.studio, &mut self.views.connect, actions);
@@ -140,7 +140,8 @@ impl Window {
         }
         let page = match self.studio.settings.tab {
             Tab::Hiperface => {
-                let page = self.studio.encoder().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
+                let page =
+                    self.studio.hiperface().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
                 (page.word(), page.help())
             }
             Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
@@ -195,11 +196,10 @@ impl Window {
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
             (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
-        let shown = self.studio.encoder().filter(|_| self.studio.settings.tab == Tab::Hiperface);
-        if let Some(id) = shown.map(|encoder| encoder.id) {
-            keys.push((Modifiers::NONE, Key::F5, Action::Hiperface(id, Hiperface::Read)));
-            keys.push((Modifiers::COMMAND, Key::S, Action::Hiperface(id, Hiperface::AskSave)));
-            keys.push((Modifiers::COMMAND, Key::Enter, Action::Hiperface(id, Hiperface::Review)));
+        if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
+            keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
+            keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
+            keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
         }
         for (modifiers, key, action) in keys {
             if pressed(modifiers, key) {
@@ -211,7 +211,7 @@ impl Window {
     /// Something stands over the window and has the keyboard.
     fn is_covered(&self) -> bool {
         let studio = &self.studio;
-        let review = studio.encoder().is_some_and(|encoder| encoder.review.is_some());
+        let review = studio.shown().is_some_and(AnyDevice::is_reviewing);
         let dialog = self.views.file.is_some() || self.views.about;
         studio.connect.is_some() || studio.question.is_some() || review || dialog
     }
@@ -243,7 +243,7 @@ impl Window {
         if self.studio.may_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        self.views.hiperface.retain(|id, _| self.studio.encoders().iter().any(|encoder| encoder.id == *id));
+        self.views.hiperface.retain(|id, _| self.studio.device(*id).is_some());
         if self.studio.is_live() {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
@@ -253,7 +253,7 @@ impl Window {
 
 /// While something is written, a bar moves along the top edge.
 fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
-    if !studio.encoder().is_some_and(crate::app::hiperface::Encoder::is_writing) {
+    if !studio.devices().iter().any(AnyDevice::is_writing) {
         return;
     }
     let screen = ui.ctx().content_rect();
@@ -297,7 +297,7 @@ fn navigation(
 }
 
 fn hiperface_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
-    let Some(encoder) = studio.encoder() else { return };
+    let Some(encoder) = studio.hiperface() else { return };
     let shown = views.hiperface(encoder).page;
     for page in Page::ALL {
         let word = skin.say(page.word());

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::connect::{Action as Connect, LinkForm};
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Theme};
 use encoder_studio::device::hiperface::find::FindOptions;
 
@@ -24,16 +25,16 @@ fn a_link_that_hangs_holds_nobody_up() {
     desk.open(HANGING);
     desk.settle();
     assert_eq!(*desk.phase(), Phase::Opening);
-    let hanging = desk.encoder().id;
+    let hanging = desk.encoder().session.id;
     for action in [Hiperface::Read, Hiperface::Review, Hiperface::Poll(Some(Duration::ZERO)), Hiperface::Reconnect] {
         desk.ask(action);
     }
     desk.open(&format!("serial:{PORT}"));
     desk.until_read();
-    assert_eq!(desk.studio.encoders().len(), 2);
+    assert_eq!(desk.studio.devices().len(), 2);
     desk.act(Action::CloseSession(hanging));
     assert!(desk.studio.question.is_none(), "nothing would be lost");
-    assert_eq!(desk.studio.encoders().len(), 1);
+    assert_eq!(desk.studio.devices().len(), 1);
     assert_eq!(desk.studio.settings.links(), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.may_close());
@@ -177,7 +178,7 @@ fn without_a_logbook_it_is_written_with_a_warning() {
     desk.write();
     assert_eq!(desk.wire().field(0)[0], b'X');
     assert_eq!(desk.told(Severity::Warning), ["session.written", "write.logbook"]);
-    desk.until("the list says why", |studio| matches!(studio.encoder().unwrap().writes, Some(Err(_))));
+    desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
 /// Waits without looking at what the studio is told.
@@ -198,7 +199,7 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     desk.studio.poll();
     let record = &desk.encoder().record;
     assert!(record.dropped() > 0 && record.positions() >= 4_096, "{} {}", record.dropped(), record.positions());
-    assert!(desk.encoder().trace.dropped() > 0);
+    assert!(desk.encoder().session.trace.dropped() > 0);
     // In between, a job is taken at once.
     desk.ask(Hiperface::ReadCounter);
     desk.until_ready();

@@ -35,7 +35,7 @@ fn with_edits_it_asks_once_and_keeps_them() {
     desk.until("it may close", |studio| studio.may_close());
     let mut desk = desk.crash();
     desk.studio.begin(None, None);
-    desk.until("the edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
 }
 
@@ -80,7 +80,7 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
     desk.wire().wait_until_held();
 
     desk.act(Action::Escape);
-    assert!(desk.encoder().line().unwrap().running().unwrap().stopping);
+    assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
     assert!(desk.studio.connect.is_some() && desk.encoder().review.is_some());
     desk.wire().release();
     desk.until_ready();
@@ -129,16 +129,16 @@ fn a_session_with_edits_asks_before_it_is_closed_and_they_come_back() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.settle();
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_edits");
     desk.act(Action::Confirm);
-    assert!(desk.studio.encoder().is_none() && desk.studio.encoders().is_empty());
+    assert!(desk.studio.hiperface().is_none() && desk.studio.devices().is_empty());
     // Nobody is shown: what is asked of nobody does nothing.
     desk.ask(Hiperface::Read);
     desk.act(Action::Stop);
     desk.open("sim:");
-    desk.until("the edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }
 
@@ -148,7 +148,7 @@ fn a_session_that_is_closed_while_it_reads_ends_its_job() {
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
     desk.wire().wait_until_held();
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_busy");
     desk.act(Action::Confirm);

@@ -2,7 +2,8 @@
 //! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
 
 use encoder_studio::app::hiperface::commutation::{Action as Assistant, Form, Kind, Slot, Source, Storage, Vector};
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState, commutation};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, commutation};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
 use encoder_studio::signal::quality::Verdict;
 use encoder_studio::worker::hiperface::Change;
@@ -35,7 +36,7 @@ impl Desk {
 
     fn read(&mut self, slot: Slot) {
         self.assist(Assistant::Read(slot));
-        self.until("it is read", |studio| studio.encoder().unwrap().commutation.asked().is_none());
+        self.until("it is read", |studio| studio.hiperface().unwrap().commutation.asked().is_none());
         self.until_ready();
     }
 
@@ -147,7 +148,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
 fn a_typed_position_gives_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
-    desk.until("it is told", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    desk.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     assert_eq!(desk.offset(), Err("entry.missing"));
     desk.edit(|form| (form.pole_pairs, form.periods) = ("4".to_owned(), "1024".to_owned()));
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
@@ -337,7 +338,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
     desk.read(Slot::OneSide);
     desk.wire().unplug();
     desk.assist(Assistant::Read(Slot::OtherSide));
-    desk.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     assert_eq!(desk.encoder().commutation.asked(), None);
     assert!(desk.encoder().commutation.reading(Slot::OneSide).is_some());
     desk.assist(Assistant::Read(Slot::OtherSide));
@@ -348,7 +349,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
     desk.read(Slot::OtherSide);
     assert_eq!(desk.offset(), Ok(0x25FE_68F7));
     desk.wire().unplug();
-    desk.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     desk.wire().plug();
     desk.wire().exchange("serial=ZZ1");
     desk.ask(Hiperface::Reconnect);
@@ -365,7 +366,7 @@ fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
     desk.until("it is saved", |_| path.exists());
     desk.until_ready();
     desk.act(Action::Open(path.clone()));
-    desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.prepare();
     desk.type_in(Slot::OneSide, "339.02");
     desk.assist(Assistant::Store);
@@ -386,7 +387,7 @@ fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
     let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
     assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[..16], record);
     desk.ask(Hiperface::Save(path.clone()));
-    desk.until("it is kept", |studio| !studio.encoder().unwrap().staged.is_dirty());
+    desk.until("it is kept", |studio| !studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.encoder().mounting(0), [(0..16, "commutation offset".to_owned())]);
     desk.edit(|form| form.address = "128".to_owned());
     desk.assist(Assistant::Store);

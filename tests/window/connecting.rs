@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use encoder_studio::app::Action;
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, Source};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::device::hiperface::find::FindOptions;
 use encoder_studio::units::{Baud, Parity};
 
@@ -49,7 +50,7 @@ fn what_cannot_be_is_refused_with_a_sentence() {
             assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some(id));
             desk.settle();
         }
-        assert!(dialog(&desk).search.is_none() && desk.studio.encoders().is_empty());
+        assert!(dialog(&desk).search.is_none() && desk.studio.devices().is_empty());
     }
     edit(&mut desk, |_| {});
     assert!(dialog(&desk).problem.is_none(), "with the entry goes the sentence");
@@ -105,7 +106,7 @@ fn all_that_answer_are_found_and_one_is_chosen() {
     assert_eq!(desk.encoder().identity.as_ref().unwrap().address, 0x44);
     assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
     let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
-    assert_eq!(desk.encoder().source, Source::Link(link.parse().unwrap()));
+    assert_eq!(desk.encoder().session.source, Source::Link(link.parse().unwrap()));
     assert_eq!(desk.studio.settings.links(), [link]);
 }
 
@@ -142,7 +143,7 @@ fn a_search_that_finds_nobody_says_what_to_look_at() {
     desk.until("it is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).end.as_ref().unwrap().id(), "link.not_found");
     desk.connect(Connect::Choose(0));
-    assert!(desk.studio.connect.is_some() && desk.studio.encoders().is_empty());
+    assert!(desk.studio.connect.is_some() && desk.studio.devices().is_empty());
 }
 
 #[test]
@@ -166,13 +167,13 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.connect(Connect::Use(link.clone()));
     desk.connect(Connect::Search(FindOptions::default()));
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.let_go_for_search"));
-    assert!(desk.encoder().line().is_none());
+    assert!(desk.encoder().session.line().is_none());
     assert_eq!(desk.times_told("session.let_go_for_search"), 1);
     desk.until("the search is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).found.len(), 1);
     desk.connect(Connect::Connect);
     desk.until_read();
-    assert_eq!(desk.studio.encoders().len(), 1);
+    assert_eq!(desk.studio.devices().len(), 1);
 
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::Review);
@@ -184,7 +185,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.connect(Connect::Use(link));
     desk.connect(Connect::Search(FindOptions::default()));
     assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("find.writing"));
-    assert!(dialog(&desk).search.is_none() && desk.encoder().is_writing());
+    assert!(dialog(&desk).search.is_none() && desk.encoder().session.is_writing());
     desk.wire().release();
     desk.until_written();
 }

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
 
 use crate::support::Desk;
@@ -17,7 +18,7 @@ fn edits_survive_a_crash_and_are_no_draft_once_they_are_written() {
     desk.until_kept();
     let mut desk = desk.crash();
     desk.studio.begin(None, None);
-    desk.until("the edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     desk.until_ready();
     assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 5, b'Y'), (0, 6, b'Z')]);
     assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
@@ -79,23 +80,23 @@ fn the_draft_of_a_profile_ends_where_it_is_saved() {
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
     desk.act(Action::Open(path.clone()));
-    desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.settle();
     desk.put(0, 0, b"X");
     desk.until_kept();
 
     let mut desk = desk.crash();
     desk.studio.begin(None, Some(path.clone()));
-    desk.until("the edit is back", |studio| studio.encoder().is_some_and(|own| own.staged.is_dirty()));
+    desk.until("the edit is back", |studio| studio.hiperface().is_some_and(|own| own.staged.is_dirty()));
     let other = desk.outside.path("other.ron");
     desk.ask(Hiperface::Save(other.clone()));
-    desk.until("it is saved", |studio| !studio.encoder().unwrap().staged.is_dirty());
+    desk.until("it is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
     let drafts = desk.outside.path("data/drafts/hiperface-files");
     desk.until("there is no draft", |_| fs::read_dir(&drafts).unwrap().count() == 0);
     for (path, first) in [(path, b'E'), (other, b'X')] {
         desk = desk.crash();
         desk.studio.begin(None, Some(path));
-        desk.until("it is open", |studio| studio.encoder().is_some());
+        desk.until("it is open", |studio| studio.hiperface().is_some());
         desk.settle();
         assert_eq!(desk.encoder().staged.byte(0, 0), Some(first));
         assert!(desk.edits().is_empty());
@@ -126,7 +127,7 @@ fn a_draft_has_one_owner() {
     drop(first);
     let mut desk = desk.crash();
     desk.studio.begin(None, None);
-    desk.until("the edit is back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    desk.until("the edit is back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }
 
@@ -136,12 +137,12 @@ fn an_encoder_of_another_type_with_the_same_number_is_another() {
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().unplug();
-    desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     desk.wire().exchange("model=sks36&serial=GB0450179");
     desk.wire().plug();
     desk.ask(Hiperface::Reconnect);
     desk.until("it is another", |studio| {
-        studio.encoder().unwrap().identity.as_ref().is_some_and(|own| own.name == "SKS36")
+        studio.hiperface().unwrap().identity.as_ref().is_some_and(|own| own.name == "SKS36")
     });
     desk.until_ready();
     desk.settle();
@@ -156,13 +157,13 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
     desk.put(0, 1, b"Y");
     desk.settle();
     assert_eq!(desk.times_told("session.draft_none"), 1);
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost");
     desk.act(Action::Escape);
     let replug = |desk: &mut Desk, query: Option<&str>| {
         desk.wire().unplug();
-        desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+        desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
         if let Some(query) = query {
             desk.wire().exchange(query);
         }
@@ -195,5 +196,5 @@ fn two_ways_to_a_file_lead_to_one_session() {
         assert_eq!(desk.studio.opening_files(), [path]);
         desk.until("it is open", |studio| studio.opening_files().is_empty());
     }
-    assert_eq!(desk.studio.encoders().len(), 2);
+    assert_eq!(desk.studio.devices().len(), 2);
 }

@@ -3,7 +3,8 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, JobEnd, Severity};
 
 use crate::support::{Desk, PORT, SLOW, is_review};
@@ -17,10 +18,10 @@ fn closed_while_writing(mut desk: Desk) -> Desk {
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();
     desk.wire().wait_until_held();
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     desk.act(Action::Confirm);
-    assert!(desk.studio.encoders().is_empty());
+    assert!(desk.studio.devices().is_empty());
     desk
 }
 
@@ -60,12 +61,12 @@ fn the_draft_of_a_closed_session_is_waited_for() {
     std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&draft).status().unwrap().success());
     desk.put(0, 0, b"X");
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     desk.act(Action::Confirm);
     desk.act(Action::Close);
     desk.settle();
-    assert!(desk.studio.encoders().is_empty() && !desk.studio.may_close(), "the edit is not on disk");
+    assert!(desk.studio.devices().is_empty() && !desk.studio.may_close(), "the edit is not on disk");
     assert!(std::fs::read_to_string(&draft).unwrap().contains("88"));
     desk.until("it may close", |studio| studio.may_close());
 }
@@ -85,7 +86,7 @@ fn what_an_earlier_attempt_opened_is_not_used() {
     std::thread::sleep(Duration::from_millis(50));
     desk.settle();
     assert_eq!(desk.wire().count(0x52), surveys, "nobody reads it a second time");
-    assert_eq!((desk.studio.encoders().len(), desk.phase()), (1, &Phase::Connected));
+    assert_eq!((desk.studio.devices().len(), desk.phase()), (1, &Phase::Connected));
     desk.act(Action::Close);
     desk.until("its thread has ended", |studio| studio.may_close());
 }
@@ -97,7 +98,7 @@ fn a_session_whose_thread_is_dead_is_lost_with_what_it_did() {
     desk.wire().kill();
     let wakes = desk.outside.wakes.load(Ordering::SeqCst);
     desk.ask(Hiperface::ReadCounter);
-    desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.ended"));
     assert!(desk.outside.wakes.load(Ordering::SeqCst) > wakes, "the window is told to look");
     assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Failed(_)));

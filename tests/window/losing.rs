@@ -3,7 +3,8 @@
 use std::fs;
 use std::time::Duration;
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, ReviewState};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, Text, recorder};
 use encoder_studio::protocol::hiperface::CodeNumber;
 use encoder_studio::store::read_text;
@@ -17,12 +18,12 @@ fn failed(studio: &Studio) -> bool {
 }
 
 pub(crate) fn lost(studio: &Studio) -> bool {
-    studio.encoder().is_some_and(|encoder| matches!(encoder.phase, Phase::Lost(_)))
+    studio.hiperface().is_some_and(|encoder| matches!(encoder.session.phase, Phase::Lost(_)))
 }
 
 /// A profile of the virtual encoder in which four single bytes differ, open beside the encoder.
 fn with_a_profile(desk: &mut Desk) {
-    let encoder = desk.encoder().id;
+    let encoder = desk.encoder().session.id;
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
@@ -33,7 +34,7 @@ fn with_a_profile(desk: &mut Desk) {
     assert!(text.contains(old), "{text}");
     fs::write(&path, text.replace(old, "65 4D 64 37 31 4B 2D 34 20 33 30 30 30 52 70 4D")).unwrap();
     desk.act(Action::Open(path));
-    desk.until("the profile is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.until("the profile is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.ask(Hiperface::WriteInto(encoder));
     desk.until_planned();
 }
@@ -47,10 +48,10 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     desk.wire().hold_at(0x4B, 2);
     desk.write_as_shown();
     desk.wire().wait_until_held();
-    desk.until("it is writing", |studio| studio.encoder().unwrap().is_writing());
+    desk.until("it is writing", |studio| studio.hiperface().unwrap().session.is_writing());
     assert!(desk.studio.can_stop());
     desk.act(Action::Stop);
-    assert!(desk.encoder().line().unwrap().running().unwrap().stopping);
+    assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true } = &desk.review().state else { panic!() };
@@ -68,8 +69,8 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     assert!(end.is_some());
 
     desk.ask(Hiperface::CloseReview);
-    let profile = desk.studio.encoders().iter().find(|own| own.phase == Phase::Offline).unwrap().id;
-    let encoder = desk.encoder().id;
+    let profile = desk.studio.devices().iter().find(|own| *own.phase() == Phase::Offline).unwrap().id();
+    let encoder = desk.encoder().session.id;
     desk.act(Action::Select(profile));
     desk.ask(Hiperface::WriteInto(encoder));
     desk.until_planned();
@@ -89,7 +90,7 @@ fn edits_survive_an_unplugged_cable_and_are_written_afterwards() {
     let Phase::Lost(why) = desk.phase() else { panic!() };
     assert_eq!(why.id(), "link.lost");
     assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
-    assert!(!desk.encoder().is_busy() && desk.encoder().line().is_none());
+    assert!(!desk.encoder().session.is_busy() && desk.encoder().session.line().is_none());
     // One goes on editing what is known.
     desk.put(0, 1, b"Y");
     assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
@@ -150,7 +151,7 @@ fn a_cable_pulled_while_something_is_read_is_told_once() {
     assert_eq!(desk.told(Severity::Error), ["link.lost"]);
     let last = desk.studio.services.jobs().next_back().unwrap();
     assert!(matches!(&last.end, JobEnd::Failed(why) if why.id() == "link.lost") && last.until.is_some());
-    let frames = desk.encoder().trace.lines();
+    let frames = desk.encoder().session.trace.lines();
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
 
@@ -179,7 +180,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     desk.wire().plug();
     desk.ask(Hiperface::Reconnect);
     desk.until("the first is read", |studio| serial(studio) == Some("GB0450179"));
-    desk.until("its edits are back", |studio| studio.encoder().unwrap().staged.is_dirty());
+    desk.until("its edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
     assert_eq!(desk.times_told("session.draft_back"), 1);
     desk.until_ready();
@@ -188,7 +189,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
 }
 
 fn serial(studio: &Studio) -> Option<&str> {
-    let identity = studio.encoder().and_then(|encoder| encoder.identity.as_ref())?;
+    let identity = studio.hiperface().and_then(|encoder| encoder.identity.as_ref())?;
     Some(&identity.serial.serial_number)
 }
 
@@ -220,7 +221,7 @@ fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
     desk.wire().plug();
     desk.wire().hold_at(0x52, 1);
     desk.ask(Hiperface::Reconnect);
-    desk.until("it is held", |studio| studio.encoder().is_some_and(Encoder::is_busy));
+    desk.until("it is held", |studio| studio.hiperface().is_some_and(|own| own.session.is_busy()));
     desk.wire().wait_until_held();
     desk.act(Action::Stop);
     desk.wire().release();
@@ -250,7 +251,7 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     desk.until_read();
     assert_eq!(desk.told(Severity::Error).len(), errors);
     let link = format!("serial:{PORT}?address=0x41");
-    assert_eq!(desk.encoder().source, encoder_studio::app::hiperface::Source::Link(link.parse().unwrap()));
+    assert_eq!(desk.encoder().session.source, encoder_studio::app::session::Source::Link(link.parse().unwrap()));
 }
 
 /// The cable is pulled after the address was changed and before it is read back.
@@ -272,8 +273,8 @@ fn what_an_interrupted_write_did_is_followed() {
     desk.ask(Hiperface::Reconnect);
     desk.until("it is read", |studio| {
         studio
-            .encoder()
-            .is_some_and(|own| own.is_ready() && own.identity.as_ref().is_some_and(|own| own.address == 0x41))
+            .hiperface()
+            .is_some_and(|own| own.session.is_ready() && own.identity.as_ref().is_some_and(|own| own.address == 0x41))
     });
 }
 
@@ -283,9 +284,9 @@ fn other_settings_are_followed_from_the_restart_on() {
     let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
     let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
     let settings = encoder_studio::app::hiperface::forms::settings(stored, format, true, true).unwrap();
-    let link = |desk: &Desk| desk.encoder().source.clone();
+    let link = |desk: &Desk| desk.encoder().session.source.clone();
     let (old, new) = (format!("serial:{PORT}"), format!("serial:{PORT}?baud=19200&parity=odd"));
-    let at = |link: &str| encoder_studio::app::hiperface::Source::Link(link.parse().unwrap());
+    let at = |link: &str| encoder_studio::app::session::Source::Link(link.parse().unwrap());
     desk.ask(Hiperface::ConfigureForNow(settings));
     desk.until("both sides are there", |studio| {
         studio.services.log.notices().any(|own| own.texts[0].id() == "session.configured")
@@ -306,7 +307,7 @@ fn other_settings_are_followed_from_the_restart_on() {
     desk.ask(Hiperface::CloseReview);
     assert_eq!(link(&desk), at(&format!("{old}?baud=9600&parity=even")), "before the restart it talks as before");
     desk.ask(Hiperface::Check { restart: true });
-    desk.until("the link follows", |studio| studio.encoder().unwrap().source == at(&new));
+    desk.until("the link follows", |studio| studio.hiperface().unwrap().session.source == at(&new));
     desk.until_ready();
     desk.wire().unplug();
     desk.until("it is lost", lost);
@@ -323,13 +324,18 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
     desk.put(0, 0, b"X");
     desk.wire().exchange("fault=silent-after:0");
     desk.ask(Hiperface::ReadCounter);
-    let silent = |studio: &Studio| matches!(studio.encoder().unwrap().phase, Phase::Silent(_));
+    let silent = |studio: &Studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Silent(_));
     desk.until("it is silent", silent);
     let encoder = desk.encoder();
-    assert!(matches!(&encoder.phase, Phase::Silent(why) if why.id() == "encoder.no_reply"));
-    assert!(!encoder.is_ready() && !encoder.is_savable() && encoder.is_readable() && encoder.line().is_some());
+    assert!(matches!(&encoder.session.phase, Phase::Silent(why) if why.id() == "encoder.no_reply"));
+    assert!(
+        !encoder.session.is_ready()
+            && !encoder.session.is_savable()
+            && encoder.session.is_readable()
+            && encoder.session.line().is_some()
+    );
     desk.ask(Hiperface::Read);
-    desk.until("it was read in vain", |studio| studio.encoder().unwrap().is_readable());
+    desk.until("it was read in vain", |studio| studio.hiperface().unwrap().session.is_readable());
     assert!(silent(&desk.studio));
     desk.ask(Hiperface::Review);
     assert!(desk.encoder().review.is_none());
@@ -342,7 +348,7 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
     assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));
 
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     desk.until("it is silent", silent);
     assert!(!desk.studio.is_live());
@@ -377,7 +383,7 @@ fn connecting_again_to_a_wire_that_is_written_is_refused() {
     desk.open(&format!("serial:{PORT}?address=0x40"));
     desk.ask(Hiperface::Reconnect);
     assert_eq!(desk.times_told("session.busy"), 1);
-    assert!(desk.encoder().is_writing());
+    assert!(desk.encoder().session.is_writing());
     desk.wire().release();
     desk.until_written();
 }
@@ -400,13 +406,13 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     let mut desk = Desk::at_port("rpm=60");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
-    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 10);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 10);
     let position = desk.encoder().record.last().unwrap();
     assert!(position.valid && position.position.is_some());
     desk.put(0, 0, b"X");
     desk.write();
     let points = desk.encoder().record.positions();
-    desk.until("samples go on", |studio| studio.encoder().unwrap().record.positions() > points + 10);
+    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 10);
     assert_eq!(desk.bad_positions(), 0);
     assert!(desk.told(Severity::Warning).is_empty());
 
@@ -426,10 +432,10 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
 fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     let mut desk = Desk::at_port("");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
+    desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     let began = std::time::Instant::now();
-    while desk.encoder().line().unwrap().polling().is_some() {
+    while desk.encoder().session.line().unwrap().polling().is_some() {
         assert!(began.elapsed() < crate::support::LONG, "what is shown is what the worker does");
         std::thread::sleep(Duration::from_millis(2));
     }
@@ -438,7 +444,7 @@ fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     desk.wire().exchange("");
     desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
     let points = desk.encoder().record.positions();
-    desk.until("samples go on", |studio| studio.encoder().unwrap().record.positions() > points + 3);
+    desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 3);
     assert!(desk.studio.is_live());
     assert_eq!(desk.times_told("session.poll_failed"), 0);
 }
@@ -448,15 +454,15 @@ fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::begun("");
         desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-        desk.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 3);
+        desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
         desk.act(stop());
         assert!(!desk.studio.is_live());
         desk.settle();
         let sent = desk.wire().sent();
         desk.settle();
         assert_eq!(desk.wire().sent(), sent);
-        let id = desk.encoder().id;
-        desk.act(Action::Recorder(Of::Encoder(id), recorder::Action::Clear));
+        let id = desk.encoder().session.id;
+        desk.act(Action::Recorder(Of::Device(id), recorder::Action::Clear));
         assert!(desk.encoder().record.positions() == 0 && desk.encoder().record.last().is_some());
     }
 }

@@ -73,7 +73,7 @@ fn day(seed: u64, steps: usize) {
     }
     // Whatever was done: the window still draws and answers.
     screen.steps();
-    let written = screen.studio().encoders().iter().filter_map(|encoder| encoder.review.as_ref());
+    let written = screen.studio().devices().iter().filter_map(|own| own.hiperface()?.review.as_ref());
     for review in written {
         assert!(!matches!(review.state, ReviewState::Failed { begun: true, .. }), "seed {seed}");
     }

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Severity};
 use encoder_studio::profile::{Body, Document};
 use encoder_studio::store::read_text;
@@ -20,7 +21,7 @@ fn saved() -> (Desk, std::path::PathBuf) {
 
 fn open(desk: &mut Desk, path: &std::path::Path) {
     desk.act(Action::Open(path.to_owned()));
-    desk.until("it is open", |studio| studio.encoder().unwrap().phase == Phase::Offline);
+    desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.settle();
 }
 
@@ -64,7 +65,7 @@ fn saving_asks_for_a_file_named_after_the_encoder() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
-    let session = desk.studio.encoder().unwrap().id;
+    let session = desk.studio.hiperface().unwrap().session.id;
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Save { session, suggested }));
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
@@ -108,20 +109,20 @@ fn a_profile_that_cannot_be_read_is_told_and_left() {
     }
     desk.act(Action::Open(desk.outside.path("none.ron")));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "file.not_found"));
-    assert_eq!(desk.studio.encoders().len(), 1);
+    assert_eq!(desk.studio.devices().len(), 1);
 }
 
 #[test]
 fn a_profile_read_again_keeps_its_edits() {
     let (mut desk, path) = saved();
     open(&mut desk, &path);
-    assert_eq!(desk.encoder().name(), "mine.ron");
-    assert!(desk.encoder().identity.is_some() && !desk.encoder().is_virtual());
+    assert_eq!(desk.encoder().session.name(), "mine.ron");
+    assert!(desk.encoder().identity.is_some() && !desk.encoder().session.is_virtual());
     desk.put(0, 0, b"X");
     let text = read_text(&path).unwrap();
     fs::write(&path, text.replace("45 4D 44 37", "45 4E 44 37")).unwrap();
     desk.ask(Hiperface::Read);
-    desk.until("it is read again", |studio| studio.encoder().unwrap().staged.on_device(0, 1) == Some(0x4E));
+    desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.on_device(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
     // A file that is broken by now changes nothing.
@@ -130,7 +131,7 @@ fn a_profile_read_again_keeps_its_edits() {
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
     assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
     desk.ask(Hiperface::Save(path.clone()));
-    desk.until("the edit is saved", |studio| !studio.encoder().unwrap().staged.is_dirty());
+    desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
     let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");
 }
@@ -142,7 +143,7 @@ fn a_profile_is_not_protected_by_what_it_says_about_protection() {
     let path = desk.outside.path("ready-made.ron");
     fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
     desk.studio.begin(None, Some(path.clone()));
-    desk.until("it is open", |studio| studio.encoder().is_some());
+    desk.until("it is open", |studio| studio.hiperface().is_some());
     assert_eq!(desk.encoder().mounting(1), [(0..16, "commutation offset".to_owned())]);
     desk.put(0, 0, b"X");
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
@@ -153,7 +154,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     let (mut desk, path) = saved();
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
-    let other = desk.encoder().id;
+    let other = desk.encoder().session.id;
     open(&mut desk, &path);
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::WriteInto(other));
@@ -162,7 +163,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
             matches!(state, encoder_studio::app::hiperface::ReviewState::Failed { .. })
         })
     });
-    assert_eq!(desk.encoder().id, other);
+    assert_eq!(desk.encoder().session.id, other);
     desk.until_ready();
     let mut options = desk.review().options().unwrap();
     options.allow_other_device = true;
@@ -181,7 +182,7 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kept.ron");
     std::fs::write(&path, "dear").unwrap();
-    let session = desk.studio.encoder().unwrap().id;
+    let session = desk.studio.hiperface().unwrap().session.id;
     let typed = |path: &std::path::Path| {
         Action::Typed(FileQuestion::Save { session, suggested: "x.ron".into() }, path.to_owned())
     };

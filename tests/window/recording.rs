@@ -15,11 +15,11 @@ use encoder_studio::device::hiperface::Watch;
 const FAST: Hiperface = Hiperface::Poll(Some(Duration::from_millis(2)));
 
 fn recorded(studio: &Studio) -> u64 {
-    studio.encoder().unwrap().record.positions()
+    studio.hiperface().unwrap().record.positions()
 }
 
 fn own(desk: &Desk) -> Of {
-    Of::Encoder(desk.encoder().id)
+    Of::Device(desk.encoder().session.id)
 }
 
 fn recorder(desk: &Desk) -> &Recorder {
@@ -44,7 +44,7 @@ fn the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::begun("rpm=600&position=16600000");
     desk.ask(FAST);
     desk.until("the range has ended", |studio| {
-        recorded(studio) > 200 && studio.encoder().unwrap().record.last().is_some_and(|reading| reading.raw < 1 << 23)
+        recorded(studio) > 200 && studio.hiperface().unwrap().record.last().is_some_and(|reading| reading.raw < 1 << 23)
     });
     desk.act(Action::Stop);
     let (least, most) = extent(recorder(&desk), "position");
@@ -160,7 +160,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
     }
     desk.ask(FAST);
     desk.until("the counter has come", |studio| {
-        let recorder = &studio.encoder().unwrap().record.recorder;
+        let recorder = &studio.hiperface().unwrap().record.recorder;
         recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
     });
     let recording = recorder(&desk);

@@ -43,7 +43,7 @@ impl Screen {
     pub(crate) fn begun(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {
-            studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+            studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
         });
         screen
     }
@@ -53,7 +53,7 @@ impl Screen {
     }
 
     pub(crate) fn encoder(&self) -> &Encoder {
-        self.studio().encoder().expect("an encoder is shown")
+        self.studio().hiperface().expect("an encoder is shown")
     }
 
     fn language(&self) -> Language {
@@ -89,7 +89,7 @@ impl Screen {
 
     /// Asks something of the encoder that is shown.
     pub(crate) fn ask(&mut self, action: Hiperface) {
-        self.act(Action::Hiperface(self.encoder().id, action));
+        self.act(Action::Hiperface(self.encoder().session.id, action));
     }
 
     pub(crate) fn say(&self, id: &'static str) -> String {

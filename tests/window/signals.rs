@@ -60,7 +60,7 @@ fn shown(studio: &Studio) -> Option<&Origin> {
 #[test]
 fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     let mut desk = Desk::fresh("");
-    assert!(desk.studio.encoder().is_none());
+    assert!(desk.studio.hiperface().is_none());
     let path = desk.file("circle.CSV", &circle(4));
     desk.open_capture(&path);
     assert_eq!(

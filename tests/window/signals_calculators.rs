@@ -90,7 +90,7 @@ fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
 fn both_positions_are_read_from_the_encoder_that_is_shown() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);
     screen.until("the encoder is read", |studio| {
-        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+        studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     });
     screen.act(Action::ShowTab(Tab::Signals));
     screen.click("page.synchronise");

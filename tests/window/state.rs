@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, Source};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, JobEnd, Severity};
 use encoder_studio::link::{Direction, LinkUrl};
 use encoder_studio::protocol::hiperface::FreeMemory;
@@ -13,9 +14,9 @@ use crate::support::{Desk, OTHER_PORT};
 fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
     let desk = Desk::begun("");
     let encoder = desk.encoder();
-    assert_eq!(encoder.phase, Phase::Connected);
-    assert_eq!(encoder.source, Source::Link(LinkUrl::sim()));
-    assert!(encoder.is_virtual());
+    assert_eq!(encoder.session.phase, Phase::Connected);
+    assert_eq!(encoder.session.source, Source::Link(LinkUrl::sim()));
+    assert!(encoder.session.is_virtual());
     let identity = encoder.identity.as_ref().unwrap();
     assert_eq!(identity.name, "SKM36");
     assert_eq!(identity.serial.serial_number, "GB0450179");
@@ -23,7 +24,7 @@ fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
     assert_eq!(identity.memory, Some(FreeMemory { blocks: 110, fields: 1 }));
     assert_eq!(encoder.field(0).unwrap().bytes.as_ref().unwrap()[..6], *b"EMD71K");
     assert_eq!(encoder.counter, Some(0));
-    assert_eq!(encoder.line().unwrap().polling(), None);
+    assert_eq!(encoder.session.line().unwrap().polling(), None);
     assert!(!desk.studio.can_stop() && !desk.studio.is_live());
     assert!(desk.told(Severity::Warning).is_empty());
     assert_eq!(desk.studio.settings.links(), ["sim:"]);
@@ -32,21 +33,24 @@ fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
 #[test]
 fn nothing_is_sent_while_nobody_asks() {
     let mut desk = Desk::begun("");
-    let (sent, frames) = (desk.wire().sent(), desk.encoder().trace.lines().len());
-    assert_eq!(desk.encoder().trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(), sent);
+    let (sent, frames) = (desk.wire().sent(), desk.encoder().session.trace.lines().len());
+    assert_eq!(
+        desk.encoder().session.trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(),
+        sent
+    );
     // Longer than the worker waits between two looks at its wire.
     for _ in 0..60 {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
     }
     assert_eq!(desk.wire().sent(), sent);
-    assert_eq!(desk.encoder().trace.lines().len(), frames);
+    assert_eq!(desk.encoder().session.trace.lines().len(), frames);
 }
 
 #[test]
 fn every_frame_is_shown_with_its_meaning() {
     let desk = Desk::begun("");
-    let lines = desk.encoder().trace.lines();
+    let lines = desk.encoder().session.trace.lines();
     assert!(lines.iter().all(|line| !line.bytes.is_empty() && !line.meaning.is_empty()), "{lines:?}");
 }
 
@@ -63,7 +67,7 @@ fn each_read_is_a_job_that_ends_as_done() {
         Hiperface::Read,
     ] {
         desk.ask(action);
-        assert!(desk.encoder().is_busy());
+        assert!(desk.encoder().session.is_busy());
         desk.until_ready();
     }
     let ends: Vec<JobEnd> = desk.studio.services.jobs().skip(jobs).map(|job| job.end.clone()).collect();
@@ -109,18 +113,18 @@ fn a_job_beside_another_is_refused_with_a_sentence() {
 #[test]
 fn two_encoders_are_shown_one_at_a_time() {
     let mut desk = Desk::begun("");
-    let first = desk.encoder().id;
+    let first = desk.encoder().session.id;
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
-    let second = desk.encoder().id;
+    let second = desk.encoder().session.id;
     assert_eq!(desk.encoder().identity.as_ref().unwrap().name, "SKS36");
-    assert_eq!(desk.studio.encoders().len(), 2);
+    assert_eq!(desk.studio.devices().len(), 2);
     desk.act(Action::Select(first));
-    assert_eq!(desk.encoder().id, first);
+    assert_eq!(desk.encoder().session.id, first);
     desk.act(Action::CloseSession(first));
-    assert_eq!((desk.encoder().id, desk.studio.encoders().len()), (second, 1));
+    assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));
     // The same wire again is the same session.
     desk.open(&format!("serial:{OTHER_PORT}?address=0x40"));
     desk.until_read();
-    assert_eq!((desk.encoder().id, desk.studio.encoders().len()), (second, 1));
+    assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Phase, Review, ReviewState};
+use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
@@ -66,7 +67,7 @@ impl Outside {
     pub(crate) fn world(&self) -> World {
         let (wires, opens) = (self.wires.clone(), self.opens.clone());
         World {
-            open: Arc::new(move |url, store| {
+            open_hiperface: Arc::new(move |url, store| {
                 if url.to_string() == HANGING {
                     loop {
                         std::thread::park();
@@ -168,7 +169,7 @@ impl Desk {
     }
 
     pub(crate) fn ask(&mut self, action: Hiperface) {
-        let shown = self.studio.encoder().map(|encoder| encoder.id);
+        let shown = self.studio.hiperface().map(|encoder| encoder.session.id);
         if let Some(id) = shown {
             self.act(Action::Hiperface(id, action));
         }
@@ -199,7 +200,7 @@ impl Desk {
     #[track_caller]
     pub(crate) fn until_read(&mut self) {
         self.until("the encoder is read", |studio| {
-            studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+            studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
         });
         self.settle();
     }
@@ -207,7 +208,7 @@ impl Desk {
     /// Polls until the shown encoder is ready for the next job.
     #[track_caller]
     pub(crate) fn until_ready(&mut self) {
-        self.until("ready", |studio| studio.encoder().is_some_and(Encoder::is_ready));
+        self.until("ready", |studio| studio.hiperface().is_some_and(|own| own.session.is_ready()));
     }
 
     /// Lets tasks on their threads come back: drafts, lists, settings.
@@ -224,7 +225,7 @@ impl Desk {
     pub(crate) fn until_kept(&mut self) {
         let folder = self.outside.path("data/drafts");
         self.until("the edits are kept", |studio| {
-            let edits: Vec<(u8, usize, u8)> = studio.encoder().unwrap().staged.edits().collect();
+            let edits: Vec<(u8, usize, u8)> = studio.hiperface().unwrap().staged.edits().collect();
             let kinds = std::fs::read_dir(&folder).into_iter().flatten();
             let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
             // Beside it stands the one that is to take its place.
@@ -236,7 +237,7 @@ impl Desk {
     }
 
     pub(crate) fn encoder(&self) -> &Encoder {
-        self.studio.encoder().expect("an encoder is shown")
+        self.studio.hiperface().expect("an encoder is shown")
     }
 
     pub(crate) fn review(&self) -> &Review {
@@ -244,7 +245,7 @@ impl Desk {
     }
 
     pub(crate) fn phase(&self) -> &Phase {
-        &self.encoder().phase
+        &self.encoder().session.phase
     }
 
     pub(crate) fn put(&mut self, field: u8, address: usize, bytes: &[u8]) {
@@ -301,7 +302,7 @@ impl Desk {
 }
 
 pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) -> bool {
-    studio.encoder().and_then(|encoder| encoder.review.as_ref()).is_some_and(|review| wanted(&review.state))
+    studio.hiperface().and_then(|encoder| encoder.review.as_ref()).is_some_and(|review| wanted(&review.state))
 }
 
 /// Everything that was told, for a test that fails.

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use encoder_studio::app::explain::hiperface as words;
-use encoder_studio::app::hiperface::{Encoder, Phase, ReviewState, review};
-use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text, Texts};
+use encoder_studio::app::hiperface::{Encoder, ReviewState, review};
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::{AnyDevice, JobEnd, Language, Notice, Studio, Text, Texts};
 
 #[derive(serde::Deserialize)]
 struct Row {
@@ -66,11 +67,11 @@ pub(crate) fn check_all(studio: &Studio) {
     }
     studio.signals.problem().into_iter().for_each(check);
     studio.signals.source().problem().into_iter().for_each(check);
-    studio.encoders().iter().for_each(check_encoder);
+    studio.devices().iter().filter_map(AnyDevice::hiperface).for_each(check_encoder);
 }
 
 fn check_encoder(encoder: &Encoder) {
-    if let Phase::Lost(why) | Phase::Silent(why) = &encoder.phase {
+    if let Phase::Lost(why) | Phase::Silent(why) = &encoder.session.phase {
         check(why);
     }
     for why in encoder.analogue.values().filter_map(|value| value.as_ref().err()) {
@@ -80,10 +81,10 @@ fn check_encoder(encoder: &Encoder) {
         check(&words::field_status(field.status));
     }
     encoder.codes.iter().flatten().for_each(|code| check(&words::status(*code)));
-    if let Some(Err(why)) = &encoder.backups {
+    if let Some(Err(why)) = &encoder.session.backups {
         check(why);
     }
-    if let Some(Err(why)) = &encoder.writes {
+    if let Some(Err(why)) = &encoder.session.writes {
         check(why);
     }
     let Some(review) = &encoder.review else { return };

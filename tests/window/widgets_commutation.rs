@@ -47,8 +47,8 @@ fn the_page_is_gone_through_by_hand() {
     screen.click("commutation.read_one");
     let read = |slot| {
         move |studio: &encoder_studio::app::Studio| {
-            let encoder = studio.encoder().unwrap();
-            encoder.is_ready() && encoder.commutation.reading(slot).is_some()
+            let encoder = studio.hiperface().unwrap();
+            encoder.session.is_ready() && encoder.commutation.reading(slot).is_some()
         }
     };
     screen.until("one side is read", read(Slot::OneSide));

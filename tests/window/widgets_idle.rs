@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers, ViewportEvent, ViewportId};
 use encoder_studio::app::Severity;
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::Phase;
 
 use crate::screen::Screen;
 use crate::support::PORT;
@@ -39,7 +40,7 @@ fn what_comes_back_from_a_thread_wakes_the_window() {
     let wakes = screen.outside.wakes.clone();
     let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
     screen.ask(Hiperface::ReadCounter);
-    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
     assert!(wakes.load(std::sync::atomic::Ordering::SeqCst) > before + 1);
 }
 
@@ -48,7 +49,7 @@ fn f5_reads_again() {
     let mut screen = Screen::begun(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     screen.key(Key::F5);
-    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
     assert_eq!(screen.outside.wire(PORT).count(0x56), before + 1);
     // What stands over the window has the keyboard.
     screen.click("shell.connect");
@@ -81,5 +82,5 @@ fn the_close_button_of_the_system_asks_when_something_would_be_lost() {
     screen.key(Key::Escape);
     assert!(screen.studio().question.is_none());
     assert!(screen.studio().services.log.notices().all(|notice| notice.severity < Severity::Error));
-    assert_eq!(screen.encoder().phase, Phase::Connected);
+    assert_eq!(screen.encoder().session.phase, Phase::Connected);
 }

@@ -3,7 +3,8 @@
 use egui::{Key, Rect, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, Theme};
 
 use crate::screen::Screen;
@@ -52,13 +53,13 @@ fn every_page_is_drawn_with_the_virtual_encoder() {
 #[test]
 fn every_page_is_drawn_with_nothing_connected() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
-    screen.until("it is told", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    screen.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     look_at_everything(&mut screen, SMALL);
     assert!(screen.has_button("shell.reconnect"));
-    let id = screen.encoder().id;
+    let id = screen.encoder().session.id;
     screen.act(Action::CloseSession(id));
     screen.act(Action::Dismiss);
-    assert!(screen.studio().encoder().is_none());
+    assert!(screen.studio().hiperface().is_none());
     assert!(screen.shows(&screen.say("shell.empty")));
 }
 
@@ -73,7 +74,7 @@ fn every_page_is_drawn_while_a_link_opens() {
 fn every_page_is_drawn_with_all_that_an_encoder_tells() {
     let mut screen = Screen::opened(Outside::new("model=sel37&rpm=60"), None, LARGE);
     let ready = |studio: &encoder_studio::app::Studio| {
-        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+        studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     };
     screen.until("it is read", ready);
     for action in [
@@ -100,7 +101,7 @@ fn every_page_of_a_profile_is_drawn() {
     let path = screen.outside.path("mine.ron");
     std::fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
     screen.act(Action::Open(path));
-    screen.until("it is open", |studio| studio.encoders().len() == 2);
+    screen.until("it is open", |studio| studio.devices().len() == 2);
     look_at_everything(&mut screen, SMALL);
     assert!(screen.shows(&screen.say("shell.offline")));
 }
@@ -145,7 +146,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
     let choose = screen.words(&encoder_studio::app::Text::new("find.choose").with("address", "44h"));
     screen.harness.get_by_label(&choose).click();
     screen.until("it is read", |studio| {
-        studio.encoder().and_then(|encoder| encoder.identity.as_ref()).is_some_and(|own| own.address == 0x44)
+        studio.hiperface().and_then(|encoder| encoder.identity.as_ref()).is_some_and(|own| own.address == 0x44)
     });
 }
 
@@ -194,7 +195,7 @@ fn the_language_and_the_theme_are_a_click_away() {
 #[test]
 fn a_path_is_typed_where_there_is_no_dialog() {
     let mut screen = Screen::begun(SMALL);
-    let session = screen.encoder().id;
+    let session = screen.encoder().session.id;
     for question in [FileQuestion::Open, FileQuestion::Save { session, suggested: "x.ron".into() }] {
         screen.act(Action::TypePath(question));
         assert!(screen.has_button("file.cancel"));

@@ -16,10 +16,10 @@ use crate::support::Outside;
 fn recorded() -> Screen {
     let mut screen = Screen::opened(Outside::new("rpm=600"), None, [1280.0, 800.0]);
     screen.until("it is read", |studio| {
-        studio.encoder().is_some_and(|encoder| encoder.is_ready() && encoder.identity.is_some())
+        studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     });
     screen.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
-    screen.until("samples come", |studio| studio.encoder().unwrap().record.positions() > 300);
+    screen.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 300);
     screen.act(Action::Stop);
     screen.steps();
     screen
@@ -231,7 +231,7 @@ fn the_keyboard_moves_and_zooms() {
 #[test]
 fn a_table_is_asked_for_from_the_menu() {
     let mut screen = recorded();
-    let of = Of::Encoder(screen.encoder().id);
+    let of = Of::Device(screen.encoder().session.id);
     screen.click("recorder.export");
     screen.click("recorder.csv_visible");
     // Without a portal the window asks for a path itself, and the question is on its way there.

@@ -2,7 +2,8 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperface::{Action as Hiperface, Phase, ReviewState};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Language, Text};
 
 use crate::screen::Screen;
@@ -44,7 +45,8 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
     }
     screen.click("review.write");
     screen.until("it is written", |studio| {
-        is_review(studio, |state| matches!(state, ReviewState::Done(..))) && studio.encoder().unwrap().is_ready()
+        is_review(studio, |state| matches!(state, ReviewState::Done(..)))
+            && studio.hiperface().unwrap().session.is_ready()
     });
     let verified = Text::new("review.verified").with("verified", 1).with("cycles", 1);
     assert!(screen.shows(&screen.words(&verified)));
@@ -62,7 +64,8 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     type_bytes(&mut screen, "58");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.until("the plan is ready", |studio| {
-        is_review(studio, |state| matches!(state, ReviewState::Ready(_))) && studio.encoder().unwrap().is_ready()
+        is_review(studio, |state| matches!(state, ReviewState::Ready(_)))
+            && studio.hiperface().unwrap().session.is_ready()
     });
     screen.key(Key::Escape);
     assert!(screen.encoder().review.is_none());
@@ -87,14 +90,15 @@ fn what_a_field_does_not_allow_cannot_be_pressed() {
     screen.ask(Hiperface::Plan(create));
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     screen.click("review.write");
-    screen.until("it is written", |studio| studio.encoder().unwrap().staged.device().len() == 2);
+    screen.until("it is written", |studio| studio.hiperface().unwrap().staged.device().len() == 2);
     screen.click("review.close");
     assert!(!screen.is_enabled("memory.delete") && !screen.is_enabled("memory.resize"), "another one is the last now");
     screen.click("memory.lock");
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     screen.click("review.write");
     screen.until("it is written", |studio| {
-        is_review(studio, |state| matches!(state, ReviewState::Done(..))) && studio.encoder().unwrap().is_ready()
+        is_review(studio, |state| matches!(state, ReviewState::Done(..)))
+            && studio.hiperface().unwrap().session.is_ready()
     });
     screen.click("review.close");
     type_bytes(&mut screen, "58");
@@ -112,9 +116,9 @@ fn stop_can_be_pressed_only_while_something_runs() {
     screen.steps();
     assert!(screen.is_enabled("shell.stop"));
     screen.click("shell.stop");
-    assert!(screen.encoder().line().unwrap().running().unwrap().stopping);
+    assert!(screen.encoder().session.line().unwrap().running().unwrap().stopping);
     screen.outside.wire(PORT).release();
-    screen.until("it has ended", |studio| studio.encoder().unwrap().is_ready());
+    screen.until("it has ended", |studio| studio.hiperface().unwrap().session.is_ready());
     assert!(!screen.is_enabled("shell.stop"));
     screen.click("live.start");
     assert!(screen.is_enabled("shell.stop") && screen.studio().is_live());
@@ -131,7 +135,8 @@ fn a_restore_is_stopped_half_way_by_click() {
     }
     screen.ask(Hiperface::Review);
     screen.until("the plan is ready", |studio| {
-        is_review(studio, |state| matches!(state, ReviewState::Ready(_))) && studio.encoder().unwrap().is_ready()
+        is_review(studio, |state| matches!(state, ReviewState::Ready(_)))
+            && studio.hiperface().unwrap().session.is_ready()
     });
     screen.outside.wire(PORT).hold_at(0x4B, 2);
     screen.click("review.write");
@@ -142,7 +147,7 @@ fn a_restore_is_stopped_half_way_by_click() {
     screen.outside.wire(PORT).release();
     screen.until("it has ended", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))
-            && studio.encoder().unwrap().is_ready()
+            && studio.hiperface().unwrap().session.is_ready()
     });
     let words = Text::new("write.cancelled").with("done", 2).with("planned", 3);
     assert!(screen.shows(&screen.words(&words)));
@@ -153,15 +158,17 @@ fn a_restore_is_stopped_half_way_by_click() {
 #[test]
 fn a_pulled_cable_shows_the_way_back_and_keeps_the_edits() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
-    screen.until("it is read", |studio| studio.encoder().is_some_and(|own| own.is_ready() && own.identity.is_some()));
+    screen.until("it is read", |studio| {
+        studio.hiperface().is_some_and(|own| own.session.is_ready() && own.identity.is_some())
+    });
     type_bytes(&mut screen, "58");
     screen.outside.wire(PORT).unplug();
-    screen.until("it is lost", |studio| matches!(studio.encoder().unwrap().phase, Phase::Lost(_)));
+    screen.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     assert!(screen.shows(&screen.say("shell.edits_kept")) && screen.shows(&screen.say("shell.lost")));
     assert!(!screen.is_enabled("memory.review"));
     screen.outside.wire(PORT).plug();
     screen.click("shell.reconnect");
-    screen.until("it is read", |studio| studio.encoder().unwrap().is_ready());
+    screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
     assert!(screen.is_enabled("memory.review"));
     assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 0, 0x58)]);
 }

@@ -1,6 +1,7 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Done as Late, ReviewState, forms, review, rules};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, review, rules};
+use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
 use encoder_studio::profile::hiperface::{FieldRange, Op};
 use encoder_studio::profile::{Body, Document};
@@ -34,7 +35,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     assert_eq!(desk.wire().wear(), 0, "looking is no writing");
 
     desk.write_as_shown();
-    assert!(desk.encoder().is_writing());
+    assert!(desk.encoder().session.is_writing());
     desk.until_written();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     assert_eq!((committed.written.ops, committed.written.write_cycles), (1, 1));
@@ -59,11 +60,11 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
 
     desk.until(
         "the lists are read",
-        |studio| matches!(&studio.encoder().unwrap().writes, Some(Ok(own)) if own.len() == 1),
+        |studio| matches!(&studio.hiperface().unwrap().session.writes, Some(Ok(own)) if own.len() == 1),
     );
-    let backups = desk.encoder().backups.clone().unwrap().unwrap();
+    let backups = desk.encoder().session.backups.clone().unwrap().unwrap();
     assert_eq!(backups.iter().map(|own| &own.path).collect::<Vec<_>>(), [&backup]);
-    let writes = desk.encoder().writes.clone().unwrap().unwrap();
+    let writes = desk.encoder().session.writes.clone().unwrap().unwrap();
     assert_eq!((writes[0].planned_cycles, writes[0].backup.as_ref()), (1, Some(&backup)));
     let conclusion = writes[0].conclusion.as_ref().unwrap();
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Outcome::Done, 1));
@@ -84,7 +85,7 @@ fn nothing_is_written_without_consent() {
     let before = desk.wire().field(0);
     desk.put(0, 0, b"X");
     desk.write_as_shown();
-    assert!(!desk.encoder().is_busy(), "there is no plan");
+    assert!(!desk.encoder().session.is_busy(), "there is no plan");
     desk.ask(Hiperface::Review);
     // Before the plan is shown there is nothing to consent to.
     desk.write_as_shown();
@@ -92,7 +93,7 @@ fn nothing_is_written_without_consent() {
     desk.ask(Hiperface::CloseReview);
     desk.write_as_shown();
     desk.settle();
-    assert!(!desk.encoder().is_busy() && desk.encoder().review.is_none());
+    assert!(!desk.encoder().session.is_busy() && desk.encoder().review.is_none());
     assert_eq!((desk.wire().field(0), desk.wire().wear()), (before, 0));
     assert_eq!(desk.edits(), [(0, 0, b'X')], "the edit stays");
     assert!(!desk.outside.path("data/backups").exists());
@@ -168,7 +169,7 @@ fn consent_is_to_the_plan_that_was_drawn_and_to_no_other() {
     desk.until_planned();
     desk.ask(Hiperface::Write(drawn));
     desk.settle();
-    assert!(!desk.encoder().is_busy() && matches!(desk.review().state, ReviewState::Ready(_)));
+    assert!(!desk.encoder().session.is_busy() && matches!(desk.review().state, ReviewState::Ready(_)));
     assert_eq!(desk.wire().wear(), 0);
     desk.write_as_shown();
     desk.until_written();
@@ -254,22 +255,22 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     desk.ask(Hiperface::CloseReview);
     desk.until(
         "the list is read",
-        |studio| matches!(&studio.encoder().unwrap().backups, Some(Ok(own)) if own.len() == 1),
+        |studio| matches!(&studio.hiperface().unwrap().session.backups, Some(Ok(own)) if own.len() == 1),
     );
-    let id = desk.encoder().id;
+    let id = desk.encoder().session.id;
     let other = DeviceKey {
         kind: "hiperface".to_owned(),
         device_type: "37h".to_owned(),
         serial_number: "OTHER0001".to_owned(),
         is_virtual: true,
     };
-    let late = Late::Backups { of: other.clone(), backups: Ok(Vec::new()), writes: Ok(Vec::new()) };
-    desk.act(Action::Done(Done::Hiperface(id, late)));
-    assert_eq!(desk.encoder().backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
-    let path = desk.encoder().backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
-    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
-    desk.act(Action::Done(Done::Hiperface(id, Late::Backup { of: other, path, result: Ok(Box::new(profile)) })));
-    assert!(desk.encoder().review.is_none() && !desk.encoder().is_busy());
+    let listed = Box::new(Listed { backups: Ok(Vec::new()), writes: Ok(Vec::new()) });
+    desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
+    assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
+    let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
+    let document = Box::new(Document::parse(&read_text(&path).unwrap()).unwrap());
+    desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
+    assert!(desk.encoder().review.is_none() && !desk.encoder().session.is_busy());
 }
 
 /// A second field, so that the first is no longer the last.
@@ -375,12 +376,12 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
     assert_eq!(desk.told(Severity::Error), ["encoder.code_unknown"]);
     let code = encoder_studio::app::hiperface::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
-    desk.until("the field is readable", |studio| studio.encoder().unwrap().field(0).unwrap().bytes.is_some());
+    desk.until("the field is readable", |studio| studio.hiperface().unwrap().field(0).unwrap().bytes.is_some());
     desk.until_ready();
     desk.put(0, 0, b"X");
 
     desk.wire().unplug();
-    desk.until("it is lost", |studio| studio.encoder().unwrap().line().is_none());
+    desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     desk.wire().plug();
     desk.ask(Hiperface::Reconnect);
     desk.until_read();
@@ -390,6 +391,7 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
     assert!(
         !desk
             .encoder()
+            .session
             .trace
             .lines()
             .iter()
@@ -404,5 +406,5 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
     desk.until_read();
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
-    desk.until("the edit is back", |studio| studio.encoder().unwrap().staged.byte(0, 1) == Some(b'Y'));
+    desk.until("the edit is back", |studio| studio.hiperface().unwrap().staged.byte(0, 1) == Some(b'Y'));
 }

@@ -4,13 +4,14 @@ use crossbeam_channel::Receiver;
 
 use super::{Action, Connect, LinkForm, Search, list_ports};
 use crate::app::action::Done;
-use crate::app::hiperface::{Encoder, Phase, Source};
 use crate::app::leaving::{Leaver, same_wire};
 use crate::app::services::JobEnd;
-use crate::app::studio::{SessionId, Studio};
-use crate::app::{Severity, Text, explain};
+use crate::app::session::{Phase, Source};
+use crate::app::studio::{SessionId, Studio, Tab};
+use crate::app::{AnyDevice, Severity, Text, explain};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
+use crate::worker::hiperface::Hiperface;
 
 impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
@@ -39,7 +40,7 @@ impl Studio {
                     Ok(url) => {
                         // A search may still hold the wire.
                         self.close_dialog();
-                        self.open_link(url);
+                        self.open_link(Tab::Hiperface, url);
                     }
                     Err(problem) => self.refuse(problem),
                 }
@@ -82,7 +83,7 @@ impl Studio {
         };
         let number = self.new_number();
         let done = move |result| Done::OpenedForSearch { number, result };
-        let over = self.open_task(url.clone(), earlier, Vec::new(), done);
+        let over = self.open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);
@@ -92,19 +93,21 @@ impl Studio {
     /// Lets the session on this wire go, unless it writes; one whose link is still being opened is over when what is given
     /// tells so.
     fn free_for_search(&mut self, url: &LinkUrl) -> Result<Option<Receiver<()>>, Text> {
-        let holds = |encoder: &&mut Encoder| {
-            let held = encoder.line().is_some() || encoder.opening.is_some();
-            held && matches!(&encoder.source, Source::Link(own) if same_wire(own, url))
+        let holds = |device: &&mut AnyDevice| {
+            let held = device.is_connected() || device.is_opening();
+            held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
         };
-        let Some(encoder) = self.encoders.iter_mut().find(holds) else { return Ok(None) };
-        let name = encoder.name();
-        if encoder.is_writing() {
+        let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(holds)) else {
+            return Ok(None);
+        };
+        let name = device.name();
+        if device.is_writing() {
             return Err(Text::new("find.writing").with("name", name));
         }
-        encoder.let_go(JobEnd::Cancelled, &mut self.services);
+        device.let_go(JobEnd::Cancelled, &mut self.services);
         let why = Text::new("session.let_go_for_search");
-        encoder.phase = Phase::Lost(why.clone());
-        let earlier = encoder.opening.take().map(|opening| opening.over);
+        *device.phase_mut() = Phase::Lost(why.clone());
+        let earlier = device.opening_mut().take().map(|opening| opening.over);
         self.services.tell(Severity::Note, vec![why], Some(&name));
         Ok(earlier)
     }
@@ -130,6 +133,6 @@ impl Studio {
         let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
         let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
         self.close_dialog();
-        self.open_link(url);
+        self.open_link(Tab::Hiperface, url);
     }
 }

@@ -93,7 +93,7 @@ impl Search {
         url
     }
 
-    pub(super) fn opened(&mut self, result: Result<Box<Opened>, Box<OpenFailed>>, services: &Services) {
+    pub(super) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>, services: &Services) {
         match result {
             Ok(opened) => {
                 let mut line = Line::new(*opened);

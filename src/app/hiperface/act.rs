@@ -1,26 +1,23 @@
 //! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use jiff::Timestamp;
 
-use super::Done;
 use super::action::Action;
-use super::encoder::{Encoder, Phase, Source};
+use super::encoder::Encoder;
 use super::review::{Review, ReviewState};
 use super::rules;
-use crate::app::action::{self, FileQuestion};
-use crate::app::leaving::Leaver;
+use crate::app::action::{FileQuestion, ReadError};
 use crate::app::services::{JobEnd, Services};
+use crate::app::session::{Phase, Source};
 use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
 use crate::device::hiperface::{SaveOptions, Watch};
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
 use crate::profile::{Body, Consent, Document, PlanId};
 use crate::protocol::hiperface::LineSettings;
-use crate::store::write_atomically;
-use crate::worker::SubmitError;
 use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
 
 /// How often a watched value is read: what is watched changes slowly, and the position has to wait for it.
@@ -39,7 +36,7 @@ impl Encoder {
                 self.submit(HiperfaceJob::Position(geometry), services);
             }
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.line {
+                if let Some(line) = &mut self.session.line {
                     let begins = line.polling().is_none();
                     line.poll(interval);
                     self.record.poll(interval, begins);
@@ -83,7 +80,8 @@ impl Encoder {
             Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
             Action::AskSave => {
-                services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() })
+                services.file_question =
+                    Some(FileQuestion::Save { session: self.session.id, suggested: self.session.suggested_file() })
             }
             Action::Save(path) => self.save(path, services),
             Action::Commutation(action) => self.act_commutation(action, services),
@@ -104,7 +102,7 @@ impl Encoder {
 
     /// Tells the session what is watched.
     pub(super) fn wish_watched(&mut self) {
-        if let Some(line) = &self.line {
+        if let Some(line) = &self.session.line {
             line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }
     }
@@ -129,48 +127,27 @@ impl Encoder {
     pub(super) fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
         let what = what(&job);
         let writes = matches!(job, HiperfaceJob::Commit(_));
-        let name = self.name();
-        let Some(line) = &mut self.line else {
-            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
-            return false;
-        };
         let asked = match &job {
             HiperfaceJob::Read(item) => Some(*item),
             _ => None,
         };
-        match line.submit(job, what.clone(), writes, services.now()) {
-            Ok(id) => {
-                self.asked = asked;
-                self.settings_then = None;
-                services.job_begins(self.id, id, &name, what);
-                return true;
-            }
-            Err(SubmitError::Busy | SubmitError::Unread) => {
-                services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
-            }
-            Err(SubmitError::Ended) => {
-                self.lose(Text::new("session.ended"), services);
-            }
+        let begun = self.session.submit(job, what, writes, services);
+        if begun {
+            self.asked = asked;
+            self.settings_then = None;
         }
-        false
+        begun
     }
 
     fn read_again(&mut self, services: &mut Services) {
-        if let Source::File { path, .. } = &self.source {
-            services.opening_files.push(path.clone());
-        }
-        match &self.source {
-            Source::Link(_) => self.read_encoder(services),
-            Source::File { path, .. } => {
-                let (path, store) = (path.clone(), services.world.store.clone());
-                services.tasks.run("read", move || crate::app::studio::read_document(path, &store));
-            }
+        if !self.session.read_file_again(services) {
+            self.read_encoder(services);
         }
     }
 
     pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
-        let allowed = match (&self.phase, self.field(field)) {
-            _ if self.is_writing() => Err(Text::new("session.busy")),
+        let allowed = match (&self.session.phase, self.field(field)) {
+            _ if self.session.is_writing() => Err(Text::new("session.busy")),
             // A profile is a text: what it says about protection does not protect it.
             (Phase::Offline, _) | (_, None) => Ok(()),
             (_, Some(image)) => rules::edit(image),
@@ -180,13 +157,13 @@ impl Encoder {
             put.map_err(|error| explain::hiperface::staged(&error, bytes.len(), address))
         });
         if let Err(text) = allowed {
-            services.tell(Severity::Error, vec![text], Some(&self.name()));
+            services.tell(Severity::Error, vec![text], Some(&self.session.name()));
         }
     }
 
     fn review_edits(&mut self, services: &mut Services) {
         if !self.staged.is_dirty() {
-            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.name()));
+            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
             return;
         }
         let edits: Vec<(FieldRange, Vec<u8>)> = self.staged.changed_runs();
@@ -194,18 +171,13 @@ impl Encoder {
     }
 
     pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
-        if !self.is_ready() {
-            let text = match &self.phase {
-                _ if self.is_busy() => Text::new("session.busy"),
-                Phase::Silent(why) => why.clone(),
-                _ => Text::new("session.not_connected"),
-            };
-            services.tell(Severity::Warning, vec![text], Some(&self.name()));
+        if let Some(why) = self.session.why_not_ready() {
+            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }
         let mut review = Review::new(explain::hiperface::change(&change), change.clone());
         if let Err(why) = rules::change(&self.staged, &change) {
-            review.state = ReviewState::Failed { texts: vec![why], begun: false };
+            review.fail(vec![why], false);
             self.review = Some(review);
             return;
         }
@@ -216,7 +188,7 @@ impl Encoder {
     }
 
     fn plan_again(&mut self, options: RestoreOptions, services: &mut Services) {
-        if self.is_busy() {
+        if self.session.is_busy() {
             return;
         }
         let Some(review) = &mut self.review else { return };
@@ -236,7 +208,7 @@ impl Encoder {
 
     /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
-        if !self.is_ready() {
+        if !self.session.is_ready() {
             return;
         }
         let Some(review) = &mut self.review else { return };
@@ -262,30 +234,19 @@ impl Encoder {
             return;
         }
         if matches!(review.state, ReviewState::Planning)
-            && let Some(line) = &mut self.line
+            && let Some(line) = &mut self.session.line
         {
             line.stop();
         }
         self.review = None;
     }
 
-    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
-        if let Source::File { path, .. } = &self.source {
-            return path.clone();
-        }
-        let words = self.identity.as_ref().map(|identity| {
-            let name = format!("{}-{}", identity.name, identity.serial.serial_number);
-            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect::<String>()
-        });
-        PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
-    }
-
     /// A connected encoder is read again for it; a profile is written as it is edited.
-    fn save(&mut self, path: PathBuf, services: &mut Services) {
-        match &self.source {
+    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        match &self.session.source {
             Source::Link(_) => {
                 if self.try_submit(HiperfaceJob::Save(SaveOptions::default()), services) {
-                    self.save_to = Some(path);
+                    self.session.save_to = Some(path);
                 }
             }
             Source::File { document, .. } => {
@@ -293,75 +254,64 @@ impl Encoder {
                 let Body::Hiperface(profile) = &mut document.body;
                 profile.fields = self.staged.wanted();
                 profile.mark_mounting();
-                self.write_document(path, document, Vec::new(), services);
+                self.session.write_document(path, document, Vec::new(), services);
             }
         }
     }
 
-    /// Writes a profile on a thread; `remarks` say what is not in it.
-    pub(super) fn write_document(
-        &mut self,
-        path: PathBuf,
-        document: Document,
-        remarks: Vec<Text>,
-        services: &Services,
-    ) {
-        let id = self.id;
-        services.tasks.run("save", move || {
-            let result = write_atomically(&path, document.emit().as_bytes());
-            let key = super::file_key(&path);
-            let document = Box::new(document);
-            crate::app::Action::Done(action::Done::Written { session: id, path, key, document, remarks, result })
-        });
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
+        match self.key() {
+            Some(of) => self.session.read_backup(of, path, services),
+            None => {
+                let text = Text::new("session.not_connected");
+                services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+            }
+        }
     }
 
-    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
-        let id = self.id;
-        let Some(of) = self.key() else {
-            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&self.name()));
-            return;
-        };
-        services.tasks.run("backup", move || {
-            let result = crate::app::studio::read_profile(&path).map(|document| {
+    /// A backup was read, or not.
+    pub(in crate::app) fn take_backup(
+        &mut self,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        match result {
+            Ok(document) => {
                 let Body::Hiperface(profile) = document.body;
-                Box::new(profile)
-            });
-            let done = Done::Backup { of, path, result };
-            crate::app::Action::Done(action::Done::Hiperface(id, done))
-        });
+                self.plan_restore(profile, services);
+            }
+            Err(error) => {
+                let text = crate::app::studio::read_error(path, &error);
+                services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+            }
+        }
     }
 
     /// The connection is gone; what is known and edited stays.
     pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        // It stands where the session is shown.
-        services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         // What passed at last says most about why it was the last.
         self.take_samples_and_frames();
-        self.let_go(JobEnd::Failed(why.clone()), services);
-        self.opening = None;
+        self.forget_asked();
+        self.session.lose(why.clone(), services);
         if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
-            review.state = ReviewState::Failed { texts: vec![why.clone()], begun: true };
+            review.fail(vec![why], true);
         }
-        self.phase = Phase::Lost(why);
     }
 
-    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more. A write that was cancelled ends by
-    /// itself, and tells how.
+    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.
     pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        (self.asked, self.save_to) = (None, None);
+        self.forget_asked();
+        self.session.let_go(end, services);
+    }
+
+    /// What was asked for on the line does not come any more.
+    fn forget_asked(&mut self) {
+        self.asked = None;
         self.give_up_rest();
-        let is_plan = |review: &Review| matches!(review.state, ReviewState::Planning | ReviewState::Ready(_));
-        if self.review.as_ref().is_some_and(is_plan) {
+        if self.review.as_ref().is_some_and(Review::is_plan) {
             self.review = None;
         }
-        let Source::Link(url) = &self.source else { return };
-        let (url, about) = (url.clone(), self.name());
-        let Some(line) = self.line.take() else { return };
-        let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
-        if let Some(running) = line.running().filter(|_| write.is_none()) {
-            services.job_ends(self.id, running.id, end);
-        }
-        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
     }
 }
 

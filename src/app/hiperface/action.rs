@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::{DraftKey, commutation};
+use super::commutation;
 use crate::app::studio::SessionId;
 use crate::device::hiperface::Watch;
 use crate::profile::PlanId;
-use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions};
+use crate::profile::hiperface::{FieldRange, RestoreOptions};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, LineSettings};
-use crate::store::{Backup, Claim, DeviceKey, Entry, FileError, LogbookError};
 use crate::worker::hiperface::Change;
 
 /// Something in the HIPERFACE tab.
@@ -87,42 +86,4 @@ pub enum Action {
     Commutation(commutation::Action),
     /// Show what writing this profile into a connected encoder would do.
     WriteInto(SessionId),
-}
-
-/// What tasks for an encoder come back with.
-pub enum Done {
-    /// Edits of an earlier time.
-    Draft {
-        /// Whose they are.
-        key: DraftKey,
-        /// The right to keep them; `None`: it belongs to another window or session.
-        claim: Result<Option<Claim>, FileError>,
-        /// The edits.
-        result: Result<Option<String>, FileError>,
-    },
-    /// A draft was kept or removed.
-    DraftKept {
-        /// Whose it is.
-        key: DraftKey,
-        /// How it went.
-        result: Result<(), FileError>,
-    },
-    /// Backups and writes of this encoder.
-    Backups {
-        /// Of which encoder.
-        of: DeviceKey,
-        /// Backups, the newest first.
-        backups: Result<Vec<Backup>, FileError>,
-        /// Writes, the newest first, or why the logbook does not tell.
-        writes: Result<Vec<Entry>, LogbookError>,
-    },
-    /// A backup was read, or not.
-    Backup {
-        /// For which encoder.
-        of: DeviceKey,
-        /// The file.
-        path: PathBuf,
-        /// What is in it.
-        result: Result<Box<HiperfaceProfile>, crate::app::action::ReadError>,
-    },
 }

@@ -15,12 +15,8 @@ pub mod review;
 pub mod rules;
 mod staged;
 
-pub use action::{Action, Done};
-pub use drafts::DraftKey;
-pub(in crate::app) use drafts::file_key;
-pub use encoder::{Encoder, Phase, Source};
-pub(in crate::app) use encoder::{Opening, without_codes};
-pub(in crate::app) use news::{LastWords, last_words};
+pub use action::Action;
+pub use encoder::Encoder;
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use rules::Allowed;

@@ -1,6 +1,7 @@
 //! What in the memory belongs to the mounting: values that are right for one encoder on one motor and no other.
 
-use super::encoder::{Encoder, Source};
+use super::encoder::Encoder;
+use crate::app::session::Source;
 use crate::device::hiperface::profile_of;
 use crate::profile::Body;
 use crate::profile::hiperface::{HiperfaceProfile, Recorded};
@@ -17,7 +18,7 @@ impl Encoder {
                 })
                 .collect()
         };
-        match &self.source {
+        match &self.session.source {
             Source::File { document, .. } => {
                 let Body::Hiperface(profile) = &document.body;
                 own(profile)

@@ -1,33 +1,47 @@
 //! What the line to an encoder tells: results of jobs, what the encoder says on the way, live samples, and its loss.
 
 use super::act::document_of;
-use super::encoder::{Encoder, Phase, Source};
+use super::encoder::Encoder;
 use super::review::ReviewState;
 use super::rules;
-use crate::app::action::Opened;
+use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Kind, LastWords, Phase, Source};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
 use crate::profile::hiperface::Op;
 use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
 use crate::worker::hiperface::{
-    Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+    Committed, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
 use crate::worker::{Event, JobId};
 
+impl Kind for Hiperface {
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_hiperface
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedHiperface(attempt)
+    }
+
+    fn last_words(event: &Event<Self>) -> Option<LastWords> {
+        last_words(event)
+    }
+
+    fn doing(what: &Doing) -> Text {
+        explain::hiperface::doing(what)
+    }
+}
+
 impl Encoder {
     /// The link is open: the encoder is read.
-    pub(in crate::app) fn connect(&mut self, opened: Opened, services: &mut Services) {
+    pub(in crate::app) fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
-        self.opening = None;
-        self.trace.begin(opened.began.clone());
         self.record.begin(&opened.began);
-        self.line = Some(Line::new(opened));
-        self.phase = Phase::Connected;
+        self.session.take_line(opened, services);
         self.wish_watched();
-        services.log.settle("session.not_connected", Some(&self.name()));
-        self.just_connected = true;
         self.codes_due.clear();
         self.tried_code = None;
         self.read_encoder(services);
@@ -36,7 +50,7 @@ impl Encoder {
     /// Reads the encoder. After connecting, who is there comes before the access codes: they are for one encoder and no
     /// other.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
-        let identify = self.just_connected && !self.access_codes.is_empty();
+        let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
@@ -52,25 +66,25 @@ impl Encoder {
     pub(in crate::app) fn pump(&mut self, services: &mut Services) {
         // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
         self.take_samples_and_frames();
-        while let Some(event) = self.line.as_mut().and_then(Line::next) {
+        while let Some(event) = self.session.line.as_mut().and_then(Line::next) {
             self.take(event, services);
         }
-        if self.line.as_ref().is_some_and(Line::is_dead) {
+        if self.session.line.as_ref().is_some_and(Line::is_dead) {
             self.lose(Text::new("session.ended"), services);
         }
     }
 
     pub(super) fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.line else { return };
+        let Some(line) = &mut self.session.line else { return };
         let (samples, dropped) = line.samples();
         let (frames, missed) = line.frames();
         if !samples.is_empty() || dropped > 0 {
             self.add_samples(samples, dropped);
-            self.answers();
+            self.session.answers();
         }
         if !frames.is_empty() {
             let meaning = &mut self.meaning;
-            self.trace.add(frames, missed, |entry| meaning.of(entry));
+            self.session.trace.add(frames, missed, |entry| meaning.of(entry));
         }
     }
 
@@ -80,9 +94,9 @@ impl Encoder {
             Event::Remark(Remark::Codes(codes)) => self.announced(codes, services),
             Event::Remark(Remark::Found(_)) => {}
             Event::Finished(id, output) => {
-                services.job_ends(self.id, id, JobEnd::Done);
+                services.job_ends(self.session.id, id, JobEnd::Done);
                 if !matches!(*output, HiperfaceOutput::CodeNoted) {
-                    self.answers();
+                    self.session.answers();
                 }
                 self.finished(*output, services);
             }
@@ -93,30 +107,23 @@ impl Encoder {
                 self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
             }
             // Of an earlier wish: the one in force now goes on.
-            Event::PollFailed(_) if self.line.as_ref().is_some_and(|line| line.polling().is_some()) => {}
+            Event::PollFailed(_) if self.session.line.as_ref().is_some_and(|line| line.polling().is_some()) => {}
             Event::PollFailed(error) => {
                 let mut texts = vec![Text::new("session.poll_failed")];
                 let why = explain::hiperface::job(&error);
-                if let Some(first) = why.first().filter(|_| self.is_silence(&error) && !self.is_busy()) {
-                    self.phase = Phase::Silent(first.clone());
+                if let Some(first) = why.first().filter(|_| self.is_silence(&error) && !self.session.is_busy()) {
+                    self.session.phase = Phase::Silent(first.clone());
                 }
                 texts.extend(why);
-                services.tell(Severity::Error, texts, Some(&self.name()));
+                services.tell(Severity::Error, texts, Some(&self.session.name()));
             }
             Event::Lost(error) => self.lose(explain::link(&error), services),
         }
     }
 
-    /// The encoder has answered, if only with a refusal.
-    fn answers(&mut self) {
-        if matches!(self.phase, Phase::Silent(_)) {
-            self.phase = Phase::Connected;
-        }
-    }
-
     fn announced(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
         let texts = codes.iter().map(|code| explain::hiperface::status(*code)).collect();
-        services.tell(Severity::Warning, texts, Some(&self.name()));
+        services.tell(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
     }
 
@@ -143,12 +150,12 @@ impl Encoder {
             HiperfaceOutput::Reset(codes) => {
                 self.codes = Some(codes);
                 self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.name()));
+                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Configured => {
                 self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.name()));
+                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::CodeNoted => self.give_codes(services),
@@ -169,7 +176,7 @@ impl Encoder {
             }
             HiperfaceOutput::Committed(committed) => {
                 let (severity, texts) = written(&committed);
-                services.tell(severity, texts, Some(&self.name()));
+                services.tell(severity, texts, Some(&self.session.name()));
                 self.staged.forget_steps();
                 if let Some(review) = &mut self.review
                     && let ReviewState::Writing(prepared) = &review.state
@@ -192,7 +199,7 @@ impl Encoder {
             match op {
                 Op::ChangeCode { number, new, .. } => self.know_code(*number, *new),
                 Op::SetAddress { to, .. } => {
-                    if let Source::Link(url) = &mut self.source {
+                    if let Source::Link(url) = &mut self.session.source {
                         url.query.set("address", &format!("0x{:02X}", to.byte()));
                     }
                 }
@@ -202,7 +209,11 @@ impl Encoder {
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
-                    services.note(Severity::Note, vec![text.with("steps", format!("{steps:+}"))], Some(&self.name()));
+                    services.note(
+                        Severity::Note,
+                        vec![text.with("steps", format!("{steps:+}"))],
+                        Some(&self.session.name()),
+                    );
                 }
                 _ => {}
             }
@@ -212,7 +223,7 @@ impl Encoder {
     /// The encoder talks by now as the job was to bring about, so the next session begins like that.
     fn follow_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
-        let (Source::Link(url), Some(format)) = (&mut self.source, settings.format()) else { return };
+        let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
         let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
         if now.format.baud != format.baud {
             url.query.set("baud", &format.baud.to_string());
@@ -243,7 +254,7 @@ impl Encoder {
     }
 
     fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
-        let Some(path) = self.save_to.take() else { return };
+        let Some(path) = self.session.save_to.take() else { return };
         let mut remarks = Vec::new();
         // The profile holds what the encoder has.
         let edits = self.staged.edits().count();
@@ -254,45 +265,45 @@ impl Encoder {
         remarks.extend(
             locked.map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number)),
         );
-        self.write_document(path, document_of(saved.profile), remarks, services);
+        self.session.write_document(path, document_of(saved.profile), remarks, services);
     }
 
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = explain::hiperface::job(error);
         let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
-        services.job_ends(self.id, id, JobEnd::Failed(first.clone()));
+        services.job_ends(self.session.id, id, JobEnd::Failed(first.clone()));
         let stands_there = self.rest_failed(&first);
         if let (Some(crate::profile::hiperface::Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) =
             (self.asked.take(), error)
         {
             // The encoder has no such channel: that is an answer, and stands where it was asked for.
             self.analogue.insert(channel, Err(first));
-            self.answers();
+            self.session.answers();
             return;
         }
-        self.save_to = None;
+        self.session.save_to = None;
         let gone = explain::hiperface::loss(error);
         let begun = matches!(error, JobError::Interrupted { .. });
         self.follow_what_was_done(error, services);
         let silent = gone.is_none() && self.is_silence(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
         if gone.is_none() && !silent && !garbled {
-            self.answers();
+            self.session.answers();
         }
         if silent {
-            self.phase = Phase::Silent(first.clone());
-            services.log.settle("session.not_connected", Some(&self.name()));
+            self.session.phase = Phase::Silent(first.clone());
+            services.log.settle("session.not_connected", Some(&self.session.name()));
         }
         match &mut self.review {
             Some(review) if matches!(review.state, ReviewState::Planning | ReviewState::Writing(_)) => {
                 review.state = ReviewState::Failed { texts: texts.clone(), begun };
-                services.note(Severity::Error, texts, Some(&self.name()));
+                services.note(Severity::Error, texts, Some(&self.session.name()));
             }
             // That is told below.
             _ if gone.is_some() => {}
             // It stands where the session is shown.
-            _ if silent || stands_there => services.note(Severity::Error, texts, Some(&self.name())),
-            _ => services.tell(Severity::Error, texts, Some(&self.name())),
+            _ if silent || stands_there => services.note(Severity::Error, texts, Some(&self.session.name())),
+            _ => services.tell(Severity::Error, texts, Some(&self.session.name())),
         }
         if let Some(why) = gone {
             self.lose(why, services);
@@ -309,7 +320,7 @@ impl Encoder {
             JobError::Interrupted { interrupted, .. } => &interrupted.cause,
             _ => return false,
         };
-        cause.is_lost() || (self.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
+        cause.is_lost() || (self.session.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
     }
 
     /// After a write that ended early, the session follows those operations that were carried out.
@@ -321,16 +332,16 @@ impl Encoder {
     }
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        services.job_ends(self.id, id, JobEnd::Cancelled);
+        services.job_ends(self.session.id, id, JobEnd::Cancelled);
         self.follow_what_was_done(error, services);
         self.asked = None;
         self.give_up_rest();
-        self.save_to = None;
+        self.session.save_to = None;
         let texts = explain::hiperface::job(error);
         let begun = matches!(error, JobError::Interrupted { .. });
         // As the user wished; what was written until then is to be looked at.
         let severity = if begun { Severity::Warning } else { Severity::Note };
-        services.tell(severity, texts.clone(), Some(&self.name()));
+        services.tell(severity, texts.clone(), Some(&self.session.name()));
         if self.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Planning)) {
             self.review = None;
         }
@@ -354,16 +365,8 @@ fn written(committed: &Committed) -> (Severity, Vec<Text>) {
     }
 }
 
-/// How the last job of a session that was let go ended.
-pub(in crate::app) struct LastWords {
-    pub(in crate::app) job: JobId,
-    pub(in crate::app) end: JobEnd,
-    pub(in crate::app) severity: Severity,
-    pub(in crate::app) texts: Vec<Text>,
-}
-
 /// What an event of a session that was let go says about the end of its job.
-pub(in crate::app) fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
+fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
     let (job, end, (severity, texts)) = match event {
         Event::Finished(job, output) => match &**output {
             HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, written(committed)),

@@ -1,46 +1,18 @@
-//! The review of a write: what it would do, the consent, how far it is, and what came of it.
+//! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
 
 use crate::app::Text;
 use crate::app::explain;
+use crate::app::review;
 use crate::profile::hiperface::{HiperfacePlan, Op, RestoreOptions};
 use crate::protocol::hiperface::CodeNumber;
 use crate::worker::hiperface::{Change, Committed, Prepared, WEAR_LIMIT};
 
 /// A write on its way.
-pub struct Review {
-    /// What the user wants.
-    pub what: Text,
-    /// How far it is.
-    pub state: ReviewState,
-    /// Write although the encoder counts as worn.
-    pub force_wear: bool,
-    pub(super) change: Change,
-}
-
-/// How far a write is.
-pub enum ReviewState {
-    /// The encoder is read and the plan made.
-    Planning,
-    /// The plan is shown.
-    Ready(Box<Prepared>),
-    /// It is being carried out.
-    Writing(Box<Prepared>),
-    /// It was carried out and read back.
-    Done(Box<Prepared>, Committed),
-    /// It cannot be done, or ended early: what happened, and what to do.
-    Failed {
-        /// In words.
-        texts: Vec<Text>,
-        /// Something was written before it ended.
-        begun: bool,
-    },
-}
+pub type Review = review::Review<Change, Prepared, Committed>;
+/// How far it is.
+pub type ReviewState = review::ReviewState<Prepared, Committed>;
 
 impl Review {
-    pub(super) fn new(what: Text, change: Change) -> Self {
-        Review { what, state: ReviewState::Planning, force_wear: false, change }
-    }
-
     /// The options of a restore, where this is one.
     pub fn options(&self) -> Option<RestoreOptions> {
         match &self.change {
@@ -53,21 +25,6 @@ impl Review {
         if let Change::Restore { options, .. } = &mut self.change {
             *options = wanted;
         }
-    }
-
-    /// The plan as it was shown, from then to its end.
-    pub fn prepared(&self) -> Option<&Prepared> {
-        match &self.state {
-            ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
-                Some(prepared)
-            }
-            ReviewState::Planning | ReviewState::Failed { .. } => None,
-        }
-    }
-
-    /// It is being carried out.
-    pub fn is_writing(&self) -> bool {
-        matches!(self.state, ReviewState::Writing(_))
     }
 }
 

@@ -245,7 +245,7 @@ impl Synchronise {
         match encoder.take_rest_asked() {
             Some(Ok(rest)) => {
                 let serial_number = encoder.identity.as_ref().map(|own| own.serial.serial_number.clone());
-                self.take(rest, Whose { session: encoder.id, serial_number, geometry: encoder.geometry() });
+                self.take(rest, Whose { session: encoder.session.id, serial_number, geometry: encoder.geometry() });
             }
             Some(Err(why)) => self.problem = Some(why),
             None => {}

@@ -4,14 +4,15 @@ use egui::{RichText, Ui};
 use jiff::tz::TimeZone;
 
 use crate::app::Action;
-use crate::app::hiperface::{Action as Hiperface, Encoder, Phase};
+use crate::app::hiperface::{Action as Hiperface, Encoder};
+use crate::app::session::Phase;
 use crate::store::{Entry, Outcome};
 use crate::ui::controls::{button, card, empty, enabled_button, paragraph};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     profile(ui, skin, encoder, actions);
-    if encoder.phase == Phase::Offline {
+    if encoder.session.phase == Phase::Offline {
         return;
     }
     ui.add_space(skin.space.groups);
@@ -21,12 +22,12 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
 }
 
 fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let savable = encoder.is_savable();
+    let savable = encoder.session.is_savable();
     card(ui, skin, "profile_card.title", |ui| {
         paragraph(ui, skin.label(skin.say("profile_card.words")));
         ui.horizontal(|ui| {
             if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::AskSave));
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
@@ -36,7 +37,7 @@ fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
 }
 
 fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, "backups_card.title", |ui| match &encoder.backups {
+    card(ui, skin, "backups_card.title", |ui| match &encoder.session.backups {
         None => {
             empty(ui, skin, &skin.say("backups_card.none"), None);
         }
@@ -54,12 +55,12 @@ fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
                     ui.label(skin.mono(taken.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
                     let restore = enabled_button(
                         ui,
-                        encoder.is_ready(),
+                        encoder.session.is_ready(),
                         icons::CLOCK_COUNTER_CLOCKWISE,
                         &skin.say("backups_card.restore"),
                     );
                     if restore.clicked() {
-                        actions.push(Action::Hiperface(encoder.id, Hiperface::Restore(backup.path.clone())));
+                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::Restore(backup.path.clone())));
                     }
                     if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));
@@ -73,7 +74,7 @@ fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
 }
 
 fn writes(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, "writes_card.title", |ui| match &encoder.writes {
+    card(ui, skin, "writes_card.title", |ui| match &encoder.session.writes {
         None => {
             ui.label(skin.label(skin.say("writes_card.none")));
         }

@@ -63,7 +63,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
 }
 
 fn ask(encoder: &Encoder, action: Assistant) -> Action {
-    Action::Hiperface(encoder.id, Hiperface::Commutation(action))
+    Action::Hiperface(encoder.session.id, Hiperface::Commutation(action))
 }
 
 fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
@@ -202,7 +202,7 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
         ui.label(skin.caption(skin.words(&kind_words(reading))));
     }
     ui.horizontal_wrapped(|ui| {
-        let allowed = may_read(commutation, encoder.is_ready());
+        let allowed = may_read(commutation, encoder.session.is_ready());
         // Of one width, so that what is typed stands in one column.
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {

@@ -31,10 +31,10 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let ready = encoder.is_readable();
+    let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Read));
         }
     };
     card_with(ui, skin, "encoder_card.title", read, |ui| {
@@ -79,8 +79,10 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
 
 fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, encoder.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadStatus));
+        if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("status_card.read"))
+            .clicked()
+        {
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadStatus));
         }
     };
     let palette = skin.palette;
@@ -139,8 +141,8 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, action
         }
         ui.add_space(skin.space.between);
         ui.checkbox(restart, skin.say("check_card.restart"));
-        if enabled_button(ui, encoder.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Check { restart: *restart }));
+        if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Check { restart: *restart }));
         }
     });
 }

@@ -4,8 +4,9 @@
 use egui::{RichText, Ui};
 
 use crate::app::explain::hiperface as words;
-use crate::app::hiperface::{Action as Hiperface, Encoder, Phase, Source, Staged, forms, rules};
-use crate::app::{Action, Studio, Text};
+use crate::app::hiperface::{Action as Hiperface, Encoder, Staged, forms, rules};
+use crate::app::session::{Phase, Source};
+use crate::app::{Action, AnyDevice, Studio, Text};
 use crate::profile::Body;
 use crate::profile::hiperface::{FieldImage, FieldRange};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
@@ -51,9 +52,9 @@ pub(super) fn page_ui(
     let wanted = encoder.staged.wanted();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.is_readable());
+        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
         if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Read));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Read));
         }
         return;
     }
@@ -106,7 +107,7 @@ fn map(
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
     let selected = (!view.free).then_some(view.field);
     let free = skin.words(&Text::new("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
-    let last = wanted.last().filter(|_| encoder.is_ready());
+    let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
         let largest = rules::largest(memory, last);
         1..=usize::from(largest.blocks())
@@ -139,7 +140,7 @@ fn map(
             let size = u8::try_from(blocks).ok().and_then(FieldSize::from_blocks);
             if let (Some(size), Some(last)) = (size, wanted.last()) {
                 let change = Change::ResizeField { number: last.number, size };
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
             }
         }
         None => {}
@@ -165,9 +166,9 @@ fn field_ui(
         });
         return;
     };
-    let read_only = match encoder.phase {
+    let read_only = match encoder.session.phase {
         Phase::Offline => None,
-        _ if encoder.is_writing() => Some(Text::new("session.busy")),
+        _ if encoder.session.is_writing() => Some(Text::new("session.busy")),
         _ => rules::edit(field).err(),
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
@@ -200,7 +201,7 @@ fn field_ui(
     let number = field.number;
     actions.extend(edits.into_iter().map(|edit| {
         Action::Hiperface(
-            encoder.id,
+            encoder.session.id,
             match edit {
                 HexEdit::Put { address, bytes } => Hiperface::Put { field: number, address, bytes },
                 HexEdit::Undo => Hiperface::Undo,
@@ -227,7 +228,7 @@ fn field_head(
     });
     let Some(memory) = memory else { return };
     ui.horizontal_wrapped(|ui| {
-        let ready = || if encoder.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
+        let ready = || if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
@@ -242,7 +243,7 @@ fn field_head(
             change = Some(Change::DeleteField { number: field.number });
         }
     });
-    actions.extend(change.map(|change| Action::Hiperface(encoder.id, Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::Hiperface(encoder.session.id, Hiperface::Plan(change))));
 }
 
 fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
@@ -310,7 +311,7 @@ fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view:
         let codes = CodeNumber::all().map(|code| (code, code.to_string()));
         choice(ui, &skin.say("memory.code"), &mut view.code, codes);
         ui.checkbox(&mut view.code_required, skin.say("memory.required"));
-        let allowed = if encoder.is_ready() {
+        let allowed = if encoder.session.is_ready() {
             rules::create(memory, view.size, view.code, view.code_required)
         } else {
             Err(Text::new("session.not_ready"))
@@ -318,7 +319,7 @@ fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view:
         if allowed_button(ui, skin, &allowed, icons::PLUS, &skin.say("memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
         }
     });
 }
@@ -329,29 +330,35 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
     let dirty = encoder.staged.is_dirty();
     ui.horizontal(|ui| {
         if icon_button(ui, encoder.staged.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Undo));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Undo));
         }
         if icon_button(ui, encoder.staged.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Redo));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Redo));
         }
         if enabled_button(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::RevertAll));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if encoder.phase == Phase::Offline {
+            if encoder.session.phase == Phase::Offline {
                 if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::AskSave));
+                    actions.push(Action::Hiperface(encoder.session.id, Hiperface::AskSave));
                 }
                 write_into(ui, skin, studio, encoder, actions);
-            } else if primary(ui, skin, dirty && encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("memory.review"))
-                .on_hover_text(skin.say("memory.review_hint"))
-                .clicked()
+            } else if primary(
+                ui,
+                skin,
+                dirty && encoder.session.is_ready(),
+                icons::DOWNLOAD_SIMPLE,
+                &skin.say("memory.review"),
+            )
+            .on_hover_text(skin.say("memory.review_hint"))
+            .clicked()
             {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Review));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Review));
             }
             if dirty {
                 let count = encoder.staged.edits().count();
-                let text = Text::new(match (&encoder.source, count) {
+                let text = Text::new(match (&encoder.session.source, count) {
                     (Source::Link(_), 1) => "memory.edited_one",
                     (Source::Link(_), _) => "memory.edited",
                     (Source::File { .. }, 1) => "memory.unsaved_one",
@@ -367,15 +374,20 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
 
 /// A profile goes into a connected encoder: which one is chosen here.
 fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Source::File { document, .. } = &encoder.source else { return };
+    let Source::File { document, .. } = &encoder.session.source else { return };
     let Body::Hiperface(_) = &document.body;
-    let targets: Vec<&Encoder> = studio.encoders().iter().filter(|own| own.phase == Phase::Connected).collect();
+    let targets: Vec<&Encoder> = studio
+        .devices()
+        .iter()
+        .filter_map(AnyDevice::hiperface)
+        .filter(|own| own.session.phase == Phase::Connected)
+        .collect();
     let word = skin.say("memory.write_into");
     ui.add_enabled_ui(!targets.is_empty(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
             for target in &targets {
-                if ui.add_enabled(target.is_ready(), egui::Button::new(target.name())).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::WriteInto(target.id)));
+                if ui.add_enabled(target.session.is_ready(), egui::Button::new(target.session.name())).clicked() {
+                    actions.push(Action::Hiperface(encoder.session.id, Hiperface::WriteInto(target.session.id)));
                     ui.close();
                 }
             }

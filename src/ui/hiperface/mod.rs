@@ -117,7 +117,7 @@ pub(super) fn page_ui(
             .show(ui, |ui| memory::page_ui(ui, skin, studio, encoder, &mut view.memory, actions));
         return;
     }
-    ScrollArea::vertical().id_salt((encoder.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
+    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
             Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),

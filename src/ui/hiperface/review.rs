@@ -14,7 +14,7 @@ pub(in crate::ui) fn review_ui(ctx: &egui::Context, skin: &Skin, encoder: &Encod
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
     modal(ctx, skin, "review", width, |ui| {
         ui.label(skin.heading(skin.words(&review.what)));
-        ui.label(skin.label(encoder.name()));
+        ui.label(skin.label(encoder.session.name()));
         ui.add_space(skin.space.between);
         content(ui, skin, encoder, review, actions);
     });
@@ -44,18 +44,22 @@ fn content(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
             options(ui, skin, encoder, review, actions);
             ui.label(skin.label(skin.say("review.way")));
             buttons(ui, skin, encoder, actions, "review.cancel", |ui, actions| {
-                if primary(ui, skin, encoder.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("review.write")).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::Write(prepared.plan.id())));
+                if primary(ui, skin, encoder.session.is_ready(), icons::DOWNLOAD_SIMPLE, &skin.say("review.write"))
+                    .clicked()
+                {
+                    actions.push(Action::Hiperface(encoder.session.id, Hiperface::Write(prepared.plan.id())));
                 }
             });
         }
         ReviewState::Writing(prepared) => {
-            let progress = encoder.line().and_then(|line| line.running()).and_then(|running| running.progress.clone());
+            let progress =
+                encoder.session.line().and_then(|line| line.running()).and_then(|running| running.progress.clone());
             let done = progress.as_ref().map_or(0, |progress| usize::try_from(progress.done).unwrap_or(usize::MAX));
             operations(ui, skin, prepared, Some(done));
             let part = done as f32 / prepared.plan.ops.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
-            let stopping = encoder.line().and_then(|line| line.running()).is_some_and(|running| running.stopping);
+            let stopping =
+                encoder.session.line().and_then(|line| line.running()).is_some_and(|running| running.stopping);
             ui.horizontal(|ui| {
                 ui.label(skin.label(skin.say("review.writing")));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -96,7 +100,7 @@ fn buttons(
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         primary(ui, actions);
         if enabled_button(ui, true, "", &skin.say(close)).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::CloseReview));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::CloseReview));
         }
     });
 }
@@ -171,7 +175,7 @@ fn options(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
             .on_hover_text(skin.say("review.with_mounting_hint"));
         ui.checkbox(&mut wanted.recreate, skin.say("review.recreate")).on_hover_text(skin.say("review.recreate_hint"));
         if wanted != options {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::PlanAgain(wanted)));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::PlanAgain(wanted)));
         }
     }
     let worn = review.prepared().is_some_and(plan::is_worn);
@@ -179,7 +183,7 @@ fn options(ui: &mut Ui, skin: &Skin, encoder: &Encoder, review: &Review, actions
         let mut force = review.force_wear;
         ui.checkbox(&mut force, skin.say("review.force_wear"));
         if force != review.force_wear {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::ForceWear(force)));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::ForceWear(force)));
         }
     }
 }

@@ -67,7 +67,7 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
     match change {
         Ok(change) => {
             *problem = None;
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(change)));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
         }
         Err(why) => *problem = Some(why),
     }
@@ -93,7 +93,7 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         if view.synchronise && kit.is_none() {
             ui.checkbox(&mut view.kit, skin.say("position_card.kit"));
         }
-        if enabled_button(ui, encoder.is_ready(), icons::CROSSHAIR, &skin.say("position_card.plan")).clicked() {
+        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &skin.say("position_card.plan")).clicked() {
             let wanted = forms::position(&view.position, geometry);
             let (exact, kit) = (view.exact, view.kit);
             let synchronise = view.synchronise && encoder.identity.as_ref().is_some_and(|own| own.kit != Some(false));
@@ -107,8 +107,9 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             ui.horizontal_wrapped(|ui| {
                 ui.label(skin.label(skin.words(&text)));
                 let undo = skin.say("position_card.undo");
-                if enabled_button(ui, encoder.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
-                    actions.push(Action::Hiperface(encoder.id, Hiperface::Plan(Change::ShiftPosition { steps })));
+                if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
+                    actions
+                        .push(Action::Hiperface(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                 }
             });
         }
@@ -123,7 +124,7 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
             choice(ui, &skin.say("codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
-        let ready = encoder.is_ready();
+        let ready = encoder.session.is_ready();
         entry(ui, skin, &skin.say("codes_card.known"), |ui| {
             let response = secret_entry(ui, &mut view.code, 64.0, &skin.say("codes_card.known"));
             if enabled_button(ui, ready, icons::KEY, &skin.say("codes_card.use")).clicked() {
@@ -132,7 +133,7 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 match code {
                     Ok(code) => {
                         view.code_problem = None;
-                        actions.push(Action::Hiperface(encoder.id, Hiperface::UseCode { number, code }));
+                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::UseCode { number, code }));
                     }
                     Err(why) => view.code_problem = Some(why),
                 }
@@ -162,7 +163,9 @@ fn address(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions
         entry(ui, skin, &skin.say("address_card.now"), |ui| ui.label(skin.mono(now)));
         entry(ui, skin, &skin.say("address_card.new"), |ui| {
             text_entry(ui, &mut view.address, 64.0, &skin.say("address_card.new"), "41");
-            if enabled_button(ui, encoder.is_ready(), icons::PENCIL_SIMPLE, &skin.say("address_card.plan")).clicked() {
+            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &skin.say("address_card.plan"))
+                .clicked()
+            {
                 let change = forms::address(&view.address).map(Change::SetAddress);
                 plan(encoder, change, &mut view.address_problem, actions);
             }
@@ -196,7 +199,7 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         });
         ui.checkbox(&mut chosen.bus, skin.say("settings_card.bus"));
         view.settings = Some(chosen).filter(|chosen| *chosen != chosen_of(stored));
-        let ready = encoder.is_ready();
+        let ready = encoder.session.is_ready();
         ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
             let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
@@ -207,7 +210,9 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             let now = enabled_button(ui, ready, icons::LIGHTNING, &skin.say("settings_card.now"));
             if now.on_hover_text(skin.say("settings_card.now_hint")).clicked() {
                 match wanted() {
-                    Ok(wanted) => actions.push(Action::Hiperface(encoder.id, Hiperface::ConfigureForNow(wanted))),
+                    Ok(wanted) => {
+                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::ConfigureForNow(wanted)))
+                    }
                     Err(why) => view.settings_problem = Some(why),
                 }
             }
@@ -227,8 +232,8 @@ fn chosen_of(stored: LineSettings) -> Chosen {
 fn restart(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, skin, "restart_card.title", |ui| {
         paragraph(ui, skin.label(skin.say("restart_card.words")));
-        if enabled_button(ui, encoder.is_ready(), icons::POWER, &skin.say("restart_card.run")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Reset));
+        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &skin.say("restart_card.run")).clicked() {
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Reset));
         }
     });
 }

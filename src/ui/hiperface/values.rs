@@ -58,12 +58,12 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             let label = skin.say("analogue_card.channel");
             let response = text_entry(ui, &mut view.channel, 48.0, &label, "48");
             let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            let read = enabled_button(ui, encoder.is_ready(), icons::EYE, &skin.say("analogue_card.read"));
-            if read.clicked() || (enter && encoder.is_ready()) {
+            let read = enabled_button(ui, encoder.session.is_ready(), icons::EYE, &skin.say("analogue_card.read"));
+            if read.clicked() || (enter && encoder.session.is_ready()) {
                 match forms::channel(&view.channel) {
                     Ok(channel) => {
                         view.problem = None;
-                        actions.push(Action::Hiperface(encoder.id, Hiperface::ReadAnalogue(channel)));
+                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadAnalogue(channel)));
                     }
                     Err(problem) => view.problem = Some(problem),
                 }
@@ -76,10 +76,10 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
 }
 
 fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let ready = encoder.is_ready();
+    let ready = encoder.session.is_ready();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("counter_card.read")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadCounter));
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadCounter));
         }
     };
     let mut change = None;
@@ -95,5 +95,5 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
             }
         });
     });
-    actions.extend(change.map(|change| Action::Hiperface(encoder.id, Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::Hiperface(encoder.session.id, Hiperface::Plan(change))));
 }

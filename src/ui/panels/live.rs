@@ -5,8 +5,9 @@ use std::time::Duration;
 use egui::{RichText, Ui};
 
 use super::nothing;
-use crate::app::hiperface::{self, Action as Hiperface, Encoder, Phase};
-use crate::app::{Action, Desk, Studio, Text};
+use crate::app::hiperface::{self, Action as Hiperface, Encoder};
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, Desk, Studio, Text, Wish};
 use crate::device::hiperface::Watch;
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::{Skin, Views, icons, plot};
@@ -20,16 +21,18 @@ const LOW: f32 = 460.0;
 
 /// Draws the panel.
 pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let Some(encoder) = studio.encoder() else {
+    let Some(device) = studio.shown() else {
         nothing(ui, skin, &skin.say("live.nothing"));
         return;
     };
-    value(ui, skin, encoder);
+    match device {
+        AnyDevice::Hiperface(encoder) => value(ui, skin, encoder),
+    }
     ui.add_space(skin.space.inside);
-    controls(ui, skin, encoder, views, actions);
+    controls(ui, skin, device, views, actions);
     ui.add_space(skin.space.between);
     if !views.plot.is_large() {
-        plot_ui(ui, skin, encoder, views, actions);
+        plot_ui(ui, skin, device, views, actions);
     }
 }
 
@@ -46,7 +49,7 @@ fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, ac
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);
             if ui.checkbox(&mut on, skin.words(&hiperface::watch_name(what))).changed() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Watch(what, on)));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(what, on)));
             }
         }
         ui.horizontal(|ui| {
@@ -56,24 +59,24 @@ fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, ac
             if enabled_button(ui, channel.is_ok(), icons::PLUS, &skin.say("live.watch_add")).clicked()
                 && let Ok(channel) = channel
             {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Watch(Watch::Analogue(channel), true)));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));
             }
         });
     });
 }
 
-/// The plot of what was recorded of an encoder.
+/// The plot of what was recorded of a device.
 pub(in crate::ui) fn plot_ui(
     ui: &mut Ui,
     skin: &Skin,
-    encoder: &Encoder,
+    device: &AnyDevice,
     views: &mut Views,
     actions: &mut Vec<Action>,
 ) {
-    let empty = skin.say(if encoder.line().is_some() { "live.no_curve" } else { "live.nothing" });
-    let desk = Desk::Encoder(encoder.id);
-    plot::plot_ui(ui, skin, &encoder.record.recorder, desk, &mut views.plot, &empty, actions);
-    let dropped = encoder.record.dropped();
+    let empty = skin.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
+    let desk = Desk::Device(device.id());
+    plot::plot_ui(ui, skin, device.recorder(), desk, &mut views.plot, &empty, actions);
+    let dropped = device.dropped();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);
         ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(skin.palette.warn));
@@ -93,7 +96,7 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         (Some(reading), None) => (reading.raw.to_string(), skin.say("live.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
-    let stale = encoder.line().is_none_or(|line| line.polling().is_none());
+    let stale = encoder.session.line().is_none_or(|line| line.polling().is_none());
     let colour = if stale { skin.palette.muted } else { skin.palette.text };
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(colour));
@@ -122,25 +125,26 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
 }
 
-fn controls(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, actions: &mut Vec<Action>) {
-    let connected = encoder.phase == Phase::Connected;
-    let polling = encoder.line().and_then(|line| line.polling());
+fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
+    let connected = *device.phase() == Phase::Connected;
+    let polling = device.is_polling();
     ui.horizontal_wrapped(|ui| {
-        if polling.is_some() {
+        if polling {
             if enabled_button(ui, true, icons::PAUSE, &skin.say("live.pause")).clicked() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(None)));
+                actions.push(device.wish(Wish::Poll(None)));
             }
         } else if enabled_button(ui, connected, icons::PLAY, &skin.say("live.start")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
+            actions.push(device.wish(Wish::Poll(Some(Duration::from_millis(views.rate)))));
         }
-        let ready = encoder.is_ready();
-        if icon_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::ReadPosition));
+        if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
+            actions.push(device.wish(Wish::ReadPosition));
         }
-        watch_menu(ui, skin, encoder, views, actions);
+        match device {
+            AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
+        }
         let rates = RATES.map(|(milliseconds, id)| (milliseconds, skin.say(id)));
-        if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling.is_some() {
-            actions.push(Action::Hiperface(encoder.id, Hiperface::Poll(Some(Duration::from_millis(views.rate)))));
+        if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling {
+            actions.push(device.wish(Wish::Poll(Some(Duration::from_millis(views.rate)))));
         }
     });
 }

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};
 
 use super::nothing;
-use crate::app::Studio;
+use crate::app::{AnyDevice, Studio};
 use crate::link::Direction;
 use crate::ui::{Skin, Views};
 
@@ -14,7 +14,7 @@ const TIME: &str = "%H:%M:%S%.3f";
 
 /// Draws the panel.
 pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views: &mut Views) {
-    let lines = studio.encoder().map(|encoder| &encoder.trace);
+    let lines = studio.shown().map(AnyDevice::trace);
     let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
         nothing(ui, skin, &skin.say("trace.nothing"));
         return;

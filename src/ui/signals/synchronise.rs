@@ -100,10 +100,10 @@ fn positions(
         ui.checkbox(&mut form.half_step, skin.say("synchronise.half_step"))
             .on_hover_text(skin.say("synchronise.half_step_hint"));
         problem(ui, skin, refused);
-        let ready = encoder.is_some_and(Encoder::is_ready);
+        let ready = encoder.is_some_and(|own| own.session.is_ready());
         let read = enabled_button(ui, ready, icons::CROSSHAIR, &skin.say("synchronise.read"));
         if read.on_disabled_hover_text(skin.say("synchronise.read_hint")).clicked() {
-            actions.extend(encoder.map(|encoder| Action::Hiperface(encoder.id, Hiperface::ReadRest)));
+            actions.extend(encoder.map(|encoder| Action::Hiperface(encoder.session.id, Hiperface::ReadRest)));
         }
         problem(ui, skin, state.problem.as_ref());
     });

@@ -27,7 +27,7 @@ impl Encoder {
                         let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
                         let id = if edited { "commutation.staged" } else { "commutation.same" };
                         let text = Text::new(id).with("field", field).with("address", address);
-                        services.tell(Severity::Good, vec![text], Some(&self.name()));
+                        services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                     }
                 }
                 Err(why) => self.commutation.problem = Some(why),
@@ -44,7 +44,7 @@ impl Encoder {
     }
 
     fn read_for(&mut self, slot: Slot, services: &mut Services) {
-        if let Err(why) = may_read(&self.commutation, self.is_ready()) {
+        if let Err(why) = may_read(&self.commutation, self.session.is_ready()) {
             self.commutation.problem = Some(why);
             return;
         }

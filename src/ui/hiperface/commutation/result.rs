@@ -74,9 +74,9 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
             if allowed_button(ui, skin, &allowed, icons::MEMORY, &skin.say("commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
             }
-            let ready = encoder.is_ready() && encoder.staged.is_dirty();
+            let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
             if primary(ui, skin, ready, icons::LIST_CHECKS, &skin.say("commutation.review")).clicked() {
-                actions.push(Action::Hiperface(encoder.id, Hiperface::Review));
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Review));
             }
         });
         if let (Err(why), true) = (&bytes, encoder.commutation.offset(encoder.geometry()).is_ok()) {
@@ -134,7 +134,7 @@ pub(super) fn position_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mu
             Err(_) => {}
         }
         let allowed = setting.map(|_| ());
-        let ready = if encoder.is_ready() { allowed } else { Err(Text::new("commutation.not_ready")) };
+        let ready = if encoder.session.is_ready() { allowed } else { Err(Text::new("commutation.not_ready")) };
         if allowed_button(ui, skin, &ready, icons::CROSSHAIR, &skin.say("commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));
         }
@@ -142,8 +142,12 @@ pub(super) fn position_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mu
 }
 
 pub(super) fn report_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    let lines: Vec<String> =
-        encoder.commutation.report(&encoder.name(), encoder.geometry()).iter().map(|line| skin.words(line)).collect();
+    let lines: Vec<String> = encoder
+        .commutation
+        .report(&encoder.session.name(), encoder.geometry())
+        .iter()
+        .map(|line| skin.words(line))
+        .collect();
     let copy = |ui: &mut Ui| {
         if icon_button(ui, true, icons::COPY, &skin.say("commutation.copy")).clicked() {
             ui.ctx().copy_text(lines.join("\n"));

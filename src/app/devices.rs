@@ -1,0 +1,369 @@
+//! The devices on the desk, of whatever kind: what the studio asks of each of them.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::Text;
+use super::action::{Action, ReadError};
+use super::hiperface;
+use super::line::Progressing;
+use super::recorder::Recorder;
+use super::services::{JobEnd, Services};
+use super::session::{DraftDone, Listed, Opening, Phase, Source};
+use super::studio::{SessionId, Tab};
+use super::trace::TraceLog;
+use crate::link::LinkUrl;
+use crate::profile::{Body, Document};
+use crate::protocol::hiperface::EncoderTypes;
+use crate::store::{DeviceKey, FileError};
+
+/// A device on the desk, or a profile of one.
+pub enum AnyDevice {
+    /// A HIPERFACE encoder.
+    Hiperface(Box<hiperface::Encoder>),
+}
+
+/// The same for every kind.
+macro_rules! each {
+    ($device:expr, $own:ident => $do:expr) => {
+        match $device {
+            AnyDevice::Hiperface($own) => $do,
+        }
+    };
+}
+
+/// What can be wished of every device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// Open the link again.
+    Reconnect,
+    /// Read everything again.
+    Read,
+    /// Ask where to save a profile.
+    AskSave,
+    /// Show what writing the edits would do.
+    Review,
+    /// Read the position all the time, or no more.
+    Poll(Option<Duration>),
+    /// Read the position once.
+    ReadPosition,
+}
+
+impl AnyDevice {
+    /// At a link that is being opened; `None` for a tab that shows no device.
+    pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl) -> Option<Self> {
+        match tab {
+            Tab::Hiperface => Some(AnyDevice::Hiperface(Box::new(hiperface::Encoder::at_link(id, url)))),
+            Tab::Signals => None,
+        }
+    }
+
+    /// A profile.
+    pub(super) fn in_file(
+        id: SessionId,
+        file: (PathBuf, String),
+        document: Document,
+        types: &EncoderTypes,
+        services: &Services,
+    ) -> Self {
+        match &document.body {
+            Body::Hiperface(_) => {
+                AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, types, services)))
+            }
+        }
+    }
+
+    /// What is to be asked of the studio for a wish.
+    pub fn wish(&self, wish: Wish) -> Action {
+        match self {
+            AnyDevice::Hiperface(own) => {
+                use hiperface::Action as Own;
+                let action = match wish {
+                    Wish::Reconnect => Own::Reconnect,
+                    Wish::Read => Own::Read,
+                    Wish::AskSave => Own::AskSave,
+                    Wish::Review => Own::Review,
+                    Wish::Poll(interval) => Own::Poll(interval),
+                    Wish::ReadPosition => Own::ReadPosition,
+                };
+                Action::Hiperface(own.session.id, action)
+            }
+        }
+    }
+
+    /// Its number in the studio.
+    pub fn id(&self) -> SessionId {
+        each!(self, own => own.session.id)
+    }
+
+    /// The tab that shows it.
+    pub fn tab(&self) -> Tab {
+        match self {
+            AnyDevice::Hiperface(_) => Tab::Hiperface,
+        }
+    }
+
+    /// The name by which the log and the jobs call it.
+    pub fn name(&self) -> String {
+        each!(self, own => own.session.name())
+    }
+
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        each!(self, own => own.session.place())
+    }
+
+    /// Where the data come from.
+    pub fn source(&self) -> &Source {
+        each!(self, own => &own.session.source)
+    }
+
+    pub(super) fn source_mut(&mut self) -> &mut Source {
+        each!(self, own => &mut own.session.source)
+    }
+
+    /// How it stands with the connection.
+    pub fn phase(&self) -> &Phase {
+        each!(self, own => &own.session.phase)
+    }
+
+    pub(super) fn phase_mut(&mut self) -> &mut Phase {
+        each!(self, own => &mut own.session.phase)
+    }
+
+    /// Its link is being opened.
+    pub(super) fn is_opening(&self) -> bool {
+        each!(self, own => own.session.opening.is_some())
+    }
+
+    pub(super) fn opening_mut(&mut self) -> &mut Option<Opening> {
+        each!(self, own => &mut own.session.opening)
+    }
+
+    /// What has passed over the line.
+    pub fn trace(&self) -> &TraceLog {
+        each!(self, own => &own.session.trace)
+    }
+
+    /// The device lives in this process.
+    pub fn is_virtual(&self) -> bool {
+        each!(self, own => own.session.is_virtual())
+    }
+
+    /// Its line is open.
+    pub fn is_connected(&self) -> bool {
+        each!(self, own => own.session.line().is_some())
+    }
+
+    /// Something runs on its line.
+    pub fn is_busy(&self) -> bool {
+        each!(self, own => own.session.is_busy())
+    }
+
+    /// Its memory is being changed.
+    pub fn is_writing(&self) -> bool {
+        each!(self, own => own.session.is_writing())
+    }
+
+    /// It is read all the time.
+    pub fn is_polling(&self) -> bool {
+        each!(self, own => own.session.is_polling())
+    }
+
+    /// There is something to stop.
+    pub fn is_active(&self) -> bool {
+        each!(self, own => own.session.is_active())
+    }
+
+    /// Connected and nothing runs: a job may begin.
+    pub fn is_ready(&self) -> bool {
+        each!(self, own => own.session.is_ready())
+    }
+
+    /// Samples that were taken and dropped before they were recorded.
+    pub fn dropped(&self) -> u64 {
+        each!(self, own => own.record.dropped())
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(super) fn is_attempt(&self, attempt: u32) -> bool {
+        each!(self, own => own.session.is_attempt(attempt))
+    }
+
+    /// It can be read again: also a device that did not answer, and a profile.
+    pub fn is_readable(&self) -> bool {
+        each!(self, own => own.session.is_readable())
+    }
+
+    /// A profile of it can be saved now.
+    pub fn is_savable(&self) -> bool {
+        each!(self, own => own.session.is_savable())
+    }
+
+    /// The job that runs.
+    pub fn running(&self) -> Option<Progressing> {
+        each!(self, own => own.session.line().and_then(|line| line.progressing()))
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        each!(self, own => own.is_dirty())
+    }
+
+    /// Its edits come back after it was closed.
+    pub fn keeps_edits(&self) -> bool {
+        each!(self, own => own.keeps_edits())
+    }
+
+    /// Every edit is on disk, as far as the disk takes it.
+    pub(super) fn is_draft_kept(&self) -> bool {
+        each!(self, own => own.drafting.is_kept())
+    }
+
+    /// A review of a write is open.
+    pub fn is_reviewing(&self) -> bool {
+        each!(self, own => own.review.is_some())
+    }
+
+    /// What was recorded of it.
+    pub fn recorder(&self) -> &Recorder {
+        each!(self, own => &own.record.recorder)
+    }
+
+    pub(super) fn recorder_mut(&mut self) -> &mut Recorder {
+        each!(self, own => &mut own.record.recorder)
+    }
+
+    pub(super) fn suggested_file(&self) -> PathBuf {
+        each!(self, own => own.session.suggested_file())
+    }
+
+    /// Saves a profile.
+    pub(super) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        each!(self, own => own.save(path, services))
+    }
+
+    pub(super) fn close_review(&mut self) {
+        each!(self, own => own.close_review())
+    }
+
+    pub(super) fn pump(&mut self, services: &mut Services) {
+        each!(self, own => own.pump(services))
+    }
+
+    pub(super) fn stop(&mut self, services: &mut Services) {
+        each!(self, own => own.session.stop(services))
+    }
+
+    pub(super) fn lose(&mut self, why: Text, services: &mut Services) {
+        each!(self, own => own.lose(why, services))
+    }
+
+    pub(super) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        each!(self, own => own.let_go(end, services))
+    }
+
+    pub(super) fn keep_draft(&mut self, services: &mut Services) {
+        each!(self, own => own.keep_draft(services))
+    }
+
+    pub(super) fn leave_draft(&mut self, services: &mut Services) {
+        each!(self, own => own.leave_draft(services))
+    }
+
+    pub(super) fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
+        each!(self, own => own.take_draft(done, services))
+    }
+
+    /// A profile was read again from its file; edits stay.
+    pub(super) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        each!(self, own => own.take_document(path, key, document))
+    }
+
+    /// A profile was written, or not.
+    pub(super) fn written(
+        &mut self,
+        file: (PathBuf, String),
+        document: Document,
+        remarks: Vec<Text>,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) {
+        each!(self, own => own.written(file, document, remarks, result, services))
+    }
+
+    /// Backups and writes were listed; those of another device than the one that is connected by now are dropped.
+    pub(super) fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+        each!(self, own => {
+            if own.key().as_ref() == Some(of) {
+                own.session.take_backups(listed);
+            }
+        })
+    }
+
+    /// A backup was read, or not; one for another device than the one that is connected by now is dropped.
+    pub(super) fn take_backup(
+        &mut self,
+        of: &DeviceKey,
+        path: &std::path::Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        each!(self, own => {
+            if own.key().as_ref() == Some(of) {
+                own.take_backup(path, result, services);
+            }
+        })
+    }
+
+    /// As a HIPERFACE encoder.
+    pub fn hiperface(&self) -> Option<&hiperface::Encoder> {
+        let AnyDevice::Hiperface(own) = self;
+        Some(own)
+    }
+
+    pub(super) fn hiperface_mut(&mut self) -> Option<&mut hiperface::Encoder> {
+        let AnyDevice::Hiperface(own) = self;
+        Some(own)
+    }
+}
+
+/// Which device each tab shows.
+#[derive(Debug, Default)]
+pub(super) struct Shown {
+    by_tab: BTreeMap<Tab, SessionId>,
+    last: Option<SessionId>,
+}
+
+impl Shown {
+    /// The device that a tab shows.
+    pub(super) fn of(&self, tab: Tab) -> Option<SessionId> {
+        self.by_tab.get(&tab).copied()
+    }
+
+    /// The device that was shown last, in whichever tab.
+    pub(super) fn last(&self) -> Option<SessionId> {
+        self.last
+    }
+
+    pub(super) fn set(&mut self, tab: Tab, id: SessionId) {
+        self.by_tab.insert(tab, id);
+        self.last = Some(id);
+    }
+
+    /// A device is gone; `left` are the others. Its tab shows the one that came last.
+    pub(super) fn remove(&mut self, left: &[AnyDevice], id: SessionId) {
+        for (tab, shown) in &mut self.by_tab {
+            if *shown == id
+                && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)
+            {
+                *shown = other.id();
+            }
+        }
+        self.by_tab.retain(|_, shown| *shown != id);
+        if self.last == Some(id) {
+            self.last = self.by_tab.values().next_back().copied();
+        }
+    }
+}

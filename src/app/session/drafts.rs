@@ -1,0 +1,279 @@
+//! Edits outlive a crash: they are kept beside the studio's other data as they are made, one file for each device or
+//! profile, and come back with it. Each has one owner: a second session with the same device, here or in another window,
+//! neither takes nor overwrites them. What an edit is only its kind of device knows.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::app::action::{Action, Done};
+use crate::app::services::Services;
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text, explain};
+use crate::store::{Claim, Drafts, FileError};
+
+/// How long another session may take to give up its claim: one that was closed still writes.
+const PATIENCE: Duration = Duration::from_secs(1);
+const RETRY: Duration = Duration::from_millis(20);
+
+/// Whose draft it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DraftKey {
+    kind: String,
+    name: String,
+}
+
+impl DraftKey {
+    /// A device's, by its type and serial number; virtual ones apart.
+    pub(in crate::app) fn of_device(kind: &str, is_virtual: bool, name: String) -> Self {
+        DraftKey { kind: if is_virtual { format!("{kind}-virtual") } else { kind.to_owned() }, name }
+    }
+
+    /// A profile's, by its [`file_key`].
+    pub(in crate::app) fn of_file(kind: &str, key: &str) -> Self {
+        DraftKey { kind: format!("{kind}-files"), name: key.to_owned() }
+    }
+}
+
+/// What tasks come back with about drafts.
+pub enum DraftDone {
+    /// Edits of an earlier time.
+    Looked {
+        /// Whose they are.
+        key: DraftKey,
+        /// The right to keep them; `None`: it belongs to another window or session.
+        claim: Result<Option<Claim>, FileError>,
+        /// The edits.
+        result: Result<Option<String>, FileError>,
+    },
+    /// A draft was kept or removed.
+    Kept {
+        /// Whose it is.
+        key: DraftKey,
+        /// How it went.
+        result: Result<(), FileError>,
+    },
+}
+
+/// What is kept of edits: a list.
+pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
+    /// There is nothing to keep.
+    fn is_nothing(&self) -> bool;
+}
+
+impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> DraftEdits for Vec<T> {
+    fn is_nothing(&self) -> bool {
+        self.is_empty()
+    }
+}
+
+/// How it stands with the draft on disk.
+#[derive(Debug)]
+pub(in crate::app) struct Drafting<E> {
+    session: SessionId,
+    /// What was last handed over to be kept.
+    kept: E,
+    /// A task is at it.
+    busy: bool,
+    /// The draft of an earlier time has been looked for: before that, nothing is kept over it.
+    looked: bool,
+    /// The right to keep it; without, it belongs to another window or session.
+    claim: Option<Arc<Claim>>,
+    /// That it cannot be kept has been said.
+    told: bool,
+}
+
+/// The name of a file's draft: of the file itself, whichever way leads to it. As a task: it asks the disk.
+pub(in crate::app) fn file_key(path: &Path) -> String {
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    // FNV-1a, the same in every version of the program.
+    let mut hash: u64 = 0xCBF2_9CE4_8422_2325;
+    for byte in path.as_os_str().as_encoded_bytes() {
+        hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+    }
+    format!("{hash:016x}")
+}
+
+impl<E: DraftEdits> Drafting<E> {
+    /// Of a session; nothing has been looked for.
+    pub(in crate::app) fn new(session: SessionId) -> Self {
+        Drafting { session, kept: E::default(), busy: false, looked: false, claim: None, told: false }
+    }
+
+    /// Looks for the draft of an earlier time.
+    pub(in crate::app) fn load(&mut self, key: DraftKey, services: &Services) {
+        self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
+    }
+
+    /// Begins anew: what was just saved has no edits, those of an earlier time are for what it replaced.
+    pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
+        self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
+    }
+
+    fn claim(
+        &mut self,
+        key: DraftKey,
+        services: &Services,
+        load: impl FnOnce(&Drafts, &DraftKey) -> Result<Option<String>, FileError> + Send + 'static,
+    ) {
+        let (drafts, session) = (services.world.store.drafts(), self.session);
+        self.busy = true;
+        services.tasks.run("draft", move || {
+            let began = Instant::now();
+            let claim = loop {
+                match drafts.claim(&key.kind, &key.name) {
+                    Ok(None) if began.elapsed() < PATIENCE => std::thread::sleep(RETRY),
+                    Ok(claim) => break Ok(claim),
+                    Err(error) => break Err(error),
+                }
+            };
+            let result = match &claim {
+                Ok(None) => Ok(None),
+                _ => load(&drafts, &key),
+            };
+            Action::Done(Done::Draft(session, DraftDone::Looked { key, claim, result }))
+        });
+    }
+
+    /// Takes what a task comes back with: the edits of an earlier time, where there are some. What is said of another
+    /// device's or profile's draft than `own` is old by now; edits that were made meanwhile (`dirty`) are newer.
+    pub(in crate::app) fn take(
+        &mut self,
+        done: DraftDone,
+        own: Option<&DraftKey>,
+        dirty: bool,
+        name: &str,
+        services: &mut Services,
+    ) -> Option<E> {
+        let (claim, result) = match done {
+            DraftDone::Looked { key, claim, result } if own == Some(&key) => (claim, result),
+            DraftDone::Looked { .. } => return None,
+            DraftDone::Kept { key, result } => {
+                self.was_kept(own == Some(&key), result, name, services);
+                return None;
+            }
+        };
+        self.busy = false;
+        match claim {
+            Ok(Some(claim)) => self.claim = Some(Arc::new(claim)),
+            Ok(None) => {
+                services.tell(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
+                return None;
+            }
+            // Nobody can keep a draft in such a folder, which is told when there is something to keep.
+            Err(_) => {}
+        }
+        self.looked = true;
+        let text = match result {
+            Ok(text) => text?,
+            Err(error) => {
+                services.tell(Severity::Warning, vec![explain::file(&error)], Some(name));
+                return None;
+            }
+        };
+        if dirty {
+            return None;
+        }
+        match ron::from_str::<E>(&text) {
+            Ok(edits) => Some(edits),
+            Err(error) => {
+                let text = Text::new("session.draft_broken").with("why", error);
+                services.tell(Severity::Warning, vec![text], Some(name));
+                None
+            }
+        }
+    }
+
+    /// The edits of an earlier time stand again; `edits` are those that still make sense.
+    pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
+        if !edits.is_nothing() {
+            services.tell(Severity::Warning, vec![Text::new("session.draft_back")], Some(name));
+        }
+        self.kept = edits;
+    }
+
+    fn was_kept(&mut self, is_own: bool, result: Result<(), FileError>, name: &str, services: &mut Services) {
+        if is_own {
+            self.busy = false;
+        }
+        if let Err(error) = result
+            && !std::mem::replace(&mut self.told, true)
+        {
+            let text = Text::new("session.draft_not_kept").with_text("why", explain::file(&error));
+            services.tell(Severity::Warning, vec![text], Some(name));
+        }
+    }
+
+    /// Keeps the edits when they have changed. One task at a time: what comes meanwhile goes with the next one.
+    pub(in crate::app) fn keep(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
+        if self.busy || !self.looked || edits == self.kept {
+            return;
+        }
+        let Some(key) = key else { return };
+        self.kept.clone_from(&edits);
+        self.busy = true;
+        keep(key, edits, self.claim.clone(), self.session, services);
+    }
+
+    /// A device without a serial number has no draft, which is said once, with the first edit.
+    pub(in crate::app) fn tell_of_none(&mut self, name: &str, services: &mut Services) {
+        if !std::mem::replace(&mut self.told, true) {
+            services.tell(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
+        }
+    }
+
+    /// The draft of an earlier time has been looked for: edits come back after the session was closed.
+    pub(in crate::app) fn has_looked(&self) -> bool {
+        self.looked
+    }
+
+    /// Every edit is on disk, as far as the disk takes it.
+    pub(in crate::app) fn is_kept(&self) -> bool {
+        !self.busy
+    }
+
+    /// Another device comes, or none: what is edited for this one stays on disk.
+    pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
+        let before = std::mem::replace(self, Drafting::new(self.session));
+        if let Some(key) = key
+            && before.looked
+            && edits != before.kept
+        {
+            keep(key, edits, before.claim, self.session, services);
+        }
+    }
+
+    /// The edits are in another file now: those for the one before are no draft any more.
+    pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
+        let before = std::mem::replace(self, Drafting::new(self.session));
+        if let Some(key) = key
+            && before.looked
+        {
+            keep(key, E::default(), before.claim, self.session, services);
+        }
+    }
+}
+
+/// Hands edits over to be kept; the claim lives until they are.
+fn keep<E: DraftEdits>(
+    key: DraftKey,
+    edits: E,
+    claim: Option<Arc<Claim>>,
+    session: SessionId,
+    services: &mut Services,
+) {
+    services.drafts_on_their_way += 1;
+    let drafts = services.world.store.drafts();
+    services.tasks.run("draft", move || {
+        let result = if edits.is_nothing() {
+            drafts.remove(&key.kind, &key.name)
+        } else {
+            drafts.keep(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())
+        };
+        drop(claim);
+        Action::Done(Done::Draft(session, DraftDone::Kept { key, result }))
+    });
+}

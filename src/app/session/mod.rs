@@ -1,0 +1,395 @@
+//! What every device on the desk has, whatever its kind: where its data come from, how it stands with the connection, its
+//! line, what has passed over it, its backups and writes. It knows no device; what a kind adds stands in its own room.
+
+mod drafts;
+mod kind;
+
+use std::path::PathBuf;
+
+pub use drafts::{DraftDone, DraftEdits, DraftKey};
+pub(in crate::app) use drafts::{Drafting, file_key};
+pub(in crate::app) use kind::{Kind, LastWords};
+
+use super::action::Opened;
+use super::leaving::Leaver;
+use super::line::Line;
+use super::services::{JobEnd, Services};
+use super::studio::SessionId;
+use super::trace::TraceLog;
+use super::{Severity, Text, explain};
+use crate::link::{LinkUrl, Scheme};
+use crate::profile::Document;
+use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store, write_atomically};
+use crate::worker::SubmitError;
+
+/// Where the data come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A device at the end of a link.
+    Link(LinkUrl),
+    /// A profile in a file.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The same for every way that leads to it.
+        key: String,
+        /// What is in it, without the edits.
+        document: Box<Document>,
+    },
+}
+
+/// How it stands with the connection.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Phase {
+    /// The link is being opened.
+    Opening,
+    /// Connected, and the device answers.
+    Connected,
+    /// The link is open, and the device does not answer: why, and what to do.
+    Silent(Text),
+    /// It was connected, or could not be: why, and what to do.
+    Lost(Text),
+    /// A profile: there is no connection.
+    Offline,
+}
+
+/// A link that is being opened.
+pub(in crate::app) struct Opening {
+    /// Which attempt of the session it is.
+    pub(in crate::app) attempt: Option<u32>,
+    /// Ends when it is over.
+    pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+}
+
+/// A link as it may be shown and kept: the access codes of a virtual encoder are no part of that.
+pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
+    let query: Vec<String> =
+        url.query.without(&["codes"]).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let question = if query.is_empty() { "" } else { "?" };
+    format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
+}
+
+/// A device on the desk, or a profile of one.
+pub struct Session<D: Kind> {
+    /// Its number in the studio.
+    pub id: SessionId,
+    /// Where the data come from.
+    pub source: Source,
+    /// How it stands with the connection.
+    pub phase: Phase,
+    pub(in crate::app) line: Option<Line<D>>,
+    pub(in crate::app) opening: Option<Opening>,
+    /// What the device calls itself, once it is known.
+    pub(in crate::app) title: Option<String>,
+    /// What has passed over the line.
+    pub trace: TraceLog,
+    /// Backups, or why there are none.
+    pub backups: Option<Result<Vec<Backup>, Text>>,
+    /// Writes of this device that the logbook knows, or why it does not tell.
+    pub writes: Option<Result<Vec<Entry>, Text>>,
+    /// Nothing has been read since the link was opened.
+    pub(in crate::app) just_connected: bool,
+    /// Where the profile goes that is being read.
+    pub(in crate::app) save_to: Option<PathBuf>,
+}
+
+impl<D: Kind> Session<D> {
+    /// At a link that is being opened.
+    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Session::new(id, Source::Link(url), Phase::Opening)
+    }
+
+    /// With a profile.
+    pub(in crate::app) fn in_file(id: SessionId, (path, key): (PathBuf, String), document: Document) -> Self {
+        Session::new(id, Source::File { path, key, document: Box::new(document) }, Phase::Offline)
+    }
+
+    fn new(id: SessionId, source: Source, phase: Phase) -> Self {
+        Session {
+            id,
+            source,
+            phase,
+            line: None,
+            opening: None,
+            title: None,
+            trace: TraceLog::default(),
+            backups: None,
+            writes: None,
+            just_connected: false,
+            save_to: None,
+        }
+    }
+
+    /// The line to the device, while it is connected.
+    pub fn line(&self) -> Option<&Line<D>> {
+        self.line.as_ref()
+    }
+
+    /// The device lives in this process.
+    pub fn is_virtual(&self) -> bool {
+        self.line.as_ref().is_some_and(|line| line.is_virtual)
+            || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
+    }
+
+    /// Something runs on its line.
+    pub fn is_busy(&self) -> bool {
+        self.line.as_ref().is_some_and(|line| line.running().is_some())
+    }
+
+    /// Its memory is being changed.
+    pub fn is_writing(&self) -> bool {
+        self.line.as_ref().and_then(Line::running).is_some_and(|running| running.writes)
+    }
+
+    /// It is read all the time.
+    pub fn is_polling(&self) -> bool {
+        self.line.as_ref().is_some_and(|line| line.polling().is_some())
+    }
+
+    /// There is something to stop.
+    pub fn is_active(&self) -> bool {
+        self.phase == Phase::Opening || self.is_busy() || self.is_polling()
+    }
+
+    /// Connected and nothing runs: a job may begin.
+    pub fn is_ready(&self) -> bool {
+        self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
+    }
+
+    /// It can be read again: also a device that did not answer, and a profile.
+    pub fn is_readable(&self) -> bool {
+        self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
+    }
+
+    /// A profile of it can be saved now.
+    pub fn is_savable(&self) -> bool {
+        self.is_ready() || self.phase == Phase::Offline
+    }
+
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        match &self.source {
+            Source::Link(url) => without_codes(url),
+            Source::File { path, .. } => path.display().to_string(),
+        }
+    }
+
+    /// The name by which the log and the jobs call it.
+    pub fn name(&self) -> String {
+        match (&self.source, &self.title) {
+            (Source::File { path, .. }, _) => {
+                path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+            }
+            (Source::Link(_), Some(title)) => title.clone(),
+            (Source::Link(url), None) => without_codes(url),
+        }
+    }
+
+    /// A name for a profile of it.
+    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
+        if let Source::File { path, .. } = &self.source {
+            return path.clone();
+        }
+        let words = self.title.as_ref().map(|title| {
+            let name = title.replace(" · ", "-");
+            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect::<String>()
+        });
+        PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
+    }
+
+    /// Its link is open.
+    pub(in crate::app) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
+        self.opening = None;
+        self.trace.begin(opened.began.clone());
+        self.line = Some(Line::new(opened));
+        self.phase = Phase::Connected;
+        services.log.settle("session.not_connected", Some(&self.name()));
+        self.just_connected = true;
+    }
+
+    /// The device has answered, if only with a refusal.
+    pub(in crate::app) fn answers(&mut self) {
+        if matches!(self.phase, Phase::Silent(_)) {
+            self.phase = Phase::Connected;
+        }
+    }
+
+    /// Starts a job, or says why not and gives false.
+    pub(in crate::app) fn submit(&mut self, job: D::Job, what: Text, writes: bool, services: &mut Services) -> bool {
+        let name = self.name();
+        let Some(line) = &mut self.line else {
+            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
+            return false;
+        };
+        match line.submit(job, what.clone(), writes, services.now()) {
+            Ok(id) => {
+                services.job_begins(self.id, id, &name, what);
+                return true;
+            }
+            Err(SubmitError::Busy | SubmitError::Unread) => {
+                services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
+            }
+            // How the session ended comes with its last events.
+            Err(SubmitError::Ended) => {}
+        }
+        false
+    }
+
+    /// Why no plan can be made now; `None`: one can.
+    pub(in crate::app) fn why_not_ready(&self) -> Option<Text> {
+        match &self.phase {
+            _ if self.is_ready() => None,
+            _ if self.is_busy() => Some(Text::new("session.busy")),
+            Phase::Silent(why) => Some(why.clone()),
+            _ => Some(Text::new("session.not_connected")),
+        }
+    }
+
+    /// Ends what runs, and gives up a link that is being opened.
+    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+        if self.phase == Phase::Opening {
+            let why = Text::new("session.open_cancelled");
+            services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
+            self.phase = Phase::Lost(why);
+            if let Some(opening) = &mut self.opening {
+                // What it still gives is for nobody; the next attempt waits until it is over.
+                opening.attempt = None;
+            }
+        }
+        if let Some(line) = &mut self.line {
+            line.stop();
+        }
+    }
+
+    /// Lets its thread go; what runs ends as `end` says. A write that was cancelled ends by itself, and tells how.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.save_to = None;
+        let Source::Link(url) = &self.source else { return };
+        let (url, about) = (url.clone(), self.name());
+        let Some(line) = self.line.take() else { return };
+        let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
+        if let Some(running) = line.running().filter(|_| write.is_none()) {
+            services.job_ends(self.id, running.id, end);
+        }
+        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
+    }
+
+    /// The connection is gone.
+    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+        // It stands where the session is shown.
+        services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
+        self.let_go(JobEnd::Failed(why.clone()), services);
+        self.opening = None;
+        self.phase = Phase::Lost(why);
+    }
+
+    /// A profile was read again from its file, or saved into another one.
+    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        self.source = Source::File { path, key, document: Box::new(document) };
+    }
+
+    /// Reads the profile again, as a task. False: it is none.
+    pub(in crate::app) fn read_file_again(&self, services: &mut Services) -> bool {
+        let Source::File { path, .. } = &self.source else { return false };
+        services.opening_files.push(path.clone());
+        let (path, store) = (path.clone(), services.world.store.clone());
+        services.tasks.run("read", move || super::studio::read_document(path, &store));
+        true
+    }
+
+    /// Writes a profile on a thread; `remarks` say what is not in it.
+    pub(in crate::app) fn write_document(
+        &self,
+        path: PathBuf,
+        document: Document,
+        remarks: Vec<Text>,
+        services: &Services,
+    ) {
+        let session = self.id;
+        services.tasks.run("save", move || {
+            let result = write_atomically(&path, document.emit().as_bytes());
+            let key = file_key(&path);
+            let document = Box::new(document);
+            super::Action::Done(super::action::Done::Written { session, path, key, document, remarks, result })
+        });
+    }
+
+    /// A profile was written, or not; true where it was.
+    pub(in crate::app) fn tell_of_profile(
+        &self,
+        path: &std::path::Path,
+        remarks: Vec<Text>,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) -> bool {
+        match result {
+            Ok(()) => {
+                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
+                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
+                texts.extend(remarks);
+                services.tell(severity, texts, Some(&self.name()));
+                true
+            }
+            Err(error) => {
+                services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name()));
+                false
+            }
+        }
+    }
+
+    /// Lists backups and writes of a device, as a task.
+    pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
+        let (store, id) = (services.world.store.clone(), self.id);
+        services.tasks.run("backups", move || {
+            let listed = Box::new(Listed::of(&of, &store));
+            super::Action::Done(super::action::Done::Listed(id, of, listed))
+        });
+    }
+
+    /// Reads a backup of a device, as a task.
+    pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
+        let session = self.id;
+        services.tasks.run("backup", move || {
+            let result = super::studio::read_profile(&path).map(Box::new);
+            super::Action::Done(super::action::Done::Backup { session, of, path, result })
+        });
+    }
+
+    /// Takes the lists of backups and writes.
+    pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
+        self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
+        self.writes = Some(
+            listed
+                .writes
+                .map_err(|error| Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))),
+        );
+    }
+}
+
+/// Backups and writes of a device, as a task found them.
+pub struct Listed {
+    /// Backups, the newest first.
+    pub backups: Result<Vec<Backup>, FileError>,
+    /// Writes, the newest first, or why the logbook does not tell.
+    pub writes: Result<Vec<Entry>, LogbookError>,
+}
+
+impl Listed {
+    /// Entries of the logbook that are shown.
+    const WRITES: u32 = 200;
+
+    /// Asks the disk.
+    pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
+        let backups = store.backups().list(&key.kind, &key.serial_number);
+        let writes = match store.logbook_path() {
+            path if !path.exists() => Ok(Vec::new()),
+            path => Logbook::open(&path).and_then(|logbook| logbook.history(key, Self::WRITES)),
+        };
+        Listed { backups, writes }
+    }
+}
