@@ -1,3 +1,6 @@
 //! What one does with a device: procedures that read like the manuals' step tables.
 
 pub mod hiperface;
+mod line;
+
+pub use line::{Echo, LineState};

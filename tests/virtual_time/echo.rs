@@ -9,7 +9,7 @@ use crate::support::{Desk, MARGIN};
 
 fn desk(echoes: bool, setting: Echo, more: &str) -> Desk {
     let mut station = Station::new(MARGIN);
-    station.echo = setting;
+    station.line.echo = setting;
     Desk::with_station(&format!("echo={}{more}", if echoes { "on" } else { "off" }), station)
 }
 
@@ -23,10 +23,10 @@ fn echo_is_learned_and_stripped() {
             let profile = desk.save().unwrap();
             assert_eq!(profile.fields[0].bytes.as_ref(), Some(&truth[0].1));
             assert_eq!(profile.recorded.position, Some(0x000E_0531));
-            assert_eq!(desk.session.station().echo, told);
+            assert_eq!(desk.session.station().line.echo, told);
             desk.change(Change::IncrementCounter).unwrap();
             assert_eq!(desk.bus().encoders()[0].counter(), 1);
-            assert_eq!(desk.session.station().damaged, 0);
+            assert_eq!(desk.session.station().line.damaged, 0);
         }
     }
 }
@@ -62,12 +62,12 @@ fn nothing_is_learned_from_a_reply_that_is_its_request() {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap();
         assert_eq!(desk.tap().sent[0][1], Command::ReadTypeLabel.byte(), "learned with a reading command first");
-        assert_eq!(desk.session.station().echo, if echoes { Echo::On } else { Echo::Off });
+        assert_eq!(desk.session.station().line.echo, if echoes { Echo::On } else { Echo::Off });
     }
     // With nobody at the other end, an echo alone is no reply to either.
     let mut desk = desk(true, Echo::Unknown, "&fault=silent-after:0");
     desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap_err();
-    assert_eq!(desk.session.station().echo, Echo::Unknown);
+    assert_eq!(desk.session.station().line.echo, Echo::Unknown);
     assert_eq!(desk.tap().count(Command::ConfigureLineTemporarily), 0);
 }
 

@@ -141,5 +141,5 @@ fn bytes_that_came_in_a_pause_are_not_taken_for_a_reply() {
     let sent = desk.tap().sent.len();
     desk.run(HiperfaceJob::Position(None)).unwrap();
     assert_eq!(desk.tap().sent.len(), sent + 1);
-    assert_eq!(desk.session.station().damaged, 0);
+    assert_eq!(desk.session.station().line.damaged, 0);
 }

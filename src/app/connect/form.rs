@@ -142,7 +142,7 @@ impl LinkForm {
             "baud" => self.baud = station.format.baud,
             "parity" => self.parity = station.format.parity,
             "address" => self.address = address_words(station.address),
-            "echo" => self.echo = station.echo,
+            "echo" => self.echo = station.line.echo,
             "timeout" => self.long_timeout = station.long_timeout,
             _ => return false,
         }

@@ -1,5 +1,6 @@
 //! What can go wrong with an encoder, with the facts a person needs.
 
+use crate::device::line::LineError;
 use crate::link::LinkError;
 use crate::protocol::hiperface::{CodeNumber, Command, ReplyError, StatusCode};
 
@@ -144,6 +145,16 @@ pub enum Damage {
     /// Two readings in a row of the same thing differ.
     #[error("two readings differ")]
     Inconsistent,
+}
+
+impl From<LineError> for Error {
+    fn from(error: LineError) -> Self {
+        match error {
+            LineError::Cancelled => Error::Cancelled,
+            LineError::NeverSilent => Error::NeverSilent,
+            LineError::Link(error) => Error::Link(error),
+        }
+    }
 }
 
 impl Error {

@@ -9,24 +9,19 @@ use std::time::Duration;
 
 use super::error::Damage;
 use super::{Error, Station};
-use crate::bits::MaskedBytes;
-use crate::link::{Ctx, Direction};
+use crate::device::line::{Line, TRIES};
+use crate::link::Ctx;
 use crate::protocol::hiperface::{Answer, Command, Reply, Request, StatusCode};
 use crate::units::Moment;
 pub(super) use exchange::{Answered, Trouble};
 
-/// Tries before a reading command fails.
-const TRIES: u32 = 5;
-/// No new try when nothing sensible came back for so long: a command has to end within ten seconds.
-const PATIENCE: Duration = Duration::from_secs(8);
 /// Most codes an encoder queues is four; the fifth reading finds the queue empty.
 const MOST_CODES: u32 = 5;
 
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
-    ctx: Ctx<'a>,
+    line: Line<'a>,
     station: &'a mut Station,
-    shielded: bool,
 }
 
 /// A reply and when it began.
@@ -41,9 +36,8 @@ pub(super) struct Timed {
 impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
-        station.troubled_since = None;
-        station.outstanding_since = None;
-        Master { ctx, station, shielded: false }
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
     }
 
     /// What is known about the line.
@@ -53,14 +47,14 @@ impl<'a> Master<'a> {
 
     /// Now.
     pub fn now(&self) -> Moment {
-        self.ctx.clock.now()
+        self.line.now()
     }
 
     /// Does what leads back to a safe state: in it, a wish to end is not heard.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = std::mem::replace(&mut self.shielded, true);
+        let before = self.line.shield(true);
         let result = work(self);
-        self.shielded = before;
+        self.line.shield(before);
         result
     }
 
@@ -69,13 +63,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// [`Error::Cancelled`].
     pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
-        let end = self.now() + duration;
-        while self.now() < end {
-            self.check_cancel()?;
-            let slice = (self.now() + Duration::from_millis(50)).min(end);
-            self.ctx.clock.sleep_until(slice);
-        }
-        Ok(())
+        Ok(self.line.wait(duration)?)
     }
 
     /// Listens without sending; gives back what it heard.
@@ -83,15 +71,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// The wire, or [`Error::Cancelled`].
     pub fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
-        let end = self.now() + duration;
-        let mut heard = Vec::new();
-        while self.now() < end {
-            self.check_cancel()?;
-            let slice = (self.now() + Duration::from_millis(50)).min(end);
-            self.ctx.wire.receive(slice, &mut heard)?;
-        }
-        self.ctx.trace.record(end, Direction::Received, MaskedBytes::hidden(heard.len()));
-        Ok(heard)
+        Ok(self.line.overhear(duration)?)
     }
 
     /// Sets speed and parity of our side.
@@ -99,14 +79,14 @@ impl<'a> Master<'a> {
     /// # Errors
     /// The wire.
     pub fn set_format(&mut self, format: crate::units::CharacterFormat) -> Result<(), Error> {
-        self.ctx.wire.set_format(format)?;
+        self.line.ctx.wire.set_format(format)?;
         self.station.format = format;
         Ok(())
     }
 
     /// Whether speed and parity of our side can be set; else they are the business of somebody behind the link.
     pub fn sets_format(&self) -> bool {
-        self.ctx.wire.sets_format()
+        self.line.ctx.wire.sets_format()
     }
 
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
@@ -196,23 +176,19 @@ impl<'a> Master<'a> {
         let end = sent_at + timing.characters(frame.bytes().len()) + timing.timeout;
         let mut echo = Vec::new();
         while self.now() < end {
-            self.ctx.wire.receive(end, &mut echo)?;
+            self.line.receive(end, &mut echo)?;
         }
-        self.station.quiet_until = self.now();
+        self.station.line.quiet_until = self.now();
         Ok(())
     }
 
     /// What is right about a broken line before the next try; an error when there is to be none.
     pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
-        let now = self.now();
-        self.station.damaged += 1;
-        let longest = self.station.timing().worst_case(request) + self.station.margin;
-        // The first try counts as well: at 600 bit/s it alone may take three seconds.
-        let since = *self.station.troubled_since.get_or_insert(now - longest);
-        let next_end = now + longest;
-        if tries < TRIES && next_end.since(since) < PATIENCE {
+        let longest = self.station.timing().worst_case(request) + self.station.line.margin;
+        if self.line.may_ask_again(&mut self.station.line, tries, longest) {
             if matches!(trouble, Trouble::Silence { .. }) {
-                self.hear_late(tries)?;
+                let quiet = self.quiet();
+                self.line.hear_late(&mut self.station.line, tries, quiet)?;
             }
             return Ok(());
         }
@@ -227,7 +203,7 @@ impl<'a> Master<'a> {
 
     /// Reads the codes that an answer announces, and tells a refusal from a reply.
     pub(super) fn settle(&mut self, request: &Request, answered: Answered) -> Result<Timed, Error> {
-        self.station.troubled_since = None;
+        self.station.line.recovered();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
         if *pending && request.command() != Command::ReadStatus {
             self.collect_codes()?;
@@ -243,7 +219,7 @@ impl<'a> Master<'a> {
     /// and 67h the encoder is no longer to be found where it was asked.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
-            self.station.troubled_since = None;
+            self.station.line.recovered();
             return Ok(());
         }
         self.shielded(|master| master.settle(request, answered)).map(drop)
@@ -269,9 +245,5 @@ impl<'a> Master<'a> {
             }
         }
         Ok(())
-    }
-
-    fn check_cancel(&self) -> Result<(), Error> {
-        if !self.shielded && self.ctx.cancel.is_requested() { Err(Error::Cancelled) } else { Ok(()) }
     }
 }

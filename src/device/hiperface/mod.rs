@@ -17,6 +17,7 @@ mod station;
 mod survey;
 pub mod write;
 
+pub use super::line::Echo;
 pub use error::{Damage, Error};
 pub use fields::{read_all_fields, read_field, read_field_status, read_range};
 pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
@@ -28,6 +29,7 @@ pub use position::{
 pub use reset::{change_line_for_now, reset};
 pub use rest::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
-pub use station::{Codes, Echo, PARAMETERS, Station};
+pub use station::{Codes, PARAMETERS, Station};
+
 use survey::look_around;
 pub use survey::{Survey, survey};

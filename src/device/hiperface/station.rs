@@ -3,25 +3,15 @@
 use std::fmt;
 use std::time::Duration;
 
+use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::hiperface::{
     AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
-use crate::units::{Baud, CharacterFormat, Moment, Parity};
+use crate::units::{Baud, CharacterFormat, Parity};
 
 /// Link parameters that describe the line and the encoder.
 pub const PARAMETERS: [&str; 8] = ["baud", "parity", "address", "echo", "timeout", "margin", "periods", "turns"];
-
-/// Whether the adapter gives our own bytes back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Echo {
-    /// Not known yet: learned with the first exchange, which reads the type label.
-    Unknown,
-    /// It does.
-    On,
-    /// It does not.
-    Off,
-}
 
 /// The four access codes as far as the user told them; 55h where not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,30 +46,18 @@ pub struct Station {
     pub format: CharacterFormat,
     /// The encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
-    /// How much longer than the protocol's worst case a reply may take: USB adapters and device servers deliver late.
-    pub margin: Duration,
-    /// Whether the adapter echoes.
-    pub echo: Echo,
+    /// Silences, echo and damage: what every line has.
+    pub line: LineState,
     /// Access codes.
     pub codes: Codes,
     /// Periods and turns as the user gives them, for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
     /// Status codes that replies announced, in the order in which they were read; taken out by whoever shows them.
     pub codes_met: Vec<StatusCode>,
-    /// Exchanges that failed and had to be repeated or given up, since the session began.
-    pub damaged: u64,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
     /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
     pub(super) chunk: usize,
-    /// No request before this moment: the dead time of the protocol.
-    pub(super) quiet_until: Moment,
-    /// Since when nothing sensible came back.
-    pub(super) troubled_since: Option<Moment>,
-    /// When the first request was sent that has no reply yet.
-    pub(super) outstanding_since: Option<Moment>,
-    /// When the last request was sent.
-    pub(super) last_sent: Moment,
 }
 
 impl Station {
@@ -89,18 +67,12 @@ impl Station {
             address: DeviceAddress::FACTORY.byte(),
             format: CharacterFormat::FACTORY,
             long_timeout: true,
-            margin,
-            echo: Echo::Unknown,
+            line: LineState::new(margin),
             codes: Codes::default(),
             geometry: None,
             codes_met: Vec::new(),
-            damaged: 0,
             thorough: false,
             chunk: MAX_TRANSFER,
-            quiet_until: Moment::START,
-            troubled_since: None,
-            outstanding_since: None,
-            last_sent: Moment::START,
         }
     }
 
@@ -122,14 +94,14 @@ impl Station {
         {
             station.address = address;
         }
-        if let Some(echo) = query.read("echo", "auto, on or off", read_echo)? {
-            station.echo = echo;
+        if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
+            station.line.echo = echo;
         }
         if let Some(long) = query.read("timeout", "44 or 11 bits, as the encoder is set", read_timeout)? {
             station.long_timeout = long;
         }
-        if let Some(margin) = query.read("margin", "milliseconds from 0 to 2000", read_margin)? {
-            station.margin = margin;
+        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
+            station.line.margin = margin;
         }
         station.geometry = read_geometry(query)?;
         Ok(station)
@@ -142,7 +114,7 @@ impl Station {
 
     /// Once is not enough: an XOR lets some pairs of flipped bits through.
     pub(super) fn reads_twice(&self) -> bool {
-        self.thorough || self.damaged > 0
+        self.thorough || self.line.damaged > 0
     }
 
     /// Takes the status codes met since the last time.
@@ -173,25 +145,12 @@ fn read_address(text: &str) -> Option<u8> {
     (byte == BROADCAST || DeviceAddress::new(byte).is_some()).then_some(byte)
 }
 
-fn read_echo(text: &str) -> Option<Echo> {
-    match text {
-        "auto" => Some(Echo::Unknown),
-        "on" => Some(Echo::On),
-        "off" => Some(Echo::Off),
-        _ => None,
-    }
-}
-
 fn read_timeout(text: &str) -> Option<bool> {
     match text {
         "44" => Some(true),
         "11" => Some(false),
         _ => None,
     }
-}
-
-fn read_margin(text: &str) -> Option<Duration> {
-    text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis)
 }
 
 /// `periods=` and `turns=`; one turn where only the periods are given.
@@ -224,8 +183,8 @@ mod tests {
     fn what_is_left_out_is_the_factory_setting() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "address 40h at 9600 8E1");
-        assert_eq!(station.echo, Echo::Unknown);
-        assert_eq!(station.margin, Duration::from_millis(50));
+        assert_eq!(station.line.echo, Echo::Unknown);
+        assert_eq!(station.line.margin, Duration::from_millis(50));
         assert_eq!(station.codes.get(CodeNumber::ZERO), AccessCode::FACTORY);
     }
 
@@ -233,7 +192,7 @@ mod tests {
     fn a_line_is_read_from_its_parameters() {
         let station = station("baud=38400&parity=odd&address=0x41&echo=off&timeout=11&margin=5&periods=64").unwrap();
         assert_eq!(station.to_string(), "address 41h at 38400 8O1");
-        assert_eq!(station.echo, Echo::Off);
+        assert_eq!(station.line.echo, Echo::Off);
         assert_eq!(station.timing().timeout, Duration::from_nanos(286_458));
         assert_eq!(station.geometry, Some(Geometry::Rotary { periods: 64, turns: 1 }));
     }

@@ -23,7 +23,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     let is_virtual = url.scheme == Scheme::Sim;
     if is_virtual {
         // The virtual encoder's converter may echo; whether it does is learned as with a real one.
-        station.echo = Echo::Unknown;
+        station.line.echo = Echo::Unknown;
     } else {
         check_parameters(&url.query, url.scheme, &PARAMETERS)?;
     }

@@ -9,15 +9,12 @@ use super::Master;
 use crate::bits::MaskedBytes;
 use crate::device::hiperface::error::Damage;
 use crate::device::hiperface::{Echo, Error};
-use crate::link::{Direction, LinkError, LinkErrorKind};
+use crate::link::LinkError;
 use crate::protocol::hiperface::{Answer, Command, Request, SecretFrame, StatusCode};
 use crate::units::Moment;
 
 /// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
-
-/// No wire is slower than this.
-const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
 /// An exchange that gave no answer.
 pub(in super::super) enum Trouble {
@@ -50,14 +47,13 @@ struct Heard {
 impl Master<'_> {
     /// One exchange. The outer error ends everything; the inner one may be tried again.
     pub(in super::super) fn attempt(&mut self, request: &Request) -> Result<Result<Answered, Trouble>, Error> {
-        if self.station.echo == Echo::Unknown && request.command() != Command::ReadTypeLabel {
+        if self.station.line.echo == Echo::Unknown && request.command() != Command::ReadTypeLabel {
             self.ask(&Request::ReadTypeLabel)?;
         }
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
-        self.station.outstanding_since.get_or_insert(sent_at);
-        self.station.last_sent = sent_at;
+        self.station.line.sent(sent_at);
         self.send(&frame, sent_at)?;
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
@@ -65,7 +61,7 @@ impl Master<'_> {
         // What is broken after a frame with an access code may be our own bytes come back: nothing of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
-        self.ctx.trace.record(first_at, Direction::Received, shown);
+        self.line.show(first_at, shown);
         Ok(judgement.map_err(|trouble| match trouble {
             Trouble::Damage(Damage::Reply(_)) if secret => Trouble::Damage(Damage::Unreadable),
             trouble => trouble,
@@ -74,93 +70,13 @@ impl Master<'_> {
 
     /// Before each exchange: the user's wish, the dead time, and silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
-        if !self.shielded && self.ctx.cancel.stops_transaction() {
-            return Err(Error::Cancelled);
-        }
-        let mut stray = Vec::new();
-        // Looks at least once: what came while nobody listened is no part of the next reply.
-        loop {
-            self.ctx.wire.receive(self.station.quiet_until.max(self.now()), &mut stray)?;
-            if stray.is_empty() {
-                return Ok(());
-            }
-            self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(stray.len()));
-            stray.clear();
-            self.wait_for_silence()?;
-        }
+        let quiet = self.quiet();
+        Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
-    /// Sends a frame, and shows of it what may be shown: also where a recording does not know it.
+    /// Sends a frame, and shows of it what may be shown.
     pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
-        self.ctx.trace.record(sent_at, Direction::Sent, frame.masked());
-        self.ctx.wire.send(frame.bytes()).map_err(|mut error| {
-            if let LinkErrorKind::NotRecorded(request) = &mut error.kind {
-                *request = frame.masked().to_string();
-            }
-            error
-        })
-    }
-
-    /// Listens on after a silence, longer each time: what comes now is the reply to a request before, on a wire that is
-    /// slower than its margin says, and would be taken for the reply to the next.
-    pub(super) fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
-        let patience = self.station.margin.saturating_mul(1 << tries.min(8)).min(LONGEST_MARGIN);
-        let end = self.now() + patience;
-        let mut late = Vec::new();
-        while late.is_empty() {
-            if self.now() >= end {
-                return Ok(());
-            }
-            // On a slow wire this takes seconds: a wish to end is heard in them.
-            self.check_cancel()?;
-            let slice = (self.now() + Duration::from_millis(50)).min(end);
-            self.ctx.wire.receive(slice, &mut late)?;
-        }
-        self.ctx.trace.record(self.now(), Direction::Received, MaskedBytes::hidden(late.len()));
-        self.let_late_ones_pass()
-    }
-
-    /// Something came late: every request that is without a reply may still get one. The first of them tells how late
-    /// the wire is at most, and for so long after the last of them nothing is sent.
-    fn let_late_ones_pass(&mut self) -> Result<(), Error> {
-        let now = self.now();
-        let lateness = now.since(self.station.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
-        let passed = self.station.last_sent + lateness + self.station.margin;
-        let mut late = Vec::new();
-        while self.now() < passed {
-            self.ctx.wire.receive(passed, &mut late)?;
-        }
-        self.wait_for_silence()?;
-        self.allow_for(lateness);
-        Ok(())
-    }
-
-    /// From now on replies may come that much later, and half as much again.
-    fn allow_for(&mut self, lateness: Duration) {
-        let margin = (self.station.margin + lateness).saturating_mul(3) / 2;
-        self.station.margin = margin.min(LONGEST_MARGIN).max(self.station.margin);
-        tracing::warn!(
-            "replies come later than expected: waiting {} ms longer; margin= in the link says so beforehand",
-            self.station.margin.as_millis()
-        );
-    }
-
-    /// Listens until nothing came for the time-out.
-    fn wait_for_silence(&mut self) -> Result<(), Error> {
-        let quiet = self.dead_time() + self.station.margin;
-        let give_up = self.now() + Duration::from_secs(2);
-        let mut stray = Vec::new();
-        loop {
-            stray.clear();
-            self.ctx.wire.receive(self.now() + quiet, &mut stray)?;
-            if stray.is_empty() {
-                self.station.quiet_until = self.now();
-                return Ok(());
-            }
-            if self.now() > give_up {
-                return Err(Error::NeverSilent);
-            }
-        }
+        self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
     /// tT has to be greater than the time-out: one bit more.
@@ -168,10 +84,15 @@ impl Master<'_> {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
 
+    /// After so long without a byte nobody talks.
+    pub(super) fn quiet(&self) -> Duration {
+        self.dead_time() + self.station.line.margin
+    }
+
     fn listen(&mut self, request: &Request, frame: &SecretFrame, sent_at: Moment) -> Result<Heard, Error> {
         let timing = self.station.timing();
-        let deadline = sent_at + timing.worst_case(request) + self.station.margin;
-        let gap = timing.timeout + self.station.margin;
+        let deadline = sent_at + timing.worst_case(request) + self.station.line.margin;
+        let gap = timing.timeout + self.station.line.margin;
         let mut line = Vec::new();
         let mut first_at = sent_at;
         loop {
@@ -182,7 +103,7 @@ impl Master<'_> {
             let begun = reply.is_some_and(|reply| !reply.is_empty());
             let until = if begun { self.now() + gap } else { deadline };
             let before = line.len();
-            self.ctx.wire.receive(until, &mut line)?;
+            self.line.receive(until, &mut line)?;
             if line.len() == before {
                 break;
             }
@@ -198,7 +119,8 @@ impl Master<'_> {
             (_, false) => None,
             (true, true) => Some(Damage::Trailing),
             (false, true) => {
-                self.let_late_ones_pass()?;
+                let quiet = self.quiet();
+                self.line.let_late_ones_pass(&mut self.station.line, quiet)?;
                 Some(Damage::Late)
             }
         };
@@ -209,27 +131,19 @@ impl Master<'_> {
     fn hear_the_dead_time(&mut self, line: &mut Vec<u8>) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
-        self.ctx.wire.receive(quiet_until, line)?;
-        self.station.quiet_until = quiet_until;
+        self.line.receive(quiet_until, line)?;
+        self.station.line.quiet_until = quiet_until;
         let trailing = line.len() > before;
         if trailing {
-            self.wait_for_silence()?;
+            let quiet = self.quiet();
+            self.line.wait_for_silence(&mut self.station.line, quiet)?;
         }
         Ok(trailing)
     }
 
     /// The reply as far as it has come; `None` while it may still be the echo.
     fn without_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
-        let sent = frame.bytes();
-        match self.station.echo {
-            Echo::Off => Some(line),
-            Echo::On => line.get(sent.len()..),
-            Echo::Unknown => match line.strip_prefix(sent) {
-                Some(reply) => Some(reply),
-                None if sent.starts_with(line) => None,
-                None => Some(line),
-            },
-        }
+        self.station.line.echo.strip(line, frame.bytes())
     }
 
     fn take_apart(
@@ -244,7 +158,7 @@ impl Master<'_> {
         let echo_heard = line.starts_with(sent);
         let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
         let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
-        let wrong_echo = match self.station.echo {
+        let wrong_echo = match self.station.line.echo {
             Echo::On => !echo_heard && !line.is_empty(),
             // An echo and a reply have a right checksum together as well: to 50h that is a reply with four codes.
             Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
@@ -269,10 +183,8 @@ impl Master<'_> {
             // The request was right when it left: the line damaged it.
             return Err(Trouble::Damage(Damage::AtEncoder(*code)));
         }
-        self.station.outstanding_since = None;
-        if self.station.echo == Echo::Unknown {
-            self.station.echo = if heard.echo_heard { Echo::On } else { Echo::Off };
-        }
+        self.station.line.answered();
+        self.station.line.echo.learn(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
         Ok(Answered { answer, sender, at: heard.first_at - self.station.timing().character })
     }
