@@ -10,5 +10,5 @@ mod unique_names;
 
 pub use difference::{Comparison, Difference};
 pub use document::{Body, Document, ProfileError, SCHEMA};
-pub use plan::{Consent, Plan, PlanId};
+pub use plan::{Consent, Operation, Plan, PlanId};
 pub use ron_text::Unknown;

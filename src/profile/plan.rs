@@ -7,8 +7,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 pub struct Plan<Base, Op> {
     /// What was read before; it is read again before the first operation and must be the same.
     pub base: Base,
-    /// The operations, in the order in which they are carried out. Each is one persistent write.
+    /// The operations, in the order in which they are carried out.
     pub ops: Vec<Op>,
+}
+
+/// One operation of a plan.
+pub trait Operation {
+    /// Persistent writes that it costs when nothing has to be repeated.
+    fn write_cycles(&self) -> u64;
 }
 
 /// Which plan a consent is for.
@@ -22,15 +28,19 @@ impl<Base: Hash, Op: Hash> Plan<Base, Op> {
         self.hash(&mut hasher);
         PlanId(hasher.finish())
     }
+}
 
-    /// Persistent writes it costs when nothing has to be repeated.
-    pub fn write_cycles(&self) -> u64 {
-        self.ops.len() as u64
-    }
-
+impl<Base, Op> Plan<Base, Op> {
     /// There is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.ops.is_empty()
+    }
+}
+
+impl<Base, Op: Operation> Plan<Base, Op> {
+    /// Persistent writes it costs when nothing has to be repeated.
+    pub fn write_cycles(&self) -> u64 {
+        self.ops.iter().map(Operation::write_cycles).sum()
     }
 }
 
@@ -53,6 +63,33 @@ impl Consent {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[derive(Clone, Hash)]
+    enum Step {
+        Try,
+        Save,
+        SaveTwice,
+    }
+
+    impl Operation for Step {
+        fn write_cycles(&self) -> u64 {
+            match self {
+                Step::Try => 0,
+                Step::Save => 1,
+                Step::SaveTwice => 2,
+            }
+        }
+    }
+
+    #[test]
+    fn a_plan_costs_what_its_operations_cost() {
+        let plan = |ops: &[Step]| Plan { base: (), ops: ops.to_vec() };
+        assert_eq!(plan(&[Step::Save, Step::Try, Step::SaveTwice, Step::Save]).write_cycles(), 4);
+        assert!(plan(&[]).is_empty());
+        let free = plan(&[Step::Try]);
+        assert_eq!((free.write_cycles(), free.is_empty()), (0, false), "what costs nothing is done all the same");
+        assert_ne!(free.id(), plan(&[Step::Save]).id());
+    }
 
     #[test]
     fn a_consent_covers_the_plan_that_was_shown() {

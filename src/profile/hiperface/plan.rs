@@ -1,7 +1,7 @@
 //! The operations that change an encoder's memory, and what they rest upon.
 
 use super::{FieldImage, FieldRange, Item};
-use crate::profile::Plan;
+use crate::profile::{Operation, Plan};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
 
 /// What a write to a HIPERFACE encoder would do.
@@ -98,6 +98,12 @@ pub enum Op {
         /// The counter now.
         from: u32,
     },
+}
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        1
+    }
 }
 
 impl Op {
