@@ -1,5 +1,7 @@
 //! What differs between two profiles, or between a profile and a device.
 
+use std::ops::Range;
+
 /// One thing that is not the same on both sides.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
@@ -29,4 +31,16 @@ impl Comparison {
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }
+}
+
+/// Runs of differing bytes, as far as both sides reach.
+pub(super) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
+        match runs.last_mut() {
+            Some(run) if run.end == at => run.end += 1,
+            _ => runs.push(at..at + 1),
+        }
+    }
+    runs
 }

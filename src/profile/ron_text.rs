@@ -8,6 +8,10 @@ use ron::Value;
 use serde::de::DeserializeOwned;
 
 use super::ProfileError;
+use crate::bits::{HexError, parse_hex};
+
+/// What belongs where a byte is read.
+pub(super) const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
 
 /// Entries that this program does not know, by name.
 pub type Unknown = BTreeMap<String, Value>;
@@ -74,6 +78,30 @@ impl Entries {
         Entries::open(&path, value)
     }
 
+    /// Takes a structure; `None` when it is not there.
+    pub(super) fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
+        let path = self.path_of(name);
+        match self.entries.remove(name) {
+            None | Some(Value::Option(None)) => Ok(None),
+            Some(value) => Entries::open(&path, value).map(Some),
+        }
+    }
+
+    /// Takes bytes: a list of hex lines, or one text.
+    pub(super) fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
+        const EXPECTED: &str = "a list of texts with hexadecimal bytes";
+        let path = self.path_of(name);
+        let Some(value) = self.optional::<Value>(name, EXPECTED)? else { return Ok(None) };
+        let lines = match value {
+            Value::String(line) => vec![line],
+            value => value
+                .into_rust::<Vec<String>>()
+                .map_err(|_| ProfileError::Shape { path: path.clone(), expected: EXPECTED })?,
+        };
+        let bytes = lines.iter().map(|line| parse_pairs(line)).collect::<Result<Vec<_>, _>>();
+        bytes.map(|rows| Some(rows.concat())).map_err(|error| ProfileError::Value { path, what: error.to_string() })
+    }
+
     /// Takes a list of structures that has to be there.
     pub(super) fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
@@ -99,6 +127,14 @@ impl Entries {
     /// What nobody took.
     pub(super) fn rest(self) -> Unknown {
         self.entries
+    }
+}
+
+/// Bytes of two digits each: a digit that got lost in an editor is not taken for a byte of its own.
+fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
+    match line.split_whitespace().find(|group| group.len() == 1) {
+        Some(digit) => Err(HexError::Odd(digit.to_owned())),
+        None => parse_hex(line),
     }
 }
 

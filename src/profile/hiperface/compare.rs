@@ -1,9 +1,8 @@
 //! What differs between two encoders, or between an encoder and a profile: one item for each run of differing bytes.
 
-use std::ops::Range;
-
 use super::{FieldImage, FieldRange, Item};
 use crate::bits::hex_compact;
+use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
 /// Compares data fields by number. Address, interface settings, counter and position are not part of it.
@@ -57,18 +56,6 @@ fn compare_bytes(number: u8, left: &[u8], right: &[u8], comparison: &mut Compari
     } else if right.len() > common {
         comparison.only_right.push(rest(right));
     }
-}
-
-/// Runs of differing bytes, as far as both sides reach.
-pub fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
-        match runs.last_mut() {
-            Some(run) if run.end == at => run.end += 1,
-            _ => runs.push(at..at + 1),
-        }
-    }
-    runs
 }
 
 fn whole(number: u8) -> String {

@@ -9,7 +9,7 @@ mod record;
 mod restore;
 
 pub use commutation::{CommutationRecord, Damaged};
-pub use compare::{compare, runs};
+pub use compare::compare;
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
 pub use item::{FieldRange, Item, ItemError};
 pub use plan::{Base, HiperfacePlan, Op, Scalar};

@@ -1,9 +1,8 @@
 //! What is saved of a HIPERFACE encoder. An access code is never part of it.
 
 use super::{FieldRange, Item};
-use crate::bits::{HexError, parse_hex};
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
 use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
@@ -124,11 +123,7 @@ impl HiperfaceProfile {
     pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
         let interface = read_interface(entries.structure("interface")?)?;
-        let recorded = match entries.structure("recorded") {
-            Ok(recorded) => read_recorded(recorded)?,
-            Err(ProfileError::Missing { .. }) => Recorded::default(),
-            Err(error) => return Err(error),
-        };
+        let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
@@ -215,8 +210,6 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
     writer.close(')');
 }
 
-const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
-
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     Ok(ProfileIdentity {
         serial_number: entries.required("serial_number", "a text")?,
@@ -226,7 +219,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         firmware_date: entries.optional("firmware_date", "a text")?.unwrap_or_default(),
         eeprom_bytes: entries.optional("eeprom_bytes", "a whole number")?.unwrap_or_default(),
         options: entries.optional("options", BYTE)?.unwrap_or_default(),
-        extended_label: read_bytes(&mut entries, "extended_label")?,
+        extended_label: entries.bytes("extended_label")?,
         unknown: entries.rest(),
     })
 }
@@ -268,7 +261,7 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
             format!("{:02X}h is not the status of an existing field", status.byte()),
         ));
     }
-    let bytes = read_bytes(&mut entries, "bytes")?;
+    let bytes = entries.bytes("bytes")?;
     let locked = entries.optional("locked", "true or false")?.unwrap_or(false);
     if bytes.is_some() == locked {
         let what = if locked { "a locked field has none" } else { "missing; a field without them is locked: true" };
@@ -281,27 +274,4 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
         return Err(wrong(&entries, "bytes", what));
     }
     Ok((FieldImage { number, status, bytes }, entries.rest()))
-}
-
-/// A list of hex lines, or one text.
-fn read_bytes(entries: &mut Entries, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
-    const EXPECTED: &str = "a list of texts with hexadecimal bytes";
-    let path = entries.path_of(name);
-    let Some(value) = entries.optional::<ron::Value>(name, EXPECTED)? else { return Ok(None) };
-    let lines = match value {
-        ron::Value::String(line) => vec![line],
-        value => value
-            .into_rust::<Vec<String>>()
-            .map_err(|_| ProfileError::Shape { path: path.clone(), expected: EXPECTED })?,
-    };
-    let bytes = lines.iter().map(|line| parse_pairs(line)).collect::<Result<Vec<_>, _>>();
-    bytes.map(|rows| Some(rows.concat())).map_err(|error| ProfileError::Value { path, what: error.to_string() })
-}
-
-/// Bytes of two digits each: a digit that got lost in an editor is not taken for a byte of its own.
-fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
-    match line.split_whitespace().find(|group| group.len() == 1) {
-        Some(digit) => Err(HexError::Odd(digit.to_owned())),
-        None => parse_hex(line),
-    }
 }

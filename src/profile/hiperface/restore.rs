@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use super::{Base, FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile, Op, runs};
+use super::{Base, FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile, Op};
+use crate::profile::difference::runs;
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 
 /// What a restore may do.
