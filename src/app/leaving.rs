@@ -10,7 +10,7 @@ use super::services::{JobEnd, Services};
 use super::session::{Kind, LastWords};
 use super::studio::SessionId;
 use super::{Severity, Text};
-use crate::link::LinkUrl;
+use crate::link::{LinkUrl, Wire};
 use crate::worker::{Ending, JobId, Worker};
 
 /// How long closing waits, and opening for a wire that somebody still holds.
@@ -76,7 +76,7 @@ impl<D: Kind> Left for Ending<D> {
 
 /// Two links that lead to the same wire.
 pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
-    one.scheme == other.scheme && one.target == other.target && !one.target.is_empty()
+    one.wire() == other.wire() && one.wire() != Wire::Inside
 }
 
 impl Services {

@@ -26,7 +26,8 @@ pub(super) struct Arguments {
 
 #[derive(Args)]
 pub(super) struct Common {
-    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT or replay:FILE, with ?name=value&…
+    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, bridge:PATH, bridge:tcp:HOST:PORT or replay:FILE, with
+    /// ?name=value&…
     #[arg(long, global = true, value_name = "URL")]
     pub(super) link: Option<LinkUrl>,
     /// Print JSON.

@@ -22,7 +22,7 @@ pub use serial::{PortInfo, SerialLink, ports};
 pub use sim::SimLink;
 pub use tcp::TcpLink;
 pub use trace::{Direction, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header};
-pub use url::{LinkUrl, Query, Scheme, UrlError};
+pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 
 use crate::units::{CharacterFormat, Moment};
 

@@ -1,10 +1,11 @@
-//! `serial:PATH` — a serial port, usually a USB–RS-485 converter. DTR and RTS are left as opening makes them.
+//! `serial:PATH` — a serial port, usually a USB–RS-485 converter; and `bridge:PATH`, the port of an adapter. DTR and RTS
+//! are left as opening makes them.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
-use serialport::{ClearBuffer, SerialPort, SerialPortType};
+use serialport::{ClearBuffer, SerialPort, SerialPortBuilder, SerialPortType};
 
 use super::{ByteLink, Clock, LinkError, LinkErrorKind};
 use crate::units::{CharacterFormat, Moment, Parity};
@@ -61,11 +62,28 @@ impl SerialLink {
     /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
     /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or what the system says.
     pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
-        let port = serialport::new(path, format.baud.bits_per_second())
+        Self::open_as(path, format, clock, |builder| builder)
+    }
+
+    /// Opens the port of an adapter, with DTR asserted: to many a microcontroller an edge of DTR is a reset. Linux asserts
+    /// it by itself, other systems have to be asked.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+        Self::open_as(path, format, clock, |builder| builder.dtr_on_open(true))
+    }
+
+    fn open_as(
+        path: &str,
+        format: CharacterFormat,
+        clock: Arc<dyn Clock>,
+        lines: impl FnOnce(SerialPortBuilder) -> SerialPortBuilder,
+    ) -> Result<Self, LinkError> {
+        let builder = serialport::new(path, format.baud.bits_per_second())
             .parity(parity(format.parity))
-            .timeout(Duration::from_millis(10))
-            .open()
-            .map_err(|error| LinkError::new(path, opening(path, &error)))?;
+            .timeout(Duration::from_millis(10));
+        let port = lines(builder).open().map_err(|error| LinkError::new(path, opening(path, &error)))?;
         let link = SerialLink { port, target: path.to_owned(), clock };
         link.warn_of_parity(format);
         // What arrived before we came is nobody's reply; where it cannot be cleared, the first frame is found broken

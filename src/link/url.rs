@@ -15,11 +15,18 @@ pub enum Scheme {
     Tcp,
     /// A recorded trace.
     Replay,
+    /// The open adapter for clocked buses, at a serial port or a TCP address.
+    Bridge,
 }
 
 impl Scheme {
-    const ALL: [(Scheme, &'static str); 4] =
-        [(Scheme::Sim, "sim"), (Scheme::Serial, "serial"), (Scheme::Tcp, "tcp"), (Scheme::Replay, "replay")];
+    const ALL: [(Scheme, &'static str); 5] = [
+        (Scheme::Sim, "sim"),
+        (Scheme::Serial, "serial"),
+        (Scheme::Tcp, "tcp"),
+        (Scheme::Replay, "replay"),
+        (Scheme::Bridge, "bridge"),
+    ];
 
     /// The word before the colon.
     pub fn word(self) -> &'static str {
@@ -32,10 +39,23 @@ impl Scheme {
 pub struct LinkUrl {
     /// Kind of wire.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`.
+    /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`.
     pub target: String,
     /// The parameters after the question mark.
     pub query: Query,
+}
+
+/// What a link needs of the machine, so that two links can be told to need the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wire<'a> {
+    /// The device is in this process.
+    Inside,
+    /// A serial port.
+    Port(&'a str),
+    /// Host and TCP port.
+    Host(&'a str),
+    /// A file.
+    File(&'a str),
 }
 
 /// Parameters in the order written. Names are lower case; each stands once.
@@ -46,8 +66,16 @@ pub struct Query(Vec<(String, String)>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// No colon, or a word before it that names no kind of link.
-    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp: or replay:")]
+    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:")]
     Scheme(String),
+    /// A link that cannot lead to the device that is meant.
+    #[error("{scheme}: links do not lead to this device; those that do are {known}")]
+    Device {
+        /// The word before the colon.
+        scheme: &'static str,
+        /// Words that could stand there.
+        known: &'static str,
+    },
     /// The port, host or file is missing.
     #[error("{scheme}: needs {what}")]
     Target {
@@ -106,20 +134,39 @@ impl LinkUrl {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
 
-    fn check_target(&self) -> Result<(), UrlError> {
-        let missing = |what| Err(UrlError::Target { scheme: self.scheme.word(), what });
-        match self.scheme {
-            Scheme::Sim if !self.target.is_empty() => Err(UrlError::Parameter(self.target.clone())),
-            Scheme::Serial if self.target.is_empty() => missing("a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
-            Scheme::Replay if self.target.is_empty() => missing("a file, as in replay:capture.trace"),
-            Scheme::Tcp if !self.has_host_and_port() => missing("host and port, as in tcp:192.168.0.7:4001"),
-            _ => Ok(()),
+    /// What has to be opened.
+    pub fn wire(&self) -> Wire<'_> {
+        let target = self.target.as_str();
+        match (self.scheme, target.strip_prefix("tcp:")) {
+            (Scheme::Sim, _) => Wire::Inside,
+            (Scheme::Replay, _) => Wire::File(target),
+            (Scheme::Tcp, _) => Wire::Host(target),
+            (Scheme::Bridge, Some(host)) => Wire::Host(host),
+            (Scheme::Serial, _) | (Scheme::Bridge, None) => Wire::Port(target),
         }
     }
 
-    fn has_host_and_port(&self) -> bool {
-        self.target.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
+    fn check_target(&self) -> Result<(), UrlError> {
+        if self.scheme == Scheme::Sim && !self.target.is_empty() {
+            return Err(UrlError::Parameter(self.target.clone()));
+        }
+        let is_there = match self.wire() {
+            Wire::Inside => true,
+            Wire::Port(name) | Wire::File(name) => !name.is_empty(),
+            Wire::Host(host) => has_host_and_port(host),
+        };
+        let what = match self.scheme {
+            Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
+            Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            Scheme::Replay => "a file, as in replay:capture.trace",
+            Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
+        };
+        if is_there { Ok(()) } else { Err(UrlError::Target { scheme: self.scheme.word(), what }) }
     }
+}
+
+fn has_host_and_port(target: &str) -> bool {
+    target.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
 }
 
 impl fmt::Display for LinkUrl {
@@ -208,6 +255,8 @@ mod tests {
             "tcp:192.168.0.7:4001",
             "tcp:[::1]:4001?baud=9600",
             "replay:captures/monday.trace",
+            "bridge:/dev/ttyACM0?clock=2000000",
+            "bridge:tcp:192.168.0.7:4001",
         ] {
             assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), text);
         }
@@ -219,19 +268,36 @@ mod tests {
     #[test]
     fn what_is_no_link_is_told_why() {
         let cases = [
-            ("", "\"\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
-            ("/dev/ttyUSB0", "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
-            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp: or replay:"),
+            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
+            ("/dev/ttyUSB0", "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
+            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
             ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
             ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
             ("tcp:host:99999", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
             ("replay:", "replay: needs a file, as in replay:capture.trace"),
+            (
+                "bridge:",
+                "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            ),
+            (
+                "bridge:tcp:host",
+                "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            ),
             ("serial:x?baud", "\"baud\" is not of the form name=value"),
             ("serial:x?baud=1&baud=2", "baud stands twice"),
         ];
         for (text, message) in cases {
             assert_eq!(text.parse::<LinkUrl>().unwrap_err().to_string(), message);
         }
+    }
+
+    #[test]
+    fn links_to_the_same_wire_are_known() {
+        let wire = |text: &str| format!("{:?}", text.parse::<LinkUrl>().unwrap().wire());
+        assert_eq!(wire("bridge:/dev/ttyACM0?clock=1"), wire("serial:/dev/ttyACM0"));
+        assert_eq!(wire("bridge:tcp:[::1]:4001"), wire("tcp:[::1]:4001"));
+        assert_eq!(wire("replay:/dev/ttyACM0"), "File(\"/dev/ttyACM0\")");
+        assert_eq!(wire("sim:"), "Inside");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::link::{
     ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceFileError, UrlError,
-    read_trace,
+    Wire, read_trace,
 };
 use crate::sim::hiperface::ConfigError;
 use crate::store::{FileError, StoreError, read_text};
@@ -45,7 +45,7 @@ pub enum OpenError {
 pub(super) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
-        Scheme::Tcp => Duration::from_millis(100),
+        Scheme::Tcp | Scheme::Bridge => Duration::from_millis(100),
         Scheme::Sim | Scheme::Replay => Duration::from_millis(20),
     }
 }
@@ -60,15 +60,17 @@ pub(super) fn open_bytes(
     clock: &Arc<dyn Clock>,
     simulated: impl FnOnce() -> Result<Box<dyn ByteLink>, OpenError>,
 ) -> Result<Box<dyn ByteLink>, OpenError> {
-    Ok(match url.scheme {
-        Scheme::Sim => simulated()?,
-        Scheme::Serial => Box::new(SerialLink::open(&url.target, format, clock.clone())?),
-        Scheme::Tcp => Box::new(TcpLink::connect(&url.target, clock.clone())?),
-        Scheme::Replay => {
-            let text = read_text(Path::new(&url.target))?;
-            let entries =
-                read_trace(&text).map_err(|cause| OpenError::Recording { path: url.target.clone(), cause })?;
-            Box::new(ReplayLink::new(&url.target, entries, clock.clone()))
+    Ok(match url.wire() {
+        Wire::Inside => simulated()?,
+        Wire::Port(path) if url.scheme == Scheme::Bridge => {
+            Box::new(SerialLink::open_adapter(path, format, clock.clone())?)
+        }
+        Wire::Port(path) => Box::new(SerialLink::open(path, format, clock.clone())?),
+        Wire::Host(host) => Box::new(TcpLink::connect(host, clock.clone())?),
+        Wire::File(path) => {
+            let text = read_text(Path::new(path))?;
+            let entries = read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })?;
+            Box::new(ReplayLink::new(path, entries, clock.clone()))
         }
     })
 }

@@ -24,6 +24,8 @@ pub enum LinkKind {
     Tcp,
     /// A recorded trace.
     Replay,
+    /// What has no entries: the link as it is written.
+    Written,
 }
 
 /// The entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry
@@ -40,6 +42,8 @@ pub struct LinkForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
+    /// A link that has no entries.
+    pub written: Option<LinkUrl>,
     /// Speed.
     pub baud: Baud,
     /// Parity.
@@ -77,6 +81,7 @@ impl Default for LinkForm {
             host: String::new(),
             tcp_port: String::new(),
             file: String::new(),
+            written: None,
             baud: CharacterFormat::FACTORY.baud,
             parity: CharacterFormat::FACTORY.parity,
             address: address_words(DeviceAddress::FACTORY.byte()),
@@ -107,6 +112,7 @@ impl LinkForm {
             Scheme::Sim => form.kind = LinkKind::Virtual,
             Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
+            Scheme::Bridge => (form.kind, form.written) = (LinkKind::Written, Some(url.clone())),
             Scheme::Tcp => {
                 let (host, port) = target.rsplit_once(':').unwrap_or((&target, ""));
                 (form.kind, form.host, form.tcp_port) = (LinkKind::Tcp, host.to_owned(), port.to_owned());
@@ -154,6 +160,9 @@ impl LinkForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
+        if let (LinkKind::Written, Some(url)) = (self.kind, &self.written) {
+            return Ok(url.clone());
+        }
         let (scheme, target) = self.target()?;
         let parameters = self.parameters()?;
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
@@ -185,6 +194,8 @@ impl LinkForm {
             LinkKind::Virtual => Ok((Scheme::Sim, String::new())),
             LinkKind::Serial => Ok((Scheme::Serial, entered(&self.port, "form.port_missing")?)),
             LinkKind::Replay => Ok((Scheme::Replay, entered(&self.file, "form.file_missing")?)),
+            // With a link it does not come here.
+            LinkKind::Written => Err(Text::new("form.port_missing")),
             LinkKind::Tcp => {
                 let host = entered(&self.host, "form.host_missing")?;
                 let host = match host.parse::<Ipv6Addr>() {

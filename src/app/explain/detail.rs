@@ -11,8 +11,10 @@ use crate::store::{LogbookError, LogbookProblem};
 
 /// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
 /// what can be read. The first that fits counts.
-const PHRASES: [&str; 73] = [
+const PHRASES: [&str; 75] = [
     "phrase.no_link",
+    "phrase.link_device",
+    "phrase.bridge",
     "phrase.no_parameter",
     "phrase.unknown_parameter",
     "phrase.port",
@@ -101,9 +103,11 @@ pub fn url(error: &UrlError) -> Text {
         UrlError::Value { name, value, allowed } => {
             Text::new("detail.parameter").with("name", name).with("value", value).with_text("allowed", phrase(allowed))
         }
-        UrlError::Scheme(_) | UrlError::Parameter(_) | UrlError::Twice(_) | UrlError::Unknown { .. } => {
-            phrase(&error.to_string())
-        }
+        UrlError::Scheme(_)
+        | UrlError::Device { .. }
+        | UrlError::Parameter(_)
+        | UrlError::Twice(_)
+        | UrlError::Unknown { .. } => phrase(&error.to_string()),
     }
 }
 
@@ -194,10 +198,13 @@ mod tests {
 
     #[test]
     fn a_wrong_link_is_told_in_both_languages() {
-        for text in ["usb:1", "serial:", "replay:", "tcp:host", "serial:x?baud", "serial:x?baud=1&baud=2"] {
+        for text in ["usb:1", "serial:", "replay:", "tcp:host", "bridge:", "serial:x?baud", "serial:x?baud=1&baud=2"] {
             let error = text.parse::<LinkUrl>().unwrap_err();
             check(&url(&error), &error);
         }
+        let error = UrlError::Device { scheme: "bridge", known: "sim:, serial:, tcp: and replay:" };
+        assert_eq!(url(&error).words(English), error.to_string());
+        assert_ne!(url(&error).words(German), error.to_string());
         let known = "baud, parity".to_owned();
         let error = UrlError::Unknown { name: "bad".to_owned(), scheme: "serial", known };
         check(&url(&error), &error);

@@ -56,8 +56,10 @@ pub(in crate::ui) fn connect_ui(
                 LinkKind::Serial => serial(ui, skin, dialog, &mut form, actions),
                 LinkKind::Tcp => network(ui, skin, &mut form),
                 LinkKind::Replay => recording(ui, skin, &mut form),
+                // Its text stands below.
+                LinkKind::Written => {}
             }
-            if form.kind != LinkKind::Replay {
+            if !matches!(form.kind, LinkKind::Replay | LinkKind::Written) {
                 line(ui, skin, &mut form);
                 more(ui, skin, &mut form, &mut view.more);
             }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::Hiperface;
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
-use crate::link::{ByteLink, Clock, LinkUrl, RealClock, Scheme, SimLink};
+use crate::link::{ByteLink, Clock, LinkUrl, RealClock, Scheme, SimLink, UrlError};
 use crate::sim::hiperface::{Bus, Config};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, margin, open_bytes};
@@ -18,6 +18,10 @@ const LINE_ONLY: [&str; 6] = ["baud", "parity", "timeout", "margin", "periods", 
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
+    if url.scheme == Scheme::Bridge {
+        let known = "sim:, serial:, tcp: and replay:";
+        return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+    }
     let types = store.encoder_types()?;
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     let is_virtual = url.scheme == Scheme::Sim;
