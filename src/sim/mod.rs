@@ -8,9 +8,11 @@ pub mod biss;
 pub mod bridge;
 mod fault;
 pub mod hiperface;
+mod setting;
 pub mod sine_cosine;
 
 pub use fault::{Carried, FaultError, Faults, Passage};
+pub use setting::ConfigError;
 
 use crate::units::CharacterFormat;
 use crate::units::Moment;

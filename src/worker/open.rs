@@ -8,7 +8,7 @@ use crate::link::{
     ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceFileError, UrlError,
     Wire, read_trace,
 };
-use crate::sim::hiperface::ConfigError;
+use crate::sim::ConfigError;
 use crate::store::{FileError, StoreError, read_text};
 use crate::units::CharacterFormat;
 
@@ -18,7 +18,7 @@ pub enum OpenError {
     /// A parameter.
     #[error(transparent)]
     Url(#[from] UrlError),
-    /// A parameter of the virtual encoder.
+    /// A parameter of the virtual device.
     #[error(transparent)]
     Sim(#[from] ConfigError),
     /// The wire.

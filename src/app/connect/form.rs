@@ -9,7 +9,8 @@ use crate::app::{Text, explain};
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::hiperface::{BROADCAST, DeviceAddress};
-use crate::sim::hiperface::{Config, ConfigError, MODELS};
+use crate::sim::ConfigError;
+use crate::sim::hiperface::{Config, MODELS};
 use crate::units::{Baud, CharacterFormat, Parity};
 
 /// What is to be connected.

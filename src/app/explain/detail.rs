@@ -6,12 +6,12 @@ use crate::app::Text;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
 use crate::protocol::hiperface::TypeTableError;
-use crate::sim::hiperface::ConfigError;
+use crate::sim::ConfigError;
 use crate::store::{LogbookError, LogbookProblem};
 
 /// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
 /// what can be read. The first that fits counts.
-const PHRASES: [&str; 75] = [
+const PHRASES: [&str; 90] = [
     "phrase.no_link",
     "phrase.link_device",
     "phrase.bridge",
@@ -30,6 +30,21 @@ const PHRASES: [&str; 75] = [
     "phrase.turns",
     "phrase.with_periods",
     "phrase.no_setting",
+    "phrase.sim_adapter",
+    "phrase.sim_release",
+    "phrase.sim_waver",
+    "phrase.sim_errors",
+    "phrase.sim_filter",
+    "phrase.sim_cycles",
+    "phrase.sim_pulses",
+    "phrase.sim_seconds",
+    "phrase.sim_order",
+    "phrase.sim_motor",
+    "phrase.sim_line",
+    "phrase.sim_noise",
+    "phrase.sim_ssi",
+    "phrase.sim_supply",
+    "phrase.sim_version",
     "phrase.no_fault",
     "phrase.fault_probability",
     "phrase.fault_number",
@@ -252,6 +267,14 @@ mod tests {
         for text in queries {
             let query: Query = text.parse().unwrap();
             let error = Config::from_pairs(query.pairs()).unwrap_err();
+            check(&setting(&error), &error);
+        }
+        let queries = "sed=1 seed=x firmware=1 serial=x rpm=x waver=x position=x temperature=x errors=x filter=x \
+                       cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
+                       supply=x version=x";
+        for text in queries.split_whitespace() {
+            let query: Query = text.parse().unwrap();
+            let error = crate::sim::bridge::Config::from_pairs(query.pairs()).unwrap_err();
             check(&setting(&error), &error);
         }
     }

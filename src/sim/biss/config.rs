@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use super::wiegand::Pulses;
 use crate::protocol::biss::{ByteOrder, Filter, Firmware};
-use crate::sim::{FaultError, Faults};
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, Faults};
 
 /// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
 /// without faults.
@@ -27,30 +28,6 @@ pub struct Config {
     pub(super) silent_calibration: bool,
     pub(super) echo: bool,
     pub(super) order: ByteOrder,
-}
-
-/// Why settings cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ConfigError {
-    /// No such key.
-    #[error("a virtual encoder has no setting `{key}`; allowed are {}", Config::KEYS.join(", "))]
-    Key {
-        /// The key as written.
-        key: String,
-    },
-    /// A value that its key does not take.
-    #[error("`{key}={value}` cannot be used: allowed is {allowed}")]
-    Value {
-        /// The key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// What would do, in words.
-        allowed: &'static str,
-    },
-    /// The value of `fault`.
-    #[error(transparent)]
-    Fault(#[from] FaultError),
 }
 
 impl Default for Config {
@@ -97,7 +74,6 @@ impl Config {
         "order",
     ];
 
-    const MAX_RPM: f64 = 12_000.0;
     const POSITIONS: u64 = 1 << 33;
 
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
@@ -129,84 +105,48 @@ impl Config {
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
-        let refuse =
-            |allowed: &'static str| ConfigError::Value { key: key.to_owned(), value: value.to_owned(), allowed };
-        let decimal =
-            |range: std::ops::RangeInclusive<f64>| value.parse().ok().filter(|number: &f64| range.contains(number));
+        let setting = Setting { key, value };
+        let refuse = |allowed: &str| setting.refused(allowed);
         match key {
-            "seed" => self.seed = integer(value).ok_or_else(|| refuse("a whole number"))?,
+            "seed" => self.seed = setting.number("a whole number")?,
             "fault" => self.faults = value.parse()?,
             "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse("a release as 1.6.0"))?,
-            "serial" => {
-                let number = integer(value).and_then(|number| u32::try_from(number).ok());
-                self.serial_number = number.ok_or_else(|| refuse("a number from 0 to 0xFFFFFFFF"))?;
-            }
-            "rpm" => {
-                let rpm = decimal(-Self::MAX_RPM..=Self::MAX_RPM);
-                self.rpm = rpm.ok_or_else(|| refuse("a speed from -12000 to 12000 revolutions a minute"))?;
-            }
-            "waver" => {
-                self.waver = decimal(0.0..=1000.0).ok_or_else(|| refuse("0 to 1000 revolutions a minute"))?;
-            }
+            "serial" => self.serial_number = setting.number("a number from 0 to 0xFFFFFFFF")?,
+            "rpm" => self.rpm = setting.rpm()?,
+            "waver" => self.waver = setting.decimal(0.0..=1000.0, "0 to 1000 revolutions a minute")?,
             "position" => {
-                let position = integer(value).filter(|position| *position < Self::POSITIONS);
-                self.position = position.ok_or_else(|| refuse("a position from 0 to 8589934591 (33 bits)"))?;
+                let allowed = "a position from 0 to 8589934591";
+                let position = Some(setting.number(allowed)?).filter(|position| *position < Self::POSITIONS);
+                self.position = position.ok_or_else(|| refuse(allowed))?;
             }
             "temperature" => {
-                let celsius = value.parse().ok().filter(|celsius| (-50..=205).contains(celsius));
-                self.temperature = celsius.ok_or_else(|| refuse("whole degrees Celsius from -50 to 205"))?;
+                self.temperature = setting.signed(-50..=205, "whole degrees Celsius from -50 to 205")?;
             }
-            "errors" => {
-                let byte = integer(value).and_then(|number| u8::try_from(number).ok());
-                self.errors = byte.ok_or_else(|| refuse("the error register's value from 0x00 to 0xFF"))?;
-            }
+            "errors" => self.errors = setting.number("the error register's value from 0x00 to 0xFF")?,
             "filter" => {
-                self.filter = match value {
-                    "balanced" => Filter::Balanced,
-                    "dynamic" => Filter::Dynamic,
-                    _ => return Err(refuse("balanced or dynamic")),
-                };
+                let filters = [("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)];
+                self.filter = setting.one_of(&filters, "balanced or dynamic")?;
             }
-            "cycles" => {
-                let cycles = integer(value).and_then(|number| u32::try_from(number).ok());
-                self.cycles = cycles.ok_or_else(|| refuse("the number of write cycles its flash has had"))?;
-            }
+            "cycles" => self.cycles = setting.number("the number of write cycles its flash has had")?,
             "pulses" => {
                 self.pulses =
                     pulses(value).ok_or_else(|| refuse("AVERAGE,LOWEST in volts from 0 to 25.5, as 6.3,5.8"))?;
             }
             "calibration" => {
-                let seconds = decimal(0.1..=60.0).ok_or_else(|| refuse("0.1 to 60 seconds"))?;
-                self.calibration_time = Duration::from_secs_f64(seconds);
+                self.calibration_time = Duration::from_secs_f64(setting.decimal(0.1..=60.0, "0.1 to 60 seconds")?);
             }
-            "calibration-silent" => self.silent_calibration = switch(value).ok_or_else(|| refuse("on or off"))?,
-            "echo" => self.echo = switch(value).ok_or_else(|| refuse("on or off"))?,
+            "calibration-silent" => self.silent_calibration = setting.switch()?,
+            "echo" => self.echo = setting.switch()?,
             "order" => {
-                self.order = match value {
-                    "low-first" => ByteOrder::LowFirst,
-                    "high-first" => ByteOrder::HighFirst,
-                    _ => return Err(refuse("low-first or high-first")),
-                };
+                let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
+                self.order = setting.one_of(&orders, "low-first or high-first")?;
             }
-            _ => return Err(ConfigError::Key { key: key.to_owned() }),
+            _ => {
+                let (device, known) = ("a virtual encoder", Self::KEYS.join(", "));
+                return Err(ConfigError::Key { device, key: key.to_owned(), known });
+            }
         }
         Ok(())
-    }
-}
-
-fn switch(text: &str) -> Option<bool> {
-    match text {
-        "on" => Some(true),
-        "off" => Some(false),
-        _ => None,
-    }
-}
-
-/// Decimal, or hexadecimal after `0x`.
-fn integer(text: &str) -> Option<u64> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u64::from_str_radix(digits, 16).ok(),
-        None => text.parse().ok(),
     }
 }
 

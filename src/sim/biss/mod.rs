@@ -23,7 +23,7 @@ mod tests;
 mod ubicom;
 mod wiegand;
 
-pub use config::{Config, ConfigError};
+pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;
 pub use ubicom::Port;

@@ -2,7 +2,8 @@
 //! and its own.
 
 use crate::protocol::bridge::VERSION;
-use crate::sim::biss;
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, biss};
 
 /// What a virtual adapter shall be like. The default has nothing wrong with it, and the encoder's supply comes from
 /// elsewhere.
@@ -27,34 +28,6 @@ pub(super) enum Line {
     Low,
     /// The data line stays at 1.
     High,
-}
-
-/// Why settings cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ConfigError {
-    /// No such key.
-    #[error(
-        "a virtual adapter has no setting `{key}`; allowed are {}, {}",
-        Config::KEYS.join(", "),
-        biss::Config::KEYS.join(", ")
-    )]
-    Key {
-        /// The key as written.
-        key: String,
-    },
-    /// A value that its key does not take.
-    #[error("`{key}={value}` cannot be used: allowed is {allowed}")]
-    Value {
-        /// The key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// What would do, in words.
-        allowed: &'static str,
-    },
-    /// A setting of the encoder.
-    #[error(transparent)]
-    Encoder(#[from] biss::ConfigError),
 }
 
 impl Default for Config {
@@ -95,38 +68,23 @@ impl Config {
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
-        let refuse =
-            |allowed: &'static str| ConfigError::Value { key: key.to_owned(), value: value.to_owned(), allowed };
+        let setting = Setting { key, value };
         match key {
             "line" => {
-                self.line = match value {
-                    "good" => Line::Good,
-                    "open" => Line::Open,
-                    "low" => Line::Low,
-                    "high" => Line::High,
-                    _ => return Err(refuse("good, open, low or high")),
-                };
+                let lines = [("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)];
+                self.line = setting.one_of(&lines, "good, open, low or high")?;
             }
-            "noise" => {
-                let noise = value.parse().ok().filter(|share: &f64| (0.0..=1.0).contains(share));
-                self.noise = noise.ok_or_else(|| refuse("the share of damaged frames from 0 to 1"))?;
-            }
-            "ssi" => {
-                self.gray = match value {
-                    "gray" => true,
-                    "binary" => false,
-                    _ => return Err(refuse("gray or binary")),
-                };
-            }
+            "noise" => self.noise = setting.decimal(0.0..=1.0, "the share of damaged frames from 0 to 1")?,
+            "ssi" => self.gray = setting.one_of(&[("gray", true), ("binary", false)], "gray or binary")?,
             "supply" => {
-                self.switched_supply = match value {
-                    "external" => false,
-                    "switched" => true,
-                    _ => return Err(refuse("external or switched")),
-                };
+                let supplies = [("external", false), ("switched", true)];
+                self.switched_supply = setting.one_of(&supplies, "external or switched")?;
             }
-            "version" => self.version = value.parse().map_err(|_| refuse("a version from 0 to 255"))?,
-            _ => return Err(ConfigError::Key { key: key.to_owned() }),
+            "version" => self.version = setting.number("a version from 0 to 255")?,
+            _ => {
+                let known = [&Self::KEYS[..], &biss::Config::KEYS].concat().join(", ");
+                return Err(ConfigError::Key { device: "a virtual adapter", key: key.to_owned(), known });
+            }
         }
         Ok(())
     }
@@ -166,7 +124,7 @@ mod tests {
         assert!(unknown.starts_with("a virtual adapter has no setting `lin`; allowed are line, noise, "), "{unknown}");
         let sentence = "`line=bad` cannot be used: allowed is good, open, low or high";
         assert_eq!(read("line=bad").unwrap_err().to_string(), sentence);
-        assert!(matches!(read("rpm=NaN"), Err(ConfigError::Encoder(_))));
+        assert!(matches!(read("rpm=NaN"), Err(ConfigError::Value { .. })));
         for query in ["noise=2", "noise=NaN", "ssi=x", "supply=on", "version=256", "version=-1"] {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
         }

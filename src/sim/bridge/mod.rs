@@ -17,4 +17,4 @@ mod stream;
 mod tests;
 
 pub use adapter::Adapter;
-pub use config::{Config, ConfigError};
+pub use config::Config;

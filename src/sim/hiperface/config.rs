@@ -4,7 +4,8 @@
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::protocol::hiperface::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
-use crate::sim::{FaultError, Faults};
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, Faults};
 
 /// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,30 +24,6 @@ pub struct Config {
     pub(super) encoders: u8,
     pub(super) pace: Pace,
     pub(super) codes: [AccessCode; 4],
-}
-
-/// Why settings cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ConfigError {
-    /// No such key.
-    #[error("a virtual encoder has no setting `{key}`; allowed are {}", Config::KEYS.join(", "))]
-    Key {
-        /// The key as written.
-        key: String,
-    },
-    /// A value that its key does not take.
-    #[error("`{key}={value}` cannot be used: allowed is {allowed}")]
-    Value {
-        /// The key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// What would do, in words.
-        allowed: String,
-    },
-    /// The value of `fault`.
-    #[error(transparent)]
-    Fault(#[from] FaultError),
 }
 
 impl Default for Config {
@@ -91,7 +68,6 @@ impl Config {
     ];
 
     const MAX_ENCODERS: u8 = 8;
-    const MAX_RPM: f64 = 12_000.0;
 
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`; several encoders have addresses and serial numbers counting up from the first's.
@@ -138,66 +114,54 @@ impl Config {
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
-        let refuse = |allowed: &str| refused(key, value, allowed);
+        let setting = Setting { key, value };
+        let refuse = |allowed: &str| setting.refused(allowed);
         match key {
-            "seed" => self.seed = integer(value).ok_or_else(|| refuse("a whole number"))?,
+            "seed" => self.seed = setting.number("a whole number")?,
             "fault" => self.faults = value.parse()?,
             "model" => {
                 let names = || MODELS.map(|model| model.name).join(", ");
                 self.model = *Model::find(value).ok_or_else(|| refuse(&format!("one of {}", names())))?;
             }
-            "type" => {
-                self.encoder_type = Some(byte(value).ok_or_else(|| refuse("a type byte from 0x00 to 0xFF"))?);
-            }
+            "type" => self.encoder_type = Some(setting.number("a type byte from 0x00 to 0xFF")?),
             "serial" => {
                 let fits = (1..=9).contains(&value.len()) && value.bytes().all(|c| matches!(c, b' '..=b'~'));
                 self.serial_number =
                     Some(fits.then(|| value.to_owned()).ok_or_else(|| refuse("one to nine ASCII characters"))?);
             }
             "address" => {
-                let address = byte(value).and_then(DeviceAddress::new);
-                self.address = address.ok_or_else(|| refuse("an address from 0x40 to 0x5F"))?;
+                let allowed = "an address from 0x40 to 0x5F";
+                self.address = DeviceAddress::new(setting.number(allowed)?).ok_or_else(|| refuse(allowed))?;
             }
             "settings" => {
-                let settings = byte(value).map(LineSettings::from_byte).filter(|settings| settings.is_valid());
-                self.settings = settings.ok_or_else(|| refuse("a settings byte without reserved values, as 0xE4"))?;
+                let allowed = "a settings byte without reserved values, as 0xE4";
+                let settings = LineSettings::from_byte(setting.number(allowed)?);
+                self.settings = Some(settings).filter(|settings| settings.is_valid()).ok_or_else(|| refuse(allowed))?;
             }
-            "rpm" => {
-                let rpm = value.parse().ok().filter(|rpm: &f64| rpm.abs() <= Self::MAX_RPM);
-                self.rpm = rpm.ok_or_else(|| refuse("a speed from -12000 to 12000 revolutions a minute"))?;
-            }
-            "position" => {
-                let position = integer(value).and_then(|position| u32::try_from(position).ok());
-                self.position = Some(position.ok_or_else(|| refuse("a position in steps"))?);
-            }
+            "rpm" => self.rpm = setting.rpm()?,
+            "position" => self.position = Some(setting.number("a position in steps")?),
             "temperature" => {
-                let celsius = value.parse().ok().filter(|celsius| (-100..=300).contains(celsius));
-                self.temperature = celsius.ok_or_else(|| refuse("whole degrees Celsius from -100 to 300"))?;
+                self.temperature = setting.signed(-100..=300, "whole degrees Celsius from -100 to 300")?;
             }
-            "echo" => {
-                self.echo = match value {
-                    "on" => true,
-                    "off" => false,
-                    _ => return Err(refuse("on or off")),
-                };
-            }
+            "echo" => self.echo = setting.switch()?,
             "encoders" => {
-                let count = byte(value).filter(|count| (1..=Self::MAX_ENCODERS).contains(count));
-                self.encoders = count.ok_or_else(|| refuse("a number from 1 to 8"))?;
+                let allowed = "a number from 1 to 8";
+                let count = Some(setting.number(allowed)?).filter(|count| (1..=Self::MAX_ENCODERS).contains(count));
+                self.encoders = count.ok_or_else(|| refuse(allowed))?;
             }
             "pace" => {
-                self.pace = match value {
-                    "typical" => Pace::Typical,
-                    "worst" => Pace::Worst,
-                    _ => return Err(refuse("typical or worst")),
-                };
+                let paces = [("typical", Pace::Typical), ("worst", Pace::Worst)];
+                self.pace = setting.one_of(&paces, "typical or worst")?;
             }
             "codes" => {
                 // The text itself is not repeated in the error: it holds access codes.
                 let allowed = "NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66";
-                self.codes = codes(value).ok_or_else(|| refused(key, "**", allowed))?;
+                self.codes = codes(value).ok_or_else(|| Setting { key, value: "**" }.refused(allowed))?;
             }
-            _ => return Err(ConfigError::Key { key: key.to_owned() }),
+            _ => {
+                let (device, known) = ("a virtual encoder", Self::KEYS.join(", "));
+                return Err(ConfigError::Key { device, key: key.to_owned(), known });
+            }
         }
         Ok(())
     }
@@ -209,31 +173,16 @@ impl Config {
             && u64::from(position) >= range
         {
             let allowed = format!("a position from 0 to {}", range - 1);
-            return Err(refused("position", &position.to_string(), &allowed));
+            return Err(Setting { key: "position", value: &position.to_string() }.refused(&allowed));
         }
         let last_first = 0x5F - (self.encoders - 1);
         if self.address.byte() > last_first {
             let allowed = format!("an address from 0x40 to {last_first:#04X}, so that all encoders have one");
-            return Err(refused("address", &format!("{:#04X}", self.address.byte()), &allowed));
+            let address = format!("{:#04X}", self.address.byte());
+            return Err(Setting { key: "address", value: &address }.refused(&allowed));
         }
         Ok(())
     }
-}
-
-fn refused(key: &str, value: &str, allowed: &str) -> ConfigError {
-    ConfigError::Value { key: key.to_owned(), value: value.to_owned(), allowed: allowed.to_owned() }
-}
-
-/// Decimal, or hexadecimal after `0x`.
-fn integer(text: &str) -> Option<u64> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u64::from_str_radix(digits, 16).ok(),
-        None => text.parse().ok(),
-    }
-}
-
-fn byte(text: &str) -> Option<u8> {
-    integer(text).and_then(|number| u8::try_from(number).ok())
 }
 
 fn codes(text: &str) -> Option<[AccessCode; 4]> {

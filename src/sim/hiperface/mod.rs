@@ -22,7 +22,7 @@ mod shaft;
 mod tests;
 
 pub use bus::Bus;
-pub use config::{Config, ConfigError};
+pub use config::Config;
 pub use electronics::Wear;
 pub use encoder::{Encoder, Pace};
 pub use memory::Memory;

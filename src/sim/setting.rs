@@ -1,0 +1,92 @@
+//! Settings of a virtual device, as the query of a `sim:` link gives them, a key with its value each: what can be written
+//! for a value, and what is wrong with one. Which keys there are is each device's matter.
+
+use std::ops::RangeInclusive;
+
+use super::FaultError;
+
+/// Why settings cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ConfigError {
+    /// No such key.
+    #[error("{device} has no setting `{key}`; allowed are {known}")]
+    Key {
+        /// What has no such key, with its article.
+        device: &'static str,
+        /// The key as written.
+        key: String,
+        /// The keys that it has.
+        known: String,
+    },
+    /// A value that its key does not take.
+    #[error("`{key}={value}` cannot be used: allowed is {allowed}")]
+    Value {
+        /// The key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// What would do, in words.
+        allowed: String,
+    },
+    /// The value of `fault`.
+    #[error(transparent)]
+    Fault(#[from] FaultError),
+}
+
+/// A key with its value, about to be read. What cannot be used is refused with words that say what can.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub(super) key: &'a str,
+    pub(super) value: &'a str,
+}
+
+type Result<T> = std::result::Result<T, ConfigError>;
+
+impl Setting<'_> {
+    const MAX_RPM: f64 = 12_000.0;
+
+    pub(super) fn refused(self, allowed: &str) -> ConfigError {
+        ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed: allowed.to_owned() }
+    }
+
+    /// A whole number that fits into its type.
+    pub(super) fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
+        integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
+    }
+
+    /// A whole number of the range, which may be negative, and is decimal.
+    pub(super) fn signed(self, range: RangeInclusive<i16>, allowed: &str) -> Result<i16> {
+        let number = self.value.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| self.refused(allowed))
+    }
+
+    /// A number of the range, with a decimal point where it needs one.
+    pub(super) fn decimal(self, range: RangeInclusive<f64>, allowed: &str) -> Result<f64> {
+        let number = self.value.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| self.refused(allowed))
+    }
+
+    /// Revolutions a minute, either way.
+    pub(super) fn rpm(self) -> Result<f64> {
+        let range = -Self::MAX_RPM..=Self::MAX_RPM;
+        self.decimal(range, "a speed from -12000 to 12000 revolutions a minute")
+    }
+
+    /// One of these words.
+    pub(super) fn one_of<T: Copy>(self, words: &[(&str, T)], allowed: &str) -> Result<T> {
+        let found = words.iter().find(|(word, _)| *word == self.value);
+        found.map(|(_, meaning)| *meaning).ok_or_else(|| self.refused(allowed))
+    }
+
+    pub(super) fn switch(self) -> Result<bool> {
+        self.one_of(&[("on", true), ("off", false)], "on or off")
+    }
+}
+
+/// Decimal, or hexadecimal after `0x`.
+pub(super) fn integer(text: &str) -> Option<u64> {
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u64::from_str_radix(digits, 16).ok(),
+        None => text.parse().ok(),
+    }
+}
