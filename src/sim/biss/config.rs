@@ -17,6 +17,7 @@ pub struct Config {
     pub(super) firmware: Firmware,
     pub(super) serial_number: u32,
     pub(super) rpm: f64,
+    pub(super) reverses: bool,
     pub(super) waver: f64,
     pub(super) position: u64,
     pub(super) temperature: i16,
@@ -38,6 +39,7 @@ impl Default for Config {
             firmware: Firmware::new(1, 6, 0),
             serial_number: 0x0012_D687,
             rpm: 0.0,
+            reverses: false,
             waver: 0.5,
             position: 0x1234 << 17 | 0x18000,
             temperature: 30,
@@ -55,12 +57,13 @@ impl Default for Config {
 
 impl Config {
     /// The keys that [`from_pairs`](Self::from_pairs) takes.
-    pub const KEYS: [&str; 16] = [
+    pub const KEYS: [&str; 17] = [
         "seed",
         "fault",
         "firmware",
         "serial",
         "rpm",
+        "motor",
         "waver",
         "position",
         "temperature",
@@ -113,6 +116,9 @@ impl Config {
             "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse("a release as 1.6.0"))?,
             "serial" => self.serial_number = setting.number("a number from 0 to 0xFFFFFFFF")?,
             "rpm" => self.rpm = setting.rpm()?,
+            "motor" => {
+                self.reverses = setting.one_of(&[("steady", false), ("reverse", true)], "steady or reverse")?;
+            }
             "waver" => self.waver = setting.decimal(0.0..=1000.0, "0 to 1000 revolutions a minute")?,
             "position" => {
                 let allowed = "a position from 0 to 8589934591";
@@ -182,7 +188,7 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let config = read(
-            "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&waver=3&position=0x20000&temperature=-10&\
+            "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&motor=reverse&waver=3&position=0x20000&temperature=-10&\
              errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&echo=on&\
              order=high-first",
         )
@@ -193,6 +199,7 @@ mod tests {
             firmware: Firmware::new(1, 2, 3),
             serial_number: 16,
             rpm: -500.0,
+            reverses: true,
             waver: 3.0,
             position: 0x20000,
             temperature: -10,
@@ -214,8 +221,8 @@ mod tests {
         let cases = [
             (
                 "sed=1",
-                "a virtual encoder has no setting `sed`; allowed are seed, fault, firmware, serial, rpm, waver, \
-                 position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, echo, order",
+                "a virtual encoder has no setting `sed`; allowed are seed, fault, firmware, serial, rpm, motor, \
+                 waver, position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, echo, order",
             ),
             ("filter=fast", "`filter=fast` cannot be used: allowed is balanced or dynamic"),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),
@@ -223,7 +230,7 @@ mod tests {
         for (query, sentence) in cases {
             assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
         }
-        let wrong = "seed=-1 firmware=1.6 firmware=1.6.256 serial=0x100000000 rpm=NaN rpm=inf waver=-1 temperature=206 \
+        let wrong = "seed=-1 firmware=1.6 firmware=1.6.256 serial=0x100000000 rpm=NaN rpm=inf motor=on waver=-1 temperature=206 \
                      position=8589934592 errors=256 cycles=-1 pulses=6.3 pulses=6.3,26 calibration=0 echo=yes order=low";
         for query in wrong.split_whitespace() {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");

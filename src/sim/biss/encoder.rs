@@ -8,6 +8,7 @@
 //! written; what is entered is forgotten when the mode is left.
 
 mod registers;
+mod time;
 
 use std::time::Duration;
 
@@ -15,6 +16,7 @@ use super::calibration::{Calibration, Conditions, Ended};
 use super::config::Config;
 use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
 use super::flash::Flash;
+use super::motor::{Drive, Motor};
 use super::shaft::Shaft;
 use super::wiegand::{Pulses, Wiegand};
 use crate::protocol::biss::{
@@ -32,6 +34,7 @@ pub struct Encoder {
     silent_calibration: bool,
     die_in_store: Option<u32>,
     eds: [Eds; 2],
+    drive: Drive,
     shaft: Shaft,
     celsius: i16,
     errors: ErrorRegister,
@@ -84,6 +87,7 @@ impl Encoder {
             silent_calibration: config.silent_calibration,
             die_in_store: config.faults.die_in_store(),
             eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::delivered),
+            drive: Drive::new(config.rpm, config.reverses),
             shaft: Shaft::new(Layout::default(), config.position, config.rpm),
             celsius: config.temperature,
             errors: ErrorRegister::new(config.errors),
@@ -120,18 +124,14 @@ impl Encoder {
         self.mode
     }
 
-    /// Revolutions a minute of the shaft; above 0 it turns clockwise, and the position rises.
-    pub const fn rpm(&self) -> f64 {
-        self.shaft.rpm()
+    /// What turns its shaft.
+    pub fn motor(&self) -> Motor {
+        self.drive.motor().clone()
     }
 
     /// Turns the shaft at another speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        self.settle(now);
-        if rpm != self.shaft.rpm() {
-            self.calibration.disturb(now);
-        }
-        self.shaft.set_rpm(now, rpm);
+        self.drive.motor().set_rpm(rpm);
         self.settle(now);
     }
 
@@ -383,21 +383,6 @@ impl Encoder {
         self.data = DataEntry::default();
         self.filter = FilterEntry::default();
         self.preset = PresetEntry::new(self.flash.preset);
-    }
-
-    /// Lets happen what was due by `now`.
-    fn settle(&mut self, now: Moment) {
-        if let Power::Starting { ready } = self.power
-            && ready <= now
-        {
-            self.power = Power::On;
-        }
-        match self.calibration.settle(now) {
-            Ended::No => {}
-            Ended::Saved => self.store(|flash, whole| flash.calibrated = whole),
-            Ended::Lost => self.flash.calibrated = false,
-        }
-        self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
     }
 
     fn watch_temperature(&mut self) {

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `shaft` | the turning shaft |
+//! | `motor` | what turns it |
 //! | `flash` | what survives a loss of power, and how often it was written |
 //! | `calibration`, `wiegand` | the two procedures that need a turning motor |
 //! | `entry` | the three that enter and save something: data, filter, preset |
@@ -17,6 +18,7 @@ mod config;
 mod encoder;
 mod entry;
 mod flash;
+mod motor;
 mod shaft;
 #[cfg(test)]
 mod tests;
@@ -26,4 +28,5 @@ mod wiegand;
 pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;
+pub use motor::Motor;
 pub use ubicom::Port;

@@ -103,15 +103,24 @@ impl Adapter {
         &self.bus.encoder
     }
 
-    /// The encoder, to warm it or to give it errors. Its shaft is turned by [`set_rpm`](Self::set_rpm).
+    /// The encoder, to warm it or to give it errors. Its motor turns the shaft that all encoders share.
     pub const fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.bus.encoder
     }
 
-    /// Turns the shaft that all encoders share at another speed from `now` on.
+    /// Turns that shaft at another speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.advance(now);
         self.bus.encoder.set_rpm(self.now, rpm);
+        self.follow_motor();
+    }
+
+    /// The sine/cosine encoder is on the same shaft.
+    fn follow_motor(&mut self) {
+        let rpm = self.bus.encoder.motor().rpm();
+        if rpm == self.analog.speed_rpm {
+            return;
+        }
         self.analog.speed_rpm = rpm;
         if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().checked()) {
             stream.change(self.now, settings);
@@ -139,6 +148,7 @@ impl Adapter {
             self.pushed = self.pushed.wrapping_add(1);
             self.send(at + Self::LATENCY, &packet);
         }
+        self.follow_motor();
         while let Some((_, bytes)) = self.to_host.pop_front_if(|(at, _)| *at <= self.now) {
             self.inbox.extend(bytes);
         }

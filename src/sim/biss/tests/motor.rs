@@ -171,3 +171,60 @@ fn a_wiegand_test_fails_for_its_reasons() {
     host.expect("0x00:0x07", 0x07);
     host.expect("0x00:0x08", 0x01);
 }
+
+#[test]
+fn whoever_holds_the_motor_turns_the_shaft() {
+    let mut host = Host::with("rpm=60&position=0");
+    let motor = host.encoder.motor();
+    host.wait(1.0);
+    assert_eq!(host.position(), Some((1, 0)));
+    // The shaft follows from the next question on.
+    motor.set_rpm(-120.0);
+    assert_eq!(host.position(), Some((1, 0)));
+    host.wait(0.25);
+    assert_eq!(host.position(), Some((0, 0x10000)));
+    host.turn(6.0);
+    assert_eq!(motor.rpm(), 6.0, "there is one speed, whoever sets it");
+    for (set, turned) in [(20_000.0, 12_000.0), (f64::NEG_INFINITY, -12_000.0), (f64::NAN, -12_000.0)] {
+        motor.set_rpm(set);
+        assert_eq!(motor.rpm(), turned);
+    }
+    // A copy of the encoder has a motor of its own.
+    let copy = host.encoder.clone();
+    copy.motor().set_rpm(1.0);
+    assert_eq!(motor.rpm(), -12_000.0);
+}
+
+#[test]
+fn a_motor_that_reverses_does_so_when_a_procedure_waits_for_it() {
+    let mut host = Host::with("rpm=-500&motor=reverse&cycles=0");
+    host.enter(0x01);
+    host.put("0x00:0x00", 0x01);
+    host.wait(4.9);
+    host.expect("0x00:0x01", 0x01);
+    assert_eq!(host.encoder.motor().rpm(), -500.0);
+    host.wait(0.1);
+    host.expect("0x00:0x01", 0x02);
+    assert_eq!(host.encoder.motor().rpm(), 500.0);
+    host.put("0x00:0x00", 0x02);
+    host.wait(5.0);
+    host.expect("0x00:0x01", 0x22);
+    assert_eq!(host.encoder.motor().rpm(), 500.0, "nothing waits any more");
+    host.put("0x6A", 0x00);
+    // As the calibration has left it, the motor turns as the Wiegand test wants it first: 61.8 s each way.
+    host.enter(0x02);
+    host.put("0x00:0x06", 0x01);
+    host.wait(62.0);
+    host.expect("0x00:0x07", 0x03);
+    assert_eq!(host.encoder.motor().rpm(), -500.0);
+    host.put("0x00:0x06", 0x02);
+    host.wait(62.0);
+    host.expect("0x00:0x07", 0x06);
+    // One that does not is left as it is.
+    let mut host = Host::with("rpm=-500");
+    host.enter(0x01);
+    host.put("0x00:0x00", 0x01);
+    host.wait(5.0);
+    host.expect("0x00:0x01", 0x02);
+    assert_eq!(host.encoder.motor().rpm(), -500.0);
+}

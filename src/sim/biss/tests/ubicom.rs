@@ -205,5 +205,5 @@ fn a_dead_encoder_comes_back_with_the_link() {
     line.wait(0.5);
     assert_ne!(line.ask(READ_TEMPERATURE), "");
     assert_eq!(line.port.encoder().flash().cycles(), 4);
-    assert_eq!(line.port.encoder_mut().rpm(), 0.0);
+    assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
