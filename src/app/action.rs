@@ -11,7 +11,7 @@ use super::signals;
 use super::studio::{SessionId, Tab};
 use super::{Language, Picture, Text, Theme};
 use crate::link::LinkError;
-use crate::profile::{Document, ProfileError};
+use crate::profile::{Document, PlanId, ProfileError};
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::hiperface::Hiperface;
@@ -71,6 +71,8 @@ pub enum Action {
     },
     /// Ask where to save a picture.
     AskPicture(Picture),
+    /// The review of a write, about one session.
+    Review(SessionId, ReviewAction),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
     Hiperface(SessionId, hiperface::Action),
     /// Something in the Signals tab.
@@ -79,6 +81,19 @@ pub enum Action {
     Done(Done),
     /// The system has no thread left for a task.
     NoThread(String),
+}
+
+/// What can be done with the review of a write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReviewAction {
+    /// Write the plan that was shown, and no other.
+    Write(PlanId),
+    /// The toggle with this number the other way round: another plan.
+    Toggle(usize),
+    /// Write although the device counts as worn.
+    ForceWear(bool),
+    /// Close it.
+    Close,
 }
 
 /// What tasks come back with.

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::Text;
-use super::action::{Action, ReadError};
+use super::action::{Action, ReadError, ReviewAction};
 use super::hiperface;
 use super::line::Progressing;
 use super::recorder::Recorder;
+use super::review::Sheet;
 use super::services::{JobEnd, Services};
 use super::session::{DraftDone, Listed, Opening, Phase, Source};
 use super::studio::{SessionId, Tab};
@@ -224,6 +225,24 @@ impl AnyDevice {
     /// A review of a write is open.
     pub fn is_reviewing(&self) -> bool {
         each!(self, own => own.review.is_some())
+    }
+
+    /// The review of a write, where one is on its way.
+    pub fn sheet(&self) -> Option<Sheet> {
+        each!(self, own => {
+            let running = own.session.line().and_then(|line| line.running());
+            let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
+            own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
+        })
+    }
+
+    pub(super) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+        each!(self, own => match action {
+            ReviewAction::Write(plan) => own.write(plan, services),
+            ReviewAction::Toggle(at) => own.plan_with(at, services),
+            ReviewAction::ForceWear(force) => own.force_wear(force),
+            ReviewAction::Close => own.close_review(),
+        })
     }
 
     /// What was recorded of it.

@@ -27,7 +27,7 @@ mod tasks;
 mod texts;
 mod trace;
 
-pub use action::{Action, Desk, Done, FileQuestion, Question};
+pub use action::{Action, Desk, Done, FileQuestion, Question, ReviewAction};
 pub use devices::{AnyDevice, Wish};
 pub use keep::SettingsRead;
 pub use leaving::Patience;

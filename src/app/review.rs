@@ -1,6 +1,9 @@
 //! The review of a write, for every kind of device: what it would do, the consent, how far it is, and what came of it.
 
+use std::path::PathBuf;
+
 use super::Text;
+use crate::profile::PlanId;
 
 /// A write on its way: `C` is what the user wants, `P` what was read and planned for it, `D` what came of it.
 pub struct Review<C, P, D> {
@@ -65,5 +68,136 @@ impl<C, P, D> Review<C, P, D> {
     /// It ended early.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool) {
         self.state = ReviewState::Failed { texts, begun };
+    }
+}
+
+/// An operation of a plan in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OpWords {
+    /// What it changes.
+    pub item: Text,
+    /// What is there now.
+    pub old: Text,
+    /// What will be there.
+    pub new: Text,
+}
+
+/// Something that the user may allow beyond the usual, and that makes another plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Toggle {
+    /// Its words, as a row of the texts.
+    pub word: &'static str,
+    /// What it means, as a row of the texts.
+    pub hint: Option<&'static str>,
+    /// It is allowed.
+    pub is_on: bool,
+}
+
+/// A review as a person sees it, whatever the device.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// What the user wants.
+    pub what: Text,
+    /// How far it is.
+    pub stage: Stage,
+    /// The operations.
+    pub lines: Vec<OpWords>,
+    /// What should make somebody stop and look.
+    pub warnings: Vec<Text>,
+    /// What the plan needs from the person in front of the device.
+    pub needs: Vec<Text>,
+    /// What it costs, beside what this computer has seen the device take.
+    pub cost: Option<Text>,
+    /// What may be allowed beyond the usual.
+    pub toggles: Vec<Toggle>,
+    /// The device counts as worn after it: whether it is to be written all the same.
+    pub force_wear: Option<bool>,
+}
+
+/// How far a review is.
+#[derive(Clone, Debug)]
+pub enum Stage {
+    /// The device is read and the plan made.
+    Planning,
+    /// There is nothing to do.
+    Nothing,
+    /// The plan is shown.
+    Ready(PlanId),
+    /// It is being carried out: operations that are done.
+    Writing(usize),
+    /// It was carried out.
+    Done {
+        /// That it was read back.
+        verified: Text,
+        /// The before-image.
+        backup: Option<PathBuf>,
+        /// What the logbook could not take.
+        logbook: Option<Text>,
+    },
+    /// It cannot be done, or ended early.
+    Failed {
+        /// What happened, and what to do.
+        texts: Vec<Text>,
+        /// Something was written before it ended.
+        begun: bool,
+    },
+}
+
+/// What a kind of device says about its reviews.
+pub trait Reviewed {
+    /// What was read and planned.
+    type Prepared;
+    /// What came of it.
+    type Done;
+
+    /// The plan; `None` where there is nothing to do.
+    fn plan(prepared: &Self::Prepared) -> Option<PlanId>;
+    /// Its operations.
+    fn lines(prepared: &Self::Prepared) -> Vec<OpWords>;
+    /// What should make somebody stop and look.
+    fn warnings(prepared: &Self::Prepared) -> Vec<Text>;
+    /// What it needs from the person in front of the device.
+    fn needs(prepared: &Self::Prepared) -> Vec<Text>;
+    /// What it costs.
+    fn cost(prepared: &Self::Prepared) -> Text;
+    /// The device counts as worn after it.
+    fn is_worn(prepared: &Self::Prepared) -> bool;
+    /// What may be allowed beyond the usual.
+    fn toggles(&self) -> Vec<Toggle>;
+    /// That it was read back, the before-image, what the logbook could not take.
+    fn done(done: &Self::Done) -> (Text, Option<PathBuf>, Option<Text>);
+}
+
+impl<C, P, D> Review<C, P, D>
+where
+    Review<C, P, D>: Reviewed<Prepared = P, Done = D>,
+{
+    /// The review as a person sees it; `done` operations have been carried out.
+    pub(in crate::app) fn sheet(&self, done: usize) -> Sheet {
+        let prepared = self.prepared();
+        let is_over = matches!(self.state, ReviewState::Done(..));
+        let plan = prepared.and_then(Self::plan);
+        let stage = match &self.state {
+            ReviewState::Planning => Stage::Planning,
+            ReviewState::Ready(_) => plan.map_or(Stage::Nothing, Stage::Ready),
+            ReviewState::Writing(_) => Stage::Writing(done),
+            ReviewState::Done(_, own) => {
+                let (verified, backup, logbook) = Self::done(own);
+                Stage::Done { verified, backup, logbook }
+            }
+            ReviewState::Failed { texts, begun } => Stage::Failed { texts: texts.clone(), begun: *begun },
+        };
+        let shown = prepared.filter(|_| !is_over);
+        let costs = shown.filter(|_| plan.is_some());
+        Sheet {
+            what: self.what.clone(),
+            stage,
+            lines: prepared.map(Self::lines).unwrap_or_default(),
+            warnings: shown.map(Self::warnings).unwrap_or_default(),
+            needs: shown.map(Self::needs).unwrap_or_default(),
+            cost: costs.map(Self::cost),
+            toggles: self.toggles(),
+            force_wear: costs.filter(|own| Self::is_worn(own)).map(|_| self.force_wear),
+        }
     }
 }

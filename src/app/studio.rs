@@ -127,6 +127,7 @@ impl Studio {
             Action::AskForget(desk) => self.ask_forget(desk),
             Action::AskTable { desk, visible } => self.ask_table(desk, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
+            Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Signals(action) => self.signals.act(action, &mut self.services),
             Action::Done(done) => self.done(done),

@@ -9,6 +9,7 @@ mod hiperface;
 pub mod icons;
 mod panels;
 pub mod plot;
+mod review;
 mod run;
 mod signals;
 mod skin;

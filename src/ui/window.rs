@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
-use super::{Skin, header, icons, signals};
+use super::{Skin, header, icons, review, signals};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -126,8 +126,8 @@ impl Window {
     }
 
     fn dialogs(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
-        if let Some(encoder) = self.studio.shown().and_then(AnyDevice::hiperface) {
-            hiperface::review_ui(ctx, skin, encoder, actions);
+        if let Some(device) = self.studio.shown() {
+            review::review_ui(ctx, skin, device, actions);
         }
         dialogs::connect_ui(ctx, skin, &self.studio, &mut self.views.connect, actions);
         if let Some(file) = &mut self.views.file

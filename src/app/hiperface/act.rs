@@ -72,11 +72,7 @@ impl Encoder {
             Action::Review => self.review_edits(services),
             Action::Plan(change) => self.plan(change, services),
             Action::PlanAgain(options) => self.plan_again(options, services),
-            Action::ForceWear(force) => {
-                if let Some(review) = &mut self.review {
-                    review.force_wear = force;
-                }
-            }
+            Action::ForceWear(force) => self.force_wear(force),
             Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
             Action::AskSave => {
@@ -206,8 +202,21 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
+    /// Makes the plan again with one of the review's toggles the other way round.
+    pub(in crate::app) fn plan_with(&mut self, toggle: usize, services: &mut Services) {
+        if let Some(options) = self.review.as_ref().and_then(|review| review.toggled(toggle)) {
+            self.plan_again(options, services);
+        }
+    }
+
+    pub(in crate::app) fn force_wear(&mut self, force: bool) {
+        if let Some(review) = &mut self.review {
+            review.force_wear = force;
+        }
+    }
+
     /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
-    fn write(&mut self, shown: PlanId, services: &mut Services) {
+    pub(in crate::app) fn write(&mut self, shown: PlanId, services: &mut Services) {
         if !self.session.is_ready() {
             return;
         }

@@ -1,8 +1,11 @@
 //! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
 
+use std::path::PathBuf;
+
 use crate::app::Text;
 use crate::app::explain;
-use crate::app::review;
+use crate::app::review::{self, OpWords, Reviewed, Toggle};
+use crate::profile::PlanId;
 use crate::profile::hiperface::{HiperfacePlan, Op, RestoreOptions};
 use crate::protocol::hiperface::CodeNumber;
 use crate::worker::hiperface::{Change, Committed, Prepared, WEAR_LIMIT};
@@ -25,6 +28,65 @@ impl Review {
         if let Change::Restore { options, .. } = &mut self.change {
             *options = wanted;
         }
+    }
+
+    /// The options of a restore with one of the review's toggles the other way round.
+    pub(super) fn toggled(&self, at: usize) -> Option<RestoreOptions> {
+        let mut options = self.options()?;
+        let own = match at {
+            0 => &mut options.allow_other_device,
+            1 => &mut options.with_mounting,
+            _ => &mut options.recreate,
+        };
+        *own = !*own;
+        Some(options)
+    }
+}
+
+impl Reviewed for Review {
+    type Prepared = Prepared;
+    type Done = Committed;
+
+    fn plan(prepared: &Prepared) -> Option<PlanId> {
+        (!prepared.plan.is_empty()).then(|| prepared.plan.id())
+    }
+
+    fn lines(prepared: &Prepared) -> Vec<OpWords> {
+        lines(&prepared.plan)
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
+        warnings(prepared)
+    }
+
+    fn needs(prepared: &Prepared) -> Vec<Text> {
+        needs(&prepared.plan)
+    }
+
+    fn cost(prepared: &Prepared) -> Text {
+        cost(prepared)
+    }
+
+    fn is_worn(prepared: &Prepared) -> bool {
+        is_worn(prepared)
+    }
+
+    fn toggles(&self) -> Vec<Toggle> {
+        let Some(options) = self.options() else { return Vec::new() };
+        vec![
+            Toggle { word: "review.allow_other", hint: None, is_on: options.allow_other_device },
+            Toggle {
+                word: "review.with_mounting",
+                hint: Some("review.with_mounting_hint"),
+                is_on: options.with_mounting,
+            },
+            Toggle { word: "review.recreate", hint: Some("review.recreate_hint"), is_on: options.recreate },
+        ]
+    }
+
+    fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {
+        let logbook = done.logbook_warning.as_ref().map(explain::logbook);
+        (explain::hiperface::verified(&done.written), done.backup.clone(), logbook)
     }
 }
 
@@ -93,7 +155,7 @@ pub fn cost(prepared: &Prepared) -> Text {
 }
 
 /// One line of the plan.
-pub fn lines(plan: &HiperfacePlan) -> Vec<explain::hiperface::OpWords> {
+pub fn lines(plan: &HiperfacePlan) -> Vec<OpWords> {
     plan.ops.iter().map(explain::hiperface::op).collect()
 }
 

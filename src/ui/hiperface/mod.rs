@@ -4,12 +4,9 @@ mod backups;
 mod commutation;
 mod encoder;
 mod memory;
-mod review;
 mod setup;
 mod values;
 mod wiring;
-
-pub(super) use review::review_ui;
 
 use egui::{ScrollArea, Ui};
 

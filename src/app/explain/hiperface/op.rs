@@ -3,22 +3,12 @@
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
 use crate::app::explain::plain;
+use crate::app::review::OpWords;
 use crate::bits::hex;
 use crate::profile::hiperface::Op;
 use crate::protocol::hiperface::DataFieldStatus;
 
-/// One operation: what it changes, and from what to what. An access code is not told.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OpWords {
-    /// What it changes.
-    pub item: Text,
-    /// What is there now.
-    pub old: Text,
-    /// What will be there.
-    pub new: Text,
-}
-
-/// An operation in words.
+/// An operation in words. An access code is not told.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),

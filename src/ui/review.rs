@@ -1,0 +1,193 @@
+//! The review of a write, whatever the device: every operation old → new, what it costs and needs, the consent, how far it
+//! is, what came of it.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use super::controls::{enabled_button, modal, paragraph, primary, row, spinner};
+use super::{Skin, icons};
+use crate::app::review::{OpWords, Sheet, Stage};
+use crate::app::{Action, AnyDevice, ReviewAction};
+
+/// Draws the dialog, where a write is on its way.
+pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+    let Some(sheet) = device.sheet() else { return };
+    let width = (ctx.content_rect().width() - 64.0).min(760.0);
+    modal(ctx, skin, "review", width, |ui| {
+        ui.label(skin.heading(skin.words(&sheet.what)));
+        ui.label(skin.label(device.name()));
+        ui.add_space(skin.space.between);
+        content(ui, skin, device, &sheet, actions);
+    });
+}
+
+fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions: &mut Vec<Action>) {
+    match &sheet.stage {
+        Stage::Planning => {
+            ui.horizontal(|ui| {
+                spinner(ui, skin);
+                ui.label(skin.label(skin.say("review.planning")));
+            });
+            buttons(ui, skin, device, actions, "review.cancel", |_, _| {});
+        }
+        Stage::Nothing => {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                ui.label(skin.say("review.nothing"));
+            });
+            remarks(ui, skin, sheet);
+            options(ui, skin, device, sheet, actions);
+            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+        }
+        Stage::Ready(plan) => {
+            operations(ui, skin, &sheet.lines, None);
+            remarks(ui, skin, sheet);
+            options(ui, skin, device, sheet, actions);
+            ui.label(skin.label(skin.say("review.way")));
+            buttons(ui, skin, device, actions, "review.cancel", |ui, actions| {
+                let word = skin.say("review.write");
+                if primary(ui, skin, device.is_ready(), icons::DOWNLOAD_SIMPLE, &word).clicked() {
+                    actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
+                }
+            });
+        }
+        Stage::Writing(done) => {
+            operations(ui, skin, &sheet.lines, Some(*done));
+            let part = *done as f32 / sheet.lines.len().max(1) as f32;
+            ui.add(egui::ProgressBar::new(part).desired_height(4.0));
+            let stopping = device.running().is_some_and(|running| running.stopping);
+            ui.horizontal(|ui| {
+                ui.label(skin.label(skin.say("review.writing")));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if enabled_button(ui, !stopping, icons::STOP, &skin.say("review.stop")).clicked() {
+                        actions.push(Action::Stop);
+                    }
+                });
+            });
+        }
+        Stage::Done { verified, backup, logbook } => {
+            operations(ui, skin, &sheet.lines, Some(usize::MAX));
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
+                ui.label(skin.words(verified));
+            });
+            if let Some(backup) = backup {
+                row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
+            }
+            if let Some(why) = logbook {
+                remark(ui, icons::WARNING, skin.palette.warn, &skin.words(why));
+            }
+            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+        }
+        Stage::Failed { texts, begun } => {
+            let (icon, colour) =
+                if *begun { (icons::WARNING, skin.palette.warn) } else { (icons::X_CIRCLE, skin.palette.bad) };
+            for (at, text) in texts.iter().enumerate() {
+                ui.horizontal_top(|ui| {
+                    ui.label(RichText::new(if at == 0 { icon } else { "  " }).color(colour));
+                    ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
+                });
+            }
+            options(ui, skin, device, sheet, actions);
+            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+        }
+    }
+}
+
+fn buttons(
+    ui: &mut Ui,
+    skin: &Skin,
+    device: &AnyDevice,
+    actions: &mut Vec<Action>,
+    close: &'static str,
+    primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
+) {
+    ui.add_space(skin.space.groups);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        primary(ui, actions);
+        if enabled_button(ui, true, "", &skin.say(close)).clicked() {
+            actions.push(Action::Review(device.id(), ReviewAction::Close));
+        }
+    });
+}
+
+/// The operations; while they are carried out, with the number of those that are done. What is written is never cut off.
+fn operations(ui: &mut Ui, skin: &Skin, lines: &[OpWords], done: Option<usize>) {
+    let palette = skin.palette;
+    skin.sunken().show(ui, |ui| {
+        ScrollArea::vertical().id_salt("operations").max_height(280.0).auto_shrink([false, true]).show(ui, |ui| {
+            for (at, line) in lines.iter().enumerate() {
+                if at > 0 {
+                    ui.separator();
+                }
+                ui.horizontal(|ui| {
+                    let is_done = done.is_some_and(|done| at < done);
+                    let icon = if is_done { icons::CHECK } else { icons::PENCIL_SIMPLE };
+                    let colour = if is_done { palette.good } else { palette.muted };
+                    ui.label(RichText::new(icon).color(colour));
+                    ui.label(skin.words(&line.item));
+                });
+                let heads = if done == Some(usize::MAX) {
+                    ["review.before", "review.after"]
+                } else {
+                    ["review.old", "review.new"]
+                };
+                let words = [(&line.old, palette.muted), (&line.new, palette.staged)];
+                for (head, (words, colour)) in heads.into_iter().zip(words) {
+                    ui.horizontal_top(|ui| {
+                        ui.spacing_mut().interact_size.y = 18.0;
+                        ui.add_space(skin.space.around);
+                        let head = ui.label(skin.caption(skin.say(head)));
+                        ui.add_space((HEADS - head.rect.width()).max(0.0));
+                        paragraph(ui, skin.mono(skin.words(words)).color(colour));
+                    });
+                }
+            }
+        });
+    });
+    ui.add_space(skin.space.between);
+}
+
+/// Width of the column that says which is old and which is new.
+const HEADS: f32 = 56.0;
+
+fn remarks(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
+    let palette = skin.palette;
+    for text in &sheet.warnings {
+        remark(ui, icons::WARNING, palette.warn, &skin.words(text));
+    }
+    for text in &sheet.needs {
+        remark(ui, icons::INFO, palette.accent, &skin.words(text));
+    }
+    if let Some(cost) = &sheet.cost {
+        remark(ui, icons::MEMORY, palette.muted, &skin.words(cost));
+    }
+}
+
+fn remark(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: &str) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, words);
+    });
+}
+
+/// What may be allowed beyond the usual, and writing although the device counts as worn.
+fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions: &mut Vec<Action>) {
+    if !sheet.toggles.is_empty() {
+        ui.add_space(skin.space.inside);
+    }
+    for (at, toggle) in sheet.toggles.iter().enumerate() {
+        let mut is_on = toggle.is_on;
+        let mut response = ui.checkbox(&mut is_on, skin.say(toggle.word));
+        if let Some(hint) = toggle.hint {
+            response = response.on_hover_text(skin.say(hint));
+        }
+        if response.changed() {
+            actions.push(Action::Review(device.id(), ReviewAction::Toggle(at)));
+        }
+    }
+    if let Some(mut force) = sheet.force_wear
+        && ui.checkbox(&mut force, skin.say("review.force_wear")).changed()
+    {
+        actions.push(Action::Review(device.id(), ReviewAction::ForceWear(force)));
+    }
+}
