@@ -160,13 +160,15 @@ impl From<LinkError> for LineError {
 pub(super) struct Line<'a> {
     /// All that the job got.
     pub(super) ctx: Ctx<'a>,
+    /// How long one goes on asking without an answer, where that is not the usual.
+    pub(super) patience: Option<Duration>,
     shielded: bool,
 }
 
 impl<'a> Line<'a> {
     /// The line of a job.
     pub(super) fn new(ctx: Ctx<'a>) -> Self {
-        Line { ctx, shielded: false }
+        Line { ctx, patience: None, shielded: false }
     }
 
     /// Now.
@@ -275,7 +277,11 @@ impl<'a> Line<'a> {
         state.damaged += 1;
         // The first try counts as well: at 600 bit/s it alone may take three seconds.
         let since = *state.troubled_since.get_or_insert(now - longest);
-        tries < TRIES && (now + longest).since(since) < PATIENCE
+        let next_end = (now + longest).since(since);
+        match self.patience {
+            None => tries < TRIES && next_end < PATIENCE,
+            Some(patience) => next_end < patience,
+        }
     }
 
     /// Listens on after a silence, longer each time: what comes now is the reply to a request before, on a wire that is
@@ -284,7 +290,9 @@ impl<'a> Line<'a> {
     /// # Errors
     /// See [`LineError`].
     pub(super) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
-        let patience = state.margin.saturating_mul(1 << tries.min(8)).min(LONGEST_MARGIN);
+        // Who is known to be silent for long is asked often.
+        let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
+        let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
         let end = self.now() + patience;
         let mut late = Vec::new();
         while late.is_empty() {

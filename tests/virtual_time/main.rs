@@ -2,6 +2,7 @@
 //! every moment of the line in the test's hands. One module a behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss;
 mod echo;
 mod find;
 mod interruption;

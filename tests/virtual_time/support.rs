@@ -10,6 +10,7 @@ use encoder_studio::link::{ByteLink, Clock, Direction, LinkError, LinkErrorKind,
 use encoder_studio::profile::hiperface::{HiperfaceProfile, RestoreOptions};
 use encoder_studio::profile::{Body, Consent, Document};
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
+use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::hiperface::{Bus, Config};
 use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
@@ -68,8 +69,8 @@ pub(crate) struct TestLink {
 }
 
 impl TestLink {
-    pub(crate) fn new(bus: &Arc<Mutex<Bus>>, clock: Arc<dyn Clock>, tap: Arc<Mutex<Tap>>) -> Self {
-        TestLink { line: SimLink::connect(bus.clone(), clock.clone()), clock, tap }
+    pub(crate) fn new(device: Arc<Mutex<dyn ByteDevice>>, clock: Arc<dyn Clock>, tap: Arc<Mutex<Tap>>) -> Self {
+        TestLink { line: SimLink::connect(device, clock.clone()), clock, tap }
     }
 
     fn check_plug(&self) -> Result<(), LinkError> {
@@ -166,7 +167,7 @@ impl Desk {
     ) -> Self {
         let tap = Arc::<Mutex<Tap>>::default();
         let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
-        let mut link = TestLink::new(&bus, clock.clone(), tap.clone());
+        let mut link = TestLink::new(bus.clone(), clock.clone(), tap.clone());
         link.set_format(station.format).unwrap();
         let (store, types) = (Store::at(folder.path()), EncoderTypes::built_in());
         let mut session = Session::new(Box::new(link), clock.clone(), station, store, types, true);

@@ -28,7 +28,7 @@ pub(crate) struct Bench {
 fn bench(query: &str, clock: Arc<dyn Clock>) -> Bench {
     let folder = tempfile::tempdir().unwrap();
     let tap = Arc::<Mutex<Tap>>::default();
-    let link = TestLink::new(&Arc::new(Mutex::new(bus(query))), clock.clone(), tap.clone());
+    let link = TestLink::new(Arc::new(Mutex::new(bus(query))), clock.clone(), tap.clone());
     let store = Store::at(folder.path());
     let session =
         Session::new(Box::new(link), clock.clone(), Station::new(MARGIN), store, EncoderTypes::built_in(), true);

@@ -16,6 +16,8 @@ pub struct AddressError(String);
 impl RegisterAddress {
     /// Registers of a bank, and direct ones.
     pub const BANK_SIZE: u8 = 0x40;
+    /// 40h, which every encoder has: the bank of 00h…3Fh.
+    pub const BANK_SELECT: RegisterAddress = RegisterAddress(0);
 
     /// A direct register, 40h…7Fh.
     pub const fn direct(address: u8) -> Option<Self> {

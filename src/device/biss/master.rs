@@ -1,0 +1,255 @@
+//! The host's side of the line: what is asked again, what is read back, and what is asked twice. One exchange is in
+//! [`ubicom`].
+//!
+//! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
+
+mod ubicom;
+
+use std::time::Duration;
+
+use super::error::{Asked, Damage};
+use super::position::PositionReading;
+use super::{Error, Station};
+use crate::device::line::{Line, TRIES};
+use crate::link::Ctx;
+use crate::protocol::biss::RegisterAddress;
+use crate::protocol::ubicom::{BYTE_TIME_OUT, Request, order_told_by};
+use crate::units::Moment;
+
+/// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
+const SILENCES: u32 = 3;
+
+/// The host's side of the line to a BiSS encoder, over either way.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+/// An exchange that gave no answer.
+enum Trouble {
+    /// Nothing came back but, maybe, our own bytes.
+    Silence {
+        /// Our own bytes came back.
+        echo_heard: bool,
+    },
+    /// Something came back and is broken.
+    Damage(Damage),
+}
+
+/// How one exchange ended. The outer error ends everything; the inner one may be tried again.
+type Attempt<T> = Result<Result<T, Trouble>, Error>;
+
+/// What an encoder did with a value.
+enum Taken {
+    /// It has it.
+    Yes,
+    /// It refused; with what the register gives back, where the way tells that.
+    No(Option<u8>),
+}
+
+impl<'a> Master<'a> {
+    /// A master on this line, for one job: it has its patience before it.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// What is known about the line and the encoder.
+    pub fn station(&mut self) -> &mut Station {
+        self.station
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    /// Waits; ends early when the user wishes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.shield(true);
+        let result = work(self);
+        self.line.shield(before);
+        result
+    }
+
+    /// Does what an encoder may leave without an answer for so long: in it, reading is repeated until then, however often.
+    pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.patience.replace(patience);
+        let result = work(self);
+        self.line.patience = before;
+        result
+    }
+
+    /// Does what reads something that is to be kept: in it, every register has to come twice.
+    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.station.thorough, true);
+        let result = work(self);
+        self.station.thorough = before;
+        result
+    }
+
+    /// Reads a register. Where the line has damaged something before, its value has to come twice.
+    ///
+    /// # Errors
+    /// When every try failed, when there is no such register, or when the user wished an end.
+    pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
+        self.be_ready()?;
+        let asked = Asked::Read(address);
+        match self.read_confirmed(asked, |master| master.read_once(address)) {
+            Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
+            result => result,
+        }
+    }
+
+    /// Reads registers one after the other, by their global addresses: behind a bank comes the next.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); [`Error::OutOfRange`] behind the last that there can be.
+    pub fn read_run(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
+        let none = || Error::OutOfRange { start, count };
+        let count_16 = u16::try_from(count).map_err(|_| none())?;
+        let end = start.global().checked_add(count_16).ok_or_else(none)?;
+        let place = |global| RegisterAddress::from_global(global).ok_or_else(none);
+        let places = (start.global()..end).map(place).collect::<Result<Vec<_>, _>>()?;
+        places.into_iter().map(|address| self.read(address)).collect()
+    }
+
+    /// Writes a register. Where no answer tells whether it was taken, it is read back as far as that tells; only what was
+    /// not taken is sent again.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; [`Error::Unclear`] where nothing tells whether it was taken, as with a command; or it was not
+    /// taken after five tries. With [`Error::Cancelled`] it was not.
+    pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
+        self.be_ready()?;
+        let asked = Asked::Write(address, value);
+        let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let trouble = match self.write_once(address, value)? {
+                Ok(Taken::Yes) => {
+                    self.station.line.recovered();
+                    return Ok(());
+                }
+                Ok(Taken::No(reads)) => {
+                    self.station.line.recovered();
+                    return Err(Error::Refused { address, value, reads });
+                }
+                Err(trouble) => trouble,
+            };
+            let failed = self.failed(asked, tries, &trouble);
+            let failure = self.may_try_again(tries, trouble, failed.clone());
+            if !self.station.tells_back(address) {
+                return Err(unclear(failed));
+            }
+            // From here on the line has to tell what happened, also when the user wishes an end.
+            match self.shielded(|master| master.read(address)) {
+                Ok(reads) if reads == value => return Ok(()),
+                Ok(_) => failure?,
+                Err(cause) => return Err(unclear(cause)),
+            }
+        }
+    }
+
+    /// Reads the position.
+    ///
+    /// # Errors
+    /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
+    pub fn position(&mut self) -> Result<PositionReading, Error> {
+        self.ask(Asked::Position, |master| master.position_once())
+    }
+
+    /// What has to be known before the first register: the order of a register number's bytes.
+    fn be_ready(&mut self) -> Result<(), Error> {
+        if self.station.order.is_some() {
+            return Ok(());
+        }
+        let Request::Read { register } = Request::PROBE else { return Ok(()) };
+        let asked = Asked::Read(RegisterAddress::from_global(register).unwrap_or(RegisterAddress::BANK_SELECT));
+        let answer = self.read_confirmed(asked, |master| master.probe_once())?;
+        let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
+        self.station.order = Some(order);
+        Ok(())
+    }
+
+    /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
+    fn ask<T>(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match once(self)? {
+                Ok(answer) => {
+                    self.station.line.recovered();
+                    return Ok(answer);
+                }
+                Err(trouble) => {
+                    let failed = self.failed(asked, tries, &trouble);
+                    self.may_try_again(tries, trouble, failed)?;
+                }
+            }
+        }
+    }
+
+    /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
+    fn read_confirmed(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<u8>) -> Result<u8, Error> {
+        let mut value = self.ask(asked, &mut once)?;
+        for _ in 0..TRIES {
+            if !self.station.reads_twice() {
+                return Ok(value);
+            }
+            let again = self.ask(asked, &mut once)?;
+            if again == value {
+                return Ok(value);
+            }
+            value = again;
+        }
+        Err(Error::Damaged { asked, tries: TRIES, cause: Damage::Inconsistent })
+    }
+
+    /// What a try that failed becomes when there is no other.
+    fn failed(&self, asked: Asked, tries: u32, trouble: &Trouble) -> Error {
+        match trouble {
+            Trouble::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
+            Trouble::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+        }
+    }
+
+    /// What is right about a broken line before the next try; `failed` when there is to be none.
+    fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
+        let longest = self.longest_exchange();
+        if !self.line.may_ask_again(&mut self.station.line, tries, longest) {
+            return Err(failed);
+        }
+        match trouble {
+            Trouble::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
+            // A frame that the encoder still waits for the end of is over after that.
+            Trouble::Damage(_) => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
+        }
+        Ok(())
+    }
+
+    /// A register gave no answer: whether another one does, again and again, so that it is this one that is not there.
+    /// Who is known to be silent for long is not asked.
+    fn is_silent_only_there(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+        if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
+            return Ok(false);
+        }
+        for _ in 0..SILENCES {
+            let answers = self.read_once(RegisterAddress::BANK_SELECT)?.is_ok();
+            if !answers || !matches!(self.read_once(address)?, Err(Trouble::Silence { .. })) {
+                return Ok(false);
+            }
+            self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?;
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,237 @@
+//! Registers and position over the configuration pin: echo, byte order, noise, silence, refusals, and writes whose answer
+//! is lost.
+
+use std::time::Duration;
+
+use encoder_studio::device::biss::{Damage, Echo, Error};
+use encoder_studio::link::{Cancel, Clock, Direction};
+use encoder_studio::protocol::biss::ByteOrder;
+
+use super::support::{Pin, at};
+
+/// UBICOM reference 6: temperature 75 is 25 °C, 1234h turns and 18000h steps.
+#[test]
+fn registers_and_position_are_read_with_the_published_frames() {
+    let mut pin = Pin::new("temperature=25");
+    assert_eq!(pin.master().read(at("0x66")), Ok(75));
+    let reading = pin.master().position().unwrap();
+    assert_eq!((reading.turns, reading.steps, reading.raw), (0x1234, 0x18000, 0x2469_8000));
+    assert_eq!((reading.position(), reading.degrees()), (0x2469_8000, 270.0));
+    assert_eq!((reading.error, reading.warning, reading.crc_errors), (None, None, 0));
+    assert_eq!(pin.master().read_run(at("0x7E"), 2), Ok(b"Fr".to_vec()));
+    let sent = ["80 01 01 02 00 01 00 7A", "80 01 01 02 00 26 00 55", "80 01 03 01 00 01 79"];
+    assert_eq!(pin.shown(Direction::Sent)[..3], sent);
+    let received = ["80 01 01 01 00 02 7A", "80 01 01 01 00 4B 31", "80 01 03 05 00 00 80 69 24 00 69"];
+    assert_eq!(pin.shown(Direction::Received)[..3], received);
+    assert_eq!(pin.station.line.damaged, 0);
+}
+
+/// Half a turn in a second, taken when the encoder begins to answer: a millisecond after the request's seven bytes.
+#[test]
+fn a_position_belongs_to_the_moment_of_its_first_bit() {
+    let mut pin = Pin::new("rpm=30&position=0");
+    let reading = pin.master().position().unwrap();
+    let seconds = reading.at.since_start().as_secs_f64();
+    assert!((seconds - (0.001 + 7.0 * 10.0 / 115_200.0)).abs() < 1e-7, "{seconds}");
+    assert!((f64::from(reading.steps) - seconds * 65_536.0).abs() < 1.0, "{reading:?}");
+}
+
+#[test]
+fn the_byte_order_is_probed_once_or_given() {
+    for (word, order) in [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)] {
+        for given in [None, Some(order)] {
+            let mut pin = Pin::new(&format!("order={word}&temperature=30"));
+            pin.station.order = given;
+            assert_eq!(pin.master().read(at("0x66")), Ok(80), "{word}");
+            // 02:05h, the minimum time-out: 1Ch.
+            assert_eq!(pin.master().read(at("0x02:0x05")), Ok(0x1C), "{word}");
+            assert_eq!(pin.station.order, Some(order));
+            assert_eq!(pin.tap().sent.len(), if given.is_none() { 3 } else { 2 });
+        }
+    }
+}
+
+#[test]
+fn echo_is_learned_and_removed_whatever_was_told() {
+    for (echoes, told) in [("on", Echo::On), ("off", Echo::Off)] {
+        for setting in [Echo::Unknown, told] {
+            let mut pin = Pin::new(&format!("echo={echoes}"));
+            pin.station.line.echo = setting;
+            assert_eq!(pin.master().read_run(at("0x02:0x00"), 4), Ok(vec![0x01, 0x02, 0x04, 0x43]));
+            assert_eq!(pin.master().write(at("0x40"), 5), Ok(()));
+            assert_eq!(pin.port().encoder().bank(), 5);
+            assert_eq!((pin.station.line.echo, pin.station.line.damaged), (told, 0), "{setting:?}");
+        }
+    }
+    // A reply without the echo that belongs before it answers something else.
+    let mut pin = Pin::new("echo=off");
+    pin.station.line.echo = Echo::On;
+    let error = pin.master().read(at("0x66")).unwrap_err();
+    assert!(matches!(error, Error::Damaged { cause: Damage::Echo, tries: 5, .. }), "{error}");
+}
+
+#[test]
+fn silence_is_told_after_five_tries_and_within_the_patience() {
+    let mut pin = Pin::new("fault=silent-after:0");
+    pin.station.order = Some(ByteOrder::LowFirst);
+    let error = pin.master().read(at("0x66")).unwrap_err();
+    assert_eq!(error.to_string(), "no reply while reading register 0x66 (5 tries)");
+    assert!(error.is_lost());
+    assert!(pin.now() < Duration::from_secs(10), "{:?}", pin.now());
+    let mut echoing = Pin::new("fault=silent-after:0&echo=on");
+    echoing.station.order = Some(ByteOrder::LowFirst);
+    let error = echoing.master().position().unwrap_err();
+    assert!(matches!(error, Error::NoReply { echo_heard: true, .. }), "{error}");
+}
+
+/// An encoder that answers says nothing to a register that it does not have: bank 44h of the kit encoder.
+#[test]
+fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
+    let mut pin = Pin::new("");
+    let error = pin.master().read(at("0x44:0x00")).unwrap_err();
+    assert_eq!(error.to_string(), "the encoder has no register 0x44:0x00");
+    assert!(!error.is_lost());
+    let beyond = pin.master().read_run(at("0xFF:0x3F"), 2).unwrap_err();
+    assert_eq!(beyond, Error::OutOfRange { start: at("0xFF:0x3F"), count: 2 });
+    assert_eq!(pin.master().read_run(at("0xFF:0x3F"), 0), Ok(vec![]));
+    assert!(matches!(pin.master().read_run(at("0x40"), usize::MAX), Err(Error::OutOfRange { .. })));
+}
+
+#[test]
+fn a_refusal_is_told_and_not_repeated() {
+    let mut pin = Pin::new("");
+    let error = pin.master().write(at("0x6A"), 7).unwrap_err();
+    assert_eq!(error, Error::Refused { address: at("0x6A"), value: 7, reads: None });
+    assert_eq!(pin.tap().sent.len(), 2, "the probe, and once");
+    assert_eq!(pin.master().write(at("0x6B"), 0x2A), Ok(()));
+    assert_eq!(pin.master().write(at("0x6A"), 7), Ok(()));
+    assert_eq!(pin.master().read(at("0x6A")), Ok(7));
+}
+
+/// The request, or its answer, is lost: what is kept is read back, and sent again only where it has to be.
+#[test]
+fn a_write_whose_answer_is_lost_is_read_back() {
+    for request_lost in [false, true] {
+        let mut pin = Pin::new("");
+        pin.station.order = Some(ByteOrder::LowFirst);
+        pin.tap().swallow_request = request_lost.then_some(0);
+        pin.tap().swallow_reply = (!request_lost).then_some(0);
+        assert_eq!(pin.master().write(at("0x6B"), 0x2A), Ok(()));
+        assert_eq!(pin.master().read(at("0x6B")), Ok(0x2A));
+        let writes = pin.tap().sent.iter().filter(|frame| frame[2] == 0x02).count();
+        assert_eq!(writes, if request_lost { 2 } else { 1 });
+    }
+}
+
+/// The start of a Wiegand test: the encoder cannot be asked whether it has heard it.
+#[test]
+fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
+    for request_lost in [false, true] {
+        let mut pin = Pin::new("rpm=1000");
+        pin.master().write(at("0x6B"), 0x2A).unwrap();
+        pin.master().write(at("0x6A"), 0x02).unwrap();
+        let next = pin.tap().sent.len();
+        pin.tap().swallow_request = request_lost.then_some(next);
+        pin.tap().swallow_reply = (!request_lost).then_some(next);
+        let error = pin.master().write(at("0x00:0x06"), 0x01).unwrap_err();
+        assert!(matches!(error, Error::Unclear { value: 0x01, .. }), "{error}");
+        assert_eq!(pin.tap().sent.len(), next + 1);
+    }
+}
+
+#[test]
+fn a_write_that_cannot_be_read_back_is_unclear() {
+    let mut pin = Pin::new("");
+    pin.station.order = Some(ByteOrder::LowFirst);
+    pin.tap().mute_from = Some(0);
+    let error = pin.master().write(at("0x6B"), 0x2A).unwrap_err();
+    assert!(matches!(&error, Error::Unclear { cause, .. } if matches!(**cause, Error::NoReply { .. })), "{error}");
+    assert!(error.is_lost());
+    assert!(pin.now() < Duration::from_secs(10), "{:?}", pin.now());
+}
+
+#[test]
+fn an_end_is_heard_between_two_exchanges_and_not_in_a_shield() {
+    let mut pin = Pin::new("");
+    pin.cancel = Cancel::after(3);
+    assert_eq!(pin.master().read_run(at("0x02:0x00"), 64), Err(Error::Cancelled));
+    assert_eq!(pin.tap().sent.len(), 3);
+    let mut master = pin.master();
+    assert_eq!(master.wait(Duration::from_secs(1)), Err(Error::Cancelled));
+    assert_eq!(master.shielded(|master| master.read(at("0x41"))), Ok(0x02));
+    assert_eq!(master.read(at("0x41")), Err(Error::Cancelled), "the shield ends");
+}
+
+/// A calibrating encoder says nothing for five seconds: without patience that is an error, with it the status comes.
+#[test]
+fn who_is_silent_for_long_is_waited_for() {
+    let mut pin = Pin::new("rpm=-500&calibration=7");
+    for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x01), ("0x00:0x00", 0x01)] {
+        pin.master().write(at(place), value).unwrap();
+    }
+    let started = pin.now();
+    assert!(matches!(pin.master().read(at("0x00:0x01")), Err(Error::NoReply { .. })));
+    let status = pin.master().with_patience(Duration::from_secs(10), |master| master.read(at("0x00:0x01")));
+    assert_eq!(status, Ok(0x02));
+    let silent = pin.now() - started;
+    assert!((7.0..7.5).contains(&silent.as_secs_f64()), "{silent:?}");
+    let mut dead = Pin::new("fault=silent-after:1");
+    dead.master().read(at("0x41")).unwrap_err();
+    let from = dead.now();
+    dead.master().with_patience(Duration::from_secs(10), |master| master.read(at("0x41"))).unwrap_err();
+    assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
+}
+
+/// No value is ever wrong without two damaged frames whose sums fit; with confirmation none is in these runs.
+#[test]
+fn a_noisy_line_gives_right_values_or_errors() {
+    let (mut right, mut failed) = (0, 0);
+    for noise in ["drop:0.02", "flip:0.02", "garbage:0.02", "drop:0.01,flip:0.01,garbage:0.01"] {
+        for seed in 0..12 {
+            let mut pin = Pin::new(&format!("seed={seed}&fault={noise}&temperature=25"));
+            for _ in 0..20 {
+                for (place, truth) in [("0x66", 75), ("0x02:0x0F", 0xF4), ("0x03:0x0C", 17), ("0x7E", b'F')] {
+                    match pin.master().read(at(place)) {
+                        Ok(value) => {
+                            assert_eq!(value, truth, "{noise}, seed {seed}, {place}");
+                            right += 1;
+                        }
+                        Err(Error::Damaged { .. } | Error::NoReply { .. }) => failed += 1,
+                        Err(other) => panic!("{noise}, seed {seed}: {other}"),
+                    }
+                }
+            }
+        }
+    }
+    println!("{right} right, {failed} errors");
+    assert!(right > 3700, "{right} of 3840");
+}
+
+#[test]
+fn writes_over_a_noisy_line_end_as_they_say() {
+    for noise in ["drop:0.03", "flip:0.03", "garbage:0.03"] {
+        for seed in 0..20 {
+            let mut pin = Pin::new(&format!("seed={seed}&fault={noise}"));
+            for value in 1..20 {
+                let before = pin.port().encoder().bank();
+                match pin.master().write(at("0x40"), value) {
+                    Ok(()) => assert_eq!(pin.port().encoder().bank(), value, "{noise}, seed {seed}"),
+                    Err(Error::Unclear { .. }) => {}
+                    Err(error) => assert_eq!(pin.port().encoder().bank(), before, "{noise}, seed {seed}: {error}"),
+                }
+            }
+        }
+    }
+}
+
+/// A false beginning of a frame hides what follows until it is over; 20 ms of silence end it on both sides.
+#[test]
+fn a_line_is_found_again_after_garbage() {
+    let mut pin = Pin::new("temperature=25");
+    pin.tap().foreign.extend([0x80, 0x01, 0x01, 0x3F, 0x00]);
+    assert_eq!(pin.master().read(at("0x66")), Ok(75));
+    pin.link_send(&[0x80, 0x01, 0x01, 0x02]);
+    let from = pin.clock.now();
+    assert_eq!(pin.master().read(at("0x66")), Ok(75));
+    assert!(pin.clock.now().since(from) < Duration::from_secs(1));
+}

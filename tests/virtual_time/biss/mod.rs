@@ -1,0 +1,4 @@
+//! A BiSS encoder at the end of its line.
+
+mod master;
+mod support;
