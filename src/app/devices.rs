@@ -69,7 +69,7 @@ impl AnyDevice {
         services: &Services,
     ) -> Self {
         match &document.body {
-            Body::Hiperface(_) => {
+            Body::Hiperface(_) | Body::Biss(_) => {
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, types, services)))
             }
         }

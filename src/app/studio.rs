@@ -404,11 +404,19 @@ fn is_capture(path: &Path) -> bool {
 
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
-    let result = read_profile(&path).map(Box::new);
+    let result = read_profile(&path).and_then(shown).map(Box::new);
     let key = file_key(&path);
     // Where there is no profile, nobody waits for the table.
     let types = if result.is_ok() { store.encoder_types() } else { Ok(EncoderTypes::built_in()) };
     Action::Done(Done::Read { path, key, result, types })
+}
+
+/// The window shows profiles of HIPERFACE encoders.
+fn shown(document: Document) -> Result<Document, ReadError> {
+    match document.body.hiperface() {
+        Some(_) => Ok(document),
+        None => Err(ReadError::Profile(document.body.is_not(crate::protocol::hiperface::KIND))),
+    }
 }
 
 pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {

@@ -3,10 +3,11 @@
 use ron::Value;
 use ron::error::SpannedError;
 
+use super::biss::BissProfile;
 use super::hiperface::HiperfaceProfile;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::unique_names::UniqueNames;
-use crate::protocol::hiperface::KIND;
+use crate::protocol::{biss, hiperface};
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -29,6 +30,8 @@ pub struct Document {
 pub enum Body {
     /// A HIPERFACE encoder.
     Hiperface(HiperfaceProfile),
+    /// A BiSS encoder.
+    Biss(BissProfile),
 }
 
 /// Why a text is not a profile.
@@ -53,8 +56,19 @@ pub enum ProfileError {
         known: u32,
     },
     /// Not a kind of device that this program saves.
-    #[error("device {0:?}; this program knows \"hiperface\"")]
-    Device(String),
+    #[error("device {found:?}; this program knows {}", quoted_kinds())]
+    Device {
+        /// What the file says.
+        found: String,
+    },
+    /// A kind of device that this program saves, and not the one that is asked for.
+    #[error("a profile of a {found} device where one of a {wanted} device is needed")]
+    OtherKind {
+        /// What the file says.
+        found: &'static str,
+        /// What is needed.
+        wanted: &'static str,
+    },
     /// Something has to be there and is not.
     #[error("{path} is missing")]
     Missing {
@@ -110,8 +124,9 @@ impl Document {
         let saved = entries.optional("saved", "a text")?;
         let note = entries.optional("note", "a text")?;
         let body = match device.as_str() {
-            KIND => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
-            _ => return Err(ProfileError::Device(device)),
+            hiperface::KIND => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
+            biss::KIND => Body::Biss(BissProfile::read(&mut entries)?),
+            _ => return Err(ProfileError::Device { found: device }),
         };
         Ok(Document { saved, note, body, unknown: entries.rest() })
     }
@@ -130,6 +145,7 @@ impl Document {
         }
         match &self.body {
             Body::Hiperface(profile) => profile.write(&mut writer),
+            Body::Biss(profile) => profile.write(&mut writer),
         }
         writer.unknown(&self.unknown);
         writer.close(')');
@@ -138,10 +154,68 @@ impl Document {
 
     /// The word for the kind of device, as on the command line.
     pub fn device(&self) -> &'static str {
-        match self.body {
-            Body::Hiperface(_) => KIND,
+        self.body.kind()
+    }
+}
+
+impl Body {
+    /// Kinds of devices that this program saves, by their words on the command line.
+    pub const KINDS: [&'static str; 2] = [hiperface::KIND, biss::KIND];
+
+    /// The word for the kind of device.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Body::Hiperface(_) => hiperface::KIND,
+            Body::Biss(_) => biss::KIND,
         }
     }
+
+    /// It is of another kind of device than the one asked for.
+    pub fn is_not(&self, wanted: &'static str) -> ProfileError {
+        ProfileError::OtherKind { found: self.kind(), wanted }
+    }
+
+    /// The profile of a HIPERFACE encoder.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_hiperface(self) -> Result<HiperfaceProfile, ProfileError> {
+        match self {
+            Body::Hiperface(profile) => Ok(profile),
+            other => Err(other.is_not(hiperface::KIND)),
+        }
+    }
+
+    /// The profile of a BiSS encoder.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_biss(self) -> Result<BissProfile, ProfileError> {
+        match self {
+            Body::Biss(profile) => Ok(profile),
+            other => Err(other.is_not(biss::KIND)),
+        }
+    }
+
+    /// The profile of a HIPERFACE encoder; `None` of another device.
+    pub fn hiperface(&self) -> Option<&HiperfaceProfile> {
+        match self {
+            Body::Hiperface(profile) => Some(profile),
+            Body::Biss(_) => None,
+        }
+    }
+
+    /// The profile of a BiSS encoder; `None` of another device.
+    pub fn biss(&self) -> Option<&BissProfile> {
+        match self {
+            Body::Biss(profile) => Some(profile),
+            Body::Hiperface(_) => None,
+        }
+    }
+}
+
+fn quoted_kinds() -> String {
+    Body::KINDS.map(|kind| format!("{kind:?}")).join(" and ")
 }
 
 #[cfg(test)]
@@ -158,8 +232,7 @@ mod tests {
     )"#;
 
     fn profile(text: &str) -> HiperfaceProfile {
-        let Body::Hiperface(profile) = Document::parse(text).unwrap().body;
-        profile
+        Document::parse(text).unwrap().body.hiperface().unwrap().clone()
     }
 
     #[test]
@@ -204,7 +277,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         let mut document = Document::parse(SHORT).unwrap();
-        let Body::Hiperface(profile) = &mut document.body;
+        let Body::Hiperface(profile) = &mut document.body else { panic!() };
         profile.recorded.position = Some(0x000E_0531);
         profile.identity.extended_label = Some(vec![0x53; 64]);
         profile.identity.serial_number = "quote \" and \\ and ä".to_owned();
@@ -227,7 +300,7 @@ mod tests {
             ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
             ("schema: 1,", "", "schema is missing"),
             ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
-            ("\"hiperface\"", "\"biss\"", "device \"biss\"; this program knows \"hiperface\""),
+            ("\"hiperface\"", "\"ssi\"", "device \"ssi\"; this program knows \"hiperface\" and \"biss\""),
             ("\"A1\"", "17", "identity.serial_number must be a text"),
             ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
             ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
@@ -244,6 +317,13 @@ mod tests {
             let error = Document::parse(&text).unwrap_err().to_string();
             assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
         }
+    }
+
+    #[test]
+    fn a_profile_of_another_kind_names_both() {
+        let error = Document::parse(SHORT).unwrap().body.into_biss().unwrap_err();
+        assert_eq!(error.to_string(), "a profile of a hiperface device where one of a biss device is needed");
+        assert!(Document::parse(SHORT).unwrap().body.biss().is_none());
     }
 
     #[test]

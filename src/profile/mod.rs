@@ -1,6 +1,7 @@
 //! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
 //! `store`, devices are read and written by `device`.
 
+pub mod biss;
 mod difference;
 mod document;
 pub mod hiperface;

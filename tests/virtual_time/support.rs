@@ -8,7 +8,7 @@ use std::time::Duration;
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock};
 use encoder_studio::profile::hiperface::{HiperfaceProfile, RestoreOptions};
-use encoder_studio::profile::{Body, Consent, Document};
+use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::hiperface::{Bus, Config};
@@ -270,7 +270,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
 
 /// The profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
-    let Body::Hiperface(profile) = Document::parse(&read_text(path).unwrap()).unwrap().body;
+    let profile = Document::parse(&read_text(path).unwrap()).unwrap().body.into_hiperface().unwrap();
     profile
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Severity};
-use encoder_studio::profile::{Body, Document};
+use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;
 
 use crate::support::{Desk, OTHER_PORT};
@@ -28,7 +28,7 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 #[test]
 fn a_saved_profile_is_the_encoder() {
     let (desk, path) = saved();
-    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
     assert_eq!(profile.identity.serial_number, "GB0450179");
     assert_eq!(profile.fields, desk.encoder().staged.device());
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..], desk.wire().field(0));
@@ -54,7 +54,7 @@ fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", saved);
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_without"]));
-    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..2], *b"EM");
     let words = desk.studio.services.log.standing().unwrap().texts[1].words(encoder_studio::app::Language::English);
     assert!(words.contains('2'), "{words}");
@@ -132,7 +132,7 @@ fn a_profile_read_again_keeps_its_edits() {
     assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    let Body::Hiperface(profile) = Document::parse(&read_text(&path).unwrap()).unwrap().body;
+    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");
 }
 

@@ -3,8 +3,8 @@
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, review, rules};
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
+use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperface::{FieldRange, Op};
-use encoder_studio::profile::{Body, Document};
 use encoder_studio::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
 use encoder_studio::worker::hiperface::Change;
@@ -54,7 +54,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     let backup = committed.backup.clone().unwrap();
-    let Body::Hiperface(profile) = Document::parse(&read_text(&backup).unwrap()).unwrap().body;
+    let profile = Document::parse(&read_text(&backup).unwrap()).unwrap().body.into_hiperface().unwrap();
     assert_eq!(profile.identity.serial_number, "GB0450179");
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[RATED], 0x22, "as it was before");
 

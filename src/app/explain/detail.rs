@@ -11,7 +11,7 @@ use crate::store::{LogbookError, LogbookProblem};
 
 /// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
 /// what can be read. The first that fits counts.
-const PHRASES: [&str; 90] = [
+const PHRASES: &[&str] = &[
     "phrase.no_link",
     "phrase.link_device",
     "phrase.bridge",
@@ -72,6 +72,14 @@ const PHRASES: [&str; 90] = [
     "phrase.list",
     "phrase.too_deep",
     "phrase.field_twice",
+    "phrase.bank_twice",
+    "phrase.bank_order",
+    "phrase.bank_outside",
+    "phrase.banks",
+    "phrase.bytes_expected",
+    "phrase.release",
+    "phrase.mounting_item",
+    "phrase.four_tenths",
     "phrase.twice",
     "phrase.no_status",
     "phrase.locked_bytes",
@@ -148,7 +156,7 @@ pub fn document(error: &ProfileError) -> Text {
             Text::new("detail.value").with("path", path).with_text("what", phrase(what))
         }
         // These have sentences of their own.
-        ProfileError::Schema { .. } | ProfileError::Device(_) => plain(error),
+        ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }
 }
 
@@ -300,6 +308,32 @@ mod tests {
             ("bytes: \"00", "bytes: \"0G"),
             ("bytes: \"00", "bytes: \"0"),
             ("schema: 1", "schema: 1, schema: 1"),
+        ];
+        for (from, to) in cases {
+            let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+            check(&document(&error), &error);
+        }
+    }
+
+    #[test]
+    fn a_wrong_biss_profile_is_told_in_both_languages() {
+        let bytes = "00 ".repeat(64);
+        let good = r#"(schema: 1, device: "biss", identity: (serial_number: "1", profile_id: 0x6129, firmware: "1.6.0",
+            device_id: "01 01 68 11 00 01", manufacturer: "46 72"), recorded: (wiegand_last: [1, 2, 3, 4]),
+            mounting: [(item: "calibration")], data: [(banks: (0x24, 0x43), listed: [(bank: 0x25, bytes: "BYTES")])])"#
+            .replace("BYTES", &bytes);
+        assert!(Document::parse(&good).is_ok());
+        let cases = [
+            ("0x6129", "0x16129"),
+            ("1.6.0", "1.6"),
+            ("46 72", "46"),
+            ("3, 4]", "3]"),
+            ("\"calibration\"", "\"x\""),
+            ("\"calibration\"", "7"),
+            ("(0x24, 0x43)", "7"),
+            ("(0x24, 0x43)", "(0x43, 0x24)"),
+            ("(0x24, 0x43)", "(0x26, 0x43)"),
+            ("data: [", "data: [(banks: (0, 0x24)), "),
         ];
         for (from, to) in cases {
             let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();

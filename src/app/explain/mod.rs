@@ -12,8 +12,7 @@ pub use detail::{document, logbook_problem, phrase, recording, setting, type_tab
 use super::Text;
 use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::ProfileError;
-use crate::protocol::hiperface::KIND;
+use crate::profile::{Body, ProfileError};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::worker::OpenError;
 
@@ -101,8 +100,11 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
         ProfileError::Schema { found, known } => {
             Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
         }
-        ProfileError::Device(found) => {
-            Text::new("profile.device").with("path", path).with("found", found).with("known", KIND)
+        ProfileError::Device { found } => {
+            Text::new("profile.device").with("path", path).with("found", found).with("known", Body::KINDS.join(", "))
+        }
+        ProfileError::OtherKind { found, wanted } => {
+            Text::new("profile.other_kind").with("path", path).with("found", found).with("wanted", wanted)
         }
         error => Text::new("profile.invalid").with("path", path).with_text("why", document(error)),
     }

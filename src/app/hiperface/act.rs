@@ -260,7 +260,7 @@ impl Encoder {
             }
             Source::File { document, .. } => {
                 let mut document = (**document).clone();
-                let Body::Hiperface(profile) = &mut document.body;
+                let Body::Hiperface(profile) = &mut document.body else { return };
                 profile.fields = self.staged.wanted();
                 profile.mark_mounting();
                 self.session.write_document(path, document, Vec::new(), services);
@@ -285,11 +285,8 @@ impl Encoder {
         result: Result<Box<Document>, ReadError>,
         services: &mut Services,
     ) {
-        match result {
-            Ok(document) => {
-                let Body::Hiperface(profile) = document.body;
-                self.plan_restore(profile, services);
-            }
+        match result.and_then(|document| document.body.into_hiperface().map_err(ReadError::Profile)) {
+            Ok(profile) => self.plan_restore(profile, services),
             Err(error) => {
                 let text = crate::app::studio::read_error(path, &error);
                 services.tell(Severity::Error, vec![text], Some(&self.session.name()));

@@ -17,8 +17,8 @@ use crate::app::{Severity, Text};
 use crate::device::hiperface::check;
 use crate::device::hiperface::{Identity, Sample, Survey};
 use crate::link::LinkUrl;
+use crate::profile::Document;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item};
-use crate::profile::{Body, Document};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
 use crate::store::{DeviceKey, FileError};
 use crate::worker::hiperface::{Hiperface, device_key};
@@ -100,12 +100,14 @@ impl Encoder {
         types: &EncoderTypes,
         services: &Services,
     ) -> Self {
-        let Body::Hiperface(profile) = &document.body;
-        let fields = profile.fields.clone();
-        let identity = crate::device::hiperface::identity_of(profile, types);
-        let counter = profile.recorded.counter;
+        let profile = document.body.hiperface();
+        let fields = profile.map(|profile| profile.fields.clone()).unwrap_or_default();
+        let identity = profile.map(|profile| crate::device::hiperface::identity_of(profile, types));
+        let counter = profile.and_then(|profile| profile.recorded.counter);
         let mut encoder = Encoder::with(Session::in_file(id, file, document));
-        encoder.identify(identity);
+        if let Some(identity) = identity {
+            encoder.identify(identity);
+        }
         encoder.counter = counter;
         encoder.staged.refresh(fields);
         encoder.load_draft(services);
@@ -132,7 +134,7 @@ impl Encoder {
 
     /// A profile was read again from its file; edits stay.
     pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        let Body::Hiperface(profile) = &document.body;
+        let Some(profile) = document.body.hiperface() else { return };
         self.staged.refresh(profile.fields.clone());
         self.session.take_document(path, key, document);
     }
@@ -158,7 +160,7 @@ impl Encoder {
     /// The profile as the user wants it, where this is one.
     pub(in crate::app) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
-        let Body::Hiperface(mut profile) = document.body.clone();
+        let mut profile = document.body.hiperface()?.clone();
         profile.fields = self.staged.wanted();
         Some(profile)
     }

@@ -3,7 +3,6 @@
 use super::encoder::Encoder;
 use crate::app::session::Source;
 use crate::device::hiperface::profile_of;
-use crate::profile::Body;
 use crate::profile::hiperface::{HiperfaceProfile, Recorded};
 
 impl Encoder {
@@ -19,10 +18,7 @@ impl Encoder {
                 .collect()
         };
         match &self.session.source {
-            Source::File { document, .. } => {
-                let Body::Hiperface(profile) = &document.body;
-                own(profile)
-            }
+            Source::File { document, .. } => document.body.hiperface().map(own).unwrap_or_default(),
             Source::Link(_) => {
                 let Some(identity) = &self.identity else { return Vec::new() };
                 own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))

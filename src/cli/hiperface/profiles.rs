@@ -59,9 +59,8 @@ fn device(common: &Common, output: &Output) -> Result<HiperfaceProfile> {
 
 fn load(path: &Path) -> Result<HiperfaceProfile> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
-    let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
-    let Body::Hiperface(profile) = document.body;
-    Ok(profile)
+    let profile = Document::parse(&text).and_then(|document| document.body.into_hiperface());
+    profile.map_err(|error| failed(&explain::profile(path, &error)))
 }
 
 pub(in crate::cli) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {

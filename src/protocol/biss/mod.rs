@@ -31,7 +31,7 @@ pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, la
 pub use line::{Cycle, CycleError};
 pub use procedure::{
     CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,
-    PresetStatus, PresetValue, ProcedureKind, PulseVoltage, WiegandCommand, WiegandStatus,
+    PresetStatus, PresetValue, ProcedureKind, PulseVoltage, WiegandCommand, WiegandResult, WiegandStatus,
 };
 pub use single_cycle::{FrameError, Layout, LayoutError, Reading};
 pub use status::{DeviceMode, ErrorRegister, Filter, Firmware, ProfileId, Temperature, WarningRegister};

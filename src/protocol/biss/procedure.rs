@@ -215,7 +215,7 @@ codes! {
 }
 
 /// What a preset makes of the shaft's place: three bytes each, low byte first (bank 1, 02h…07h).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PresetValue {
     singleturn: u32,
     multiturn: u32,
@@ -255,6 +255,20 @@ impl PresetValue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PulseVoltage(u8);
 
+/// What a Wiegand test has found in both directions (bank 0: the last from 09h, the factory's from 0Dh, the saved from
+/// 11h on).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WiegandResult {
+    /// Average of the pulses, clockwise.
+    pub average_cw: PulseVoltage,
+    /// The same less four standard deviations.
+    pub lowest_cw: PulseVoltage,
+    /// Average of the pulses, counterclockwise.
+    pub average_ccw: PulseVoltage,
+    /// The same less four standard deviations.
+    pub lowest_ccw: PulseVoltage,
+}
+
 impl PulseVoltage {
     /// The average less four standard deviations has to lie above this: 5.3 V.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
@@ -272,6 +286,24 @@ impl PulseVoltage {
     /// Volts, from 0 to 25.5.
     pub fn volts(self) -> f64 {
         f64::from(self.0) / 10.0
+    }
+}
+
+impl WiegandResult {
+    /// From the registers, in the order of their addresses.
+    pub fn parse(bytes: [u8; 4]) -> Self {
+        let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);
+        WiegandResult { average_cw, lowest_cw, average_ccw, lowest_ccw }
+    }
+
+    /// As the registers have it.
+    pub fn emit(&self) -> [u8; 4] {
+        [self.average_cw, self.lowest_cw, self.average_ccw, self.lowest_ccw].map(PulseVoltage::byte)
+    }
+
+    /// Both directions lie above the limit.
+    pub fn passes(&self) -> bool {
+        self.lowest_cw > PulseVoltage::LIMIT && self.lowest_ccw > PulseVoltage::LIMIT
     }
 }
 
@@ -303,6 +335,22 @@ mod tests {
     fn a_pulse_voltage_is_in_tenths() {
         assert_eq!(PulseVoltage::LIMIT.byte(), 0x35);
         assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
+    }
+
+    /// Manual 6.3: greater than 5.3 V is recommended, in either direction.
+    #[test]
+    fn a_wiegand_result_is_measured_against_the_limit() {
+        for (bytes, passes) in [
+            ([60, 54, 60, 54], true),
+            ([60, 53, 60, 54], false),
+            ([60, 54, 60, 53], false),
+            ([0, 0, 0, 0], false),
+            ([255, 255, 255, 255], true),
+        ] {
+            let result = WiegandResult::parse(bytes);
+            assert_eq!((result.passes(), result.emit()), (passes, bytes));
+        }
+        assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }
 
     /// The manual's tables, and what is in none of them.

@@ -7,7 +7,6 @@ use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Staged, forms, rules};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Studio, Text};
-use crate::profile::Body;
 use crate::profile::hiperface::{FieldImage, FieldRange};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::ui::controls::{allowed_button, choice, empty, enabled_button, icon_button, name, paragraph, primary};
@@ -374,8 +373,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &
 
 /// A profile goes into a connected encoder: which one is chosen here.
 fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Source::File { document, .. } = &encoder.session.source else { return };
-    let Body::Hiperface(_) = &document.body;
+    let Source::File { .. } = &encoder.session.source else { return };
     let targets: Vec<&Encoder> = studio
         .devices()
         .iter()

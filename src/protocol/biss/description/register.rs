@@ -129,7 +129,7 @@ pub enum Decoded<'a> {
 }
 
 /// Banks of plain data, each byte for itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// The manual's name.
     pub name: String,
@@ -219,6 +219,11 @@ impl Area {
     /// The bank belongs to it.
     pub const fn contains(&self, bank: u8) -> bool {
         self.first <= bank && bank <= self.last
+    }
+
+    /// Its banks.
+    pub fn banks(&self) -> std::ops::RangeInclusive<u8> {
+        self.first..=self.last
     }
 
     /// Its bytes.
