@@ -8,6 +8,7 @@ pub mod biss;
 pub mod bridge;
 mod fault;
 pub mod hiperface;
+mod line;
 mod setting;
 pub mod sine_cosine;
 

@@ -2,7 +2,6 @@
 //! says nothing: a reply comes a quarter of a millisecond after its request, one that needs a control frame after the 47
 //! cycles of that; HELLO ends all streams; SSI and BiSS share their wires, so that a stream of one keeps both busy.
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use fastrand::Rng;
@@ -14,6 +13,7 @@ use crate::protocol::bridge::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
 use crate::sim::biss::Encoder;
+use crate::sim::line::Queue;
 use crate::sim::sine_cosine::{Checked, Quantity, Settings};
 use crate::sim::{ByteDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
@@ -38,7 +38,7 @@ pub struct Adapter {
     /// The last reply is on its way until then.
     replied: Moment,
     /// Bytes by the moment in which they have arrived.
-    to_host: VecDeque<(Moment, Vec<u8>)>,
+    to_host: Queue<Vec<u8>>,
     inbox: Vec<u8>,
 }
 
@@ -91,7 +91,7 @@ impl Adapter {
             pushed: 0,
             now: Moment::START,
             replied: Moment::START,
-            to_host: VecDeque::new(),
+            to_host: Queue::default(),
             inbox: Vec::new(),
         };
         adapter.switch_off();
@@ -149,7 +149,7 @@ impl Adapter {
             self.send(at + Self::LATENCY, &packet);
         }
         self.follow_motor();
-        while let Some((_, bytes)) = self.to_host.pop_front_if(|(at, _)| *at <= self.now) {
+        while let Some(bytes) = self.to_host.pop_until(self.now) {
             self.inbox.extend(bytes);
         }
     }
@@ -157,8 +157,7 @@ impl Adapter {
     /// Over the noisy line.
     fn send(&mut self, at: Moment, packet: &Packet) {
         let bytes = noisy(&self.faults, &mut self.rng, &packet.emit());
-        let place = self.to_host.partition_point(|(other, _)| *other <= at);
-        self.to_host.insert(place, (at, bytes));
+        self.to_host.insert(at, bytes);
     }
 
     fn take(&mut self, packet: &Packet) {
@@ -382,10 +381,9 @@ impl ByteDevice for Adapter {
         if !self.inbox.is_empty() {
             return Some(self.now);
         }
-        let arriving = self.to_host.front().map(|(at, _)| *at);
         let clocked = self.clocked.as_ref().map(Clocked::due);
         let sampled = self.sampled.as_ref().map(Analog::due);
-        [arriving, clocked, sampled].into_iter().flatten().min()
+        [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
     }
 
     /// A serial port over USB has no speed of its own.

@@ -2,7 +2,6 @@
 //! the converter's echo, noise, and what happens when two talk at a time or with different settings. It has no meaning
 //! of its own for a single byte; half duplex and pull-ups: manual, "Parameterkanal".
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use fastrand::Rng;
@@ -10,27 +9,21 @@ use fastrand::Rng;
 use super::config::Config;
 use super::encoder::{Encoder, Heard};
 use crate::protocol::hiperface::LineSettings;
-use crate::sim::{ByteDevice, Faults};
-use crate::units::CharacterFormat;
-use crate::units::{Moment, Parity};
+use crate::sim::Faults;
+use crate::sim::line::{Character, Line, Queue, Wires};
+use crate::units::{CharacterFormat, Moment, Parity};
 
 /// A line with one or several encoders, seen from the host. Made of a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
-    faults: Faults,
-    rng: Rng,
     echo: bool,
-    host: CharacterFormat,
-    /// The host's UART has sent everything then.
-    host_done: Moment,
-    now: Moment,
+    wires: Wires,
     /// Characters that encoders are going to hear, by their start.
-    to_encoders: VecDeque<Travelling>,
+    to_encoders: Queue<Travelling>,
     /// Characters that the host is going to receive, by their end.
-    to_host: VecDeque<Travelling>,
+    to_host: Queue<Travelling>,
     talks: Vec<Talk>,
-    inbox: Vec<u8>,
 }
 
 /// Who drives the line.
@@ -43,11 +36,7 @@ enum Talker {
 #[derive(Clone, Copy)]
 struct Travelling {
     talker: Talker,
-    start: Moment,
-    end: Moment,
-    byte: u8,
-    /// The parity bit that was sent belongs to this byte.
-    parity_fits: bool,
+    character: Character,
     format: CharacterFormat,
 }
 
@@ -61,7 +50,7 @@ struct Talk {
 
 /// What happens next; of events at the same moment the first of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Event {
+pub(in crate::sim) enum Event {
     EncoderActs(usize),
     EncodersHear,
     HostReceives,
@@ -75,16 +64,11 @@ impl Bus {
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
-            faults: config.faults.clone(),
-            rng: Rng::with_seed(config.seed),
             echo: config.echo,
-            host: CharacterFormat::FACTORY,
-            host_done: Moment::START,
-            now: Moment::START,
-            to_encoders: VecDeque::new(),
-            to_host: VecDeque::new(),
+            wires: Wires::new(&config.faults, config.seed, CharacterFormat::FACTORY),
+            to_encoders: Queue::default(),
+            to_host: Queue::default(),
             talks: Vec::new(),
-            inbox: Vec::new(),
         }
     }
 
@@ -105,7 +89,7 @@ impl Bus {
 
     /// Other faults from now on: a cable that was mended, or one that breaks only now.
     pub fn set_faults(&mut self, faults: &Faults) {
-        self.faults = faults.clone();
+        self.wires.faults = faults.clone();
         for encoder in &mut self.encoders {
             encoder.set_faults(faults.clone());
         }
@@ -115,34 +99,13 @@ impl Bus {
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
         for encoder in &mut self.encoders {
-            encoder.power_cycle(self.now);
+            encoder.power_cycle(self.wires.now);
         }
         // Who is without power says nothing more.
-        let now = self.now;
-        let is_sent = |character: &Travelling| character.talker == Talker::Host || character.start < now;
+        let now = self.wires.now;
+        let is_sent = |own: &Travelling| own.talker == Talker::Host || own.character.start < now;
         self.to_encoders.retain(is_sent);
         self.to_host.retain(is_sent);
-    }
-
-    fn advance(&mut self, to: Moment) {
-        while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
-            self.now = self.now.max(at);
-            match event {
-                Event::EncoderActs(index) => self.let_encoder_act(index, at),
-                Event::EncodersHear => self.let_encoders_hear(),
-                Event::HostReceives => self.let_host_receive(),
-            }
-        }
-        self.now = self.now.max(to);
-        let now = self.now;
-        self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
-    }
-
-    fn next_event(&self) -> Option<(Moment, Event)> {
-        let acting = |(index, encoder): (usize, &Encoder)| Some((encoder.acts_at()?, Event::EncoderActs(index)));
-        let hearing = self.to_encoders.front().map(|character| (character.start, Event::EncodersHear));
-        let receiving = self.to_host.front().map(|character| (character.end, Event::HostReceives));
-        self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
     }
 
     fn let_encoder_act(&mut self, index: usize, at: Moment) {
@@ -153,74 +116,57 @@ impl Bus {
     }
 
     fn let_encoders_hear(&mut self) {
-        let Some(character) = self.to_encoders.pop_front() else { return };
-        let collides = self.collides(&character);
+        let Some((_, travelling)) = self.to_encoders.pop() else { return };
+        let collides = self.collides(&travelling);
+        let Character { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
             // A driver that is on hears only itself.
-            if character.talker == Talker::Encoder(index) {
+            if travelling.talker == Talker::Encoder(index) {
                 continue;
             }
-            let Some(format) = encoder.settings_at(character.start).and_then(LineSettings::format) else { continue };
-            let clean = !collides && format == character.format;
-            let byte = if clean { character.byte } else { garbage(&mut self.rng) };
+            let Some(format) = encoder.settings_at(start).and_then(LineSettings::format) else { continue };
+            let clean = !collides && format == travelling.format;
+            let byte = if clean { byte } else { garbage(&mut self.wires.rng) };
             // Without a parity bit nobody notices a flipped bit.
-            let intact = clean && (character.parity_fits || format.parity == Parity::None);
-            encoder.hear(Heard { start: character.start, end: character.end, byte, intact });
+            let intact = clean && (!flipped || format.parity == Parity::None);
+            encoder.hear(Heard { start, end, byte, intact });
         }
     }
 
     fn let_host_receive(&mut self) {
-        let Some(character) = self.to_host.pop_front() else { return };
+        let Some((_, travelling)) = self.to_host.pop() else { return };
         // The usual driver setting passes bytes with a wrong parity bit on as they are.
-        let clean = !self.collides(&character) && character.format == self.host;
-        self.inbox.push(if clean { character.byte } else { garbage(&mut self.rng) });
+        let clean = !self.collides(&travelling) && travelling.format == self.wires.host;
+        let byte = if clean { travelling.character.byte } else { garbage(&mut self.wires.rng) };
+        self.wires.inbox.push(byte);
     }
 
     /// Puts bytes on the line, one character after the other, and gives the moment when the last one is through.
     fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
-        let mut start_of_next = start;
-        for byte in bytes {
-            let passage = self.faults.passage(&mut self.rng, *byte);
-            if let Some(extra) = passage.inserted {
-                let (start, end) = (start_of_next, start_of_next + format.character_time());
-                self.carry(Travelling { talker, start, end, byte: extra, parity_fits: true, format });
-                start_of_next = end;
+        let sent = self.wires.send(start, format.character_time(), bytes);
+        let on_the_way = |character: Character| Travelling { talker, character, format };
+        for heard in sent.heard.into_iter().map(on_the_way) {
+            if talker != Talker::Host {
+                self.to_host.insert(heard.character.end, heard);
             }
-            let (start, end) = (start_of_next, start_of_next + format.character_time());
-            if let Some(carried) = passage.carried {
-                let parity_fits = !carried.flipped;
-                self.carry(Travelling { talker, start, end, byte: carried.byte, parity_fits, format });
+            if talker == Talker::Host || self.encoders.len() > 1 {
+                self.to_encoders.insert(heard.character.start, heard);
             }
-            if self.echo && talker == Talker::Host {
-                // The echo comes from the converter itself: the line's noise is not in it.
-                self.carry_to_host(Travelling { talker, start, end, byte: *byte, parity_fits: true, format });
-            }
-            start_of_next = end;
         }
-        self.talks.push(Talk { talker, start, end: start_of_next });
-        start_of_next
-    }
-
-    fn carry(&mut self, character: Travelling) {
-        if character.talker != Talker::Host {
-            self.carry_to_host(character);
+        if self.echo && talker == Talker::Host {
+            let echo = sent.own.into_iter().map(on_the_way);
+            echo.for_each(|own| self.to_host.insert(own.character.end, own));
         }
-        if character.talker == Talker::Host || self.encoders.len() > 1 {
-            let place = self.to_encoders.partition_point(|other| other.start <= character.start);
-            self.to_encoders.insert(place, character);
-        }
-    }
-
-    fn carry_to_host(&mut self, character: Travelling) {
-        let place = self.to_host.partition_point(|other| other.end <= character.end);
-        self.to_host.insert(place, character);
+        let now = self.wires.now;
+        self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
+        self.talks.push(Talk { talker, start, end: sent.end });
+        sent.end
     }
 
     /// Somebody else drives the line while this character is on it.
-    fn collides(&self, character: &Travelling) -> bool {
-        self.talks
-            .iter()
-            .any(|talk| talk.talker != character.talker && talk.start < character.end && character.start < talk.end)
+    fn collides(&self, Travelling { talker, character, .. }: &Travelling) -> bool {
+        let other = |talk: &&Talk| talk.talker != *talker;
+        self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }
 
@@ -229,33 +175,39 @@ fn garbage(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }
 
-impl ByteDevice for Bus {
-    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
-        self.advance(now);
-        if !bytes.is_empty() {
-            self.host_done = self.drive(Talker::Host, self.now.max(self.host_done), self.host, bytes);
+impl Line for Bus {
+    type Event = Event;
+
+    fn wires(&self) -> &Wires {
+        &self.wires
+    }
+
+    fn wires_mut(&mut self) -> &mut Wires {
+        &mut self.wires
+    }
+
+    fn next_event(&self) -> Option<(Moment, Event)> {
+        let acting = |(index, encoder): (usize, &Encoder)| Some((encoder.acts_at()?, Event::EncoderActs(index)));
+        let hearing = self.to_encoders.due().map(|at| (at, Event::EncodersHear));
+        let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
+        self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
+    }
+
+    fn happen(&mut self, at: Moment, event: Event) {
+        match event {
+            Event::EncoderActs(index) => self.let_encoder_act(index, at),
+            Event::EncodersHear => self.let_encoders_hear(),
+            Event::HostReceives => self.let_host_receive(),
         }
     }
 
-    fn poll(&mut self, now: Moment) -> Vec<u8> {
-        self.advance(now);
-        std::mem::take(&mut self.inbox)
+    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
+        self.drive(Talker::Host, start, self.wires.host, bytes)
     }
 
-    fn poll_at(&self) -> Option<Moment> {
-        if self.inbox.is_empty() { self.next_event().map(|(at, _)| at) } else { Some(self.now) }
-    }
-
-    fn set_host_format(&mut self, now: Moment, format: CharacterFormat) {
-        self.advance(now);
-        self.host = format;
-    }
-
-    fn connect(&mut self, now: Moment) {
-        self.advance(now);
-        self.inbox.clear();
+    fn give_power(&mut self, now: Moment) {
         for encoder in &mut self.encoders {
-            encoder.connect(self.now);
+            encoder.connect(now);
         }
     }
 }

@@ -1,0 +1,171 @@
+//! A half-duplex line between the host's UART and virtual devices: characters travel one after the other, some of them
+//! damaged, and are heard in the order of time. What a character means and who hears it is each device's matter.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::{ByteDevice, Faults};
+use crate::units::{CharacterFormat, Moment};
+
+/// What is on its way, by the moment that counts for it; of the same moment, as it was put in.
+#[derive(Clone)]
+pub(super) struct Queue<T>(VecDeque<(Moment, T)>);
+
+impl<T> Default for Queue<T> {
+    fn default() -> Self {
+        Queue(VecDeque::new())
+    }
+}
+
+impl<T> Queue<T> {
+    pub(super) fn insert(&mut self, at: Moment, item: T) {
+        let place = self.0.partition_point(|(other, _)| *other <= at);
+        self.0.insert(place, (at, item));
+    }
+
+    /// When the next one counts.
+    pub(super) fn due(&self) -> Option<Moment> {
+        self.0.front().map(|(at, _)| *at)
+    }
+
+    pub(super) fn pop(&mut self) -> Option<(Moment, T)> {
+        self.0.pop_front()
+    }
+
+    pub(super) fn pop_until(&mut self, until: Moment) -> Option<T> {
+        self.0.pop_front_if(|(at, _)| *at <= until).map(|(_, item)| item)
+    }
+
+    pub(super) fn retain(&mut self, mut wanted: impl FnMut(&T) -> bool) {
+        self.0.retain(|(_, item)| wanted(item));
+    }
+}
+
+/// A character on the line, from its start bit to the end of its stop bit.
+#[derive(Clone, Copy)]
+pub(super) struct Character {
+    pub(super) start: Moment,
+    pub(super) end: Moment,
+    pub(super) byte: u8,
+    /// One of its bits was inverted on the way: a parity bit does not fit any more.
+    pub(super) flipped: bool,
+}
+
+/// What becomes of bytes that are sent.
+pub(super) struct Sent {
+    /// What the others hear.
+    pub(super) heard: Vec<Character>,
+    /// What was put on the line, as it was: a converter may give that back, without the line's noise.
+    pub(super) own: Vec<Character>,
+    /// The last one is through.
+    pub(super) end: Moment,
+}
+
+/// What every line has. Made with a device's settings.
+#[derive(Clone)]
+pub(super) struct Wires {
+    pub(super) faults: Faults,
+    pub(super) rng: Rng,
+    /// How the host's UART is set.
+    pub(super) host: CharacterFormat,
+    pub(super) now: Moment,
+    /// The host's UART has sent everything then.
+    host_done: Moment,
+    /// What has arrived at the host.
+    pub(super) inbox: Vec<u8>,
+}
+
+impl Wires {
+    pub(super) fn new(faults: &Faults, seed: u64, host: CharacterFormat) -> Self {
+        Wires {
+            faults: faults.clone(),
+            rng: Rng::with_seed(seed),
+            host,
+            now: Moment::START,
+            host_done: Moment::START,
+            inbox: Vec::new(),
+        }
+    }
+
+    /// Sends bytes over the noisy line, from `start` on, each taking the time of a character.
+    pub(super) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
+        let mut sent = Sent { heard: Vec::new(), own: Vec::new(), end: start };
+        for byte in bytes {
+            let passage = self.faults.passage(&mut self.rng, *byte);
+            let next = |start: Moment, byte, flipped| Character { start, end: start + character, byte, flipped };
+            if let Some(extra) = passage.inserted {
+                let extra = next(sent.end, extra, false);
+                sent.heard.push(extra);
+                sent.end = extra.end;
+            }
+            let own = next(sent.end, *byte, false);
+            sent.own.push(own);
+            sent.heard.extend(passage.carried.map(|carried| next(own.start, carried.byte, carried.flipped)));
+            sent.end = own.end;
+        }
+        sent
+    }
+}
+
+/// A line with what is on it. It is a [`ByteDevice`] by that.
+pub(super) trait Line: Send {
+    /// What happens next; of events at the same moment the least one.
+    type Event;
+
+    fn wires(&self) -> &Wires;
+
+    fn wires_mut(&mut self) -> &mut Wires;
+
+    fn next_event(&self) -> Option<(Moment, Self::Event)>;
+
+    fn happen(&mut self, at: Moment, event: Self::Event);
+
+    /// Puts what the host sends on the line, from `start` on, and gives the moment when the last one is through.
+    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
+
+    /// Whoever has lost its power gets it back.
+    fn give_power(&mut self, now: Moment);
+
+    /// Lets happen what is due by `to`.
+    fn advance(&mut self, to: Moment) {
+        while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
+            self.wires_mut().now = self.wires().now.max(at);
+            self.happen(at, event);
+        }
+        self.wires_mut().now = self.wires().now.max(to);
+    }
+}
+
+impl<L: Line> ByteDevice for L {
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
+        self.advance(now);
+        if !bytes.is_empty() {
+            let start = self.wires().now.max(self.wires().host_done);
+            self.wires_mut().host_done = self.host_sends(start, bytes);
+        }
+    }
+
+    fn poll(&mut self, now: Moment) -> Vec<u8> {
+        self.advance(now);
+        std::mem::take(&mut self.wires_mut().inbox)
+    }
+
+    fn poll_at(&self) -> Option<Moment> {
+        let wires = self.wires();
+        if wires.inbox.is_empty() { self.next_event().map(|(at, _)| at) } else { Some(wires.now) }
+    }
+
+    fn set_host_format(&mut self, now: Moment, format: CharacterFormat) {
+        self.advance(now);
+        self.wires_mut().host = format;
+    }
+
+    fn connect(&mut self, now: Moment) {
+        self.advance(now);
+        self.wires_mut().inbox.clear();
+        let now = self.wires().now;
+        self.give_power(now);
+    }
+}
