@@ -44,6 +44,7 @@ const PHRASES: &[&str] = &[
     "phrase.sim_noise",
     "phrase.sim_ssi",
     "phrase.sim_supply",
+    "phrase.sim_uart",
     "phrase.sim_version",
     "phrase.no_fault",
     "phrase.fault_probability",
@@ -279,7 +280,7 @@ mod tests {
         }
         let queries = "sed=1 seed=x firmware=1 serial=x rpm=x waver=x position=x temperature=x errors=x filter=x \
                        cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
-                       supply=x version=x";
+                       supply=x uart=x motor=x version=x";
         for text in queries.split_whitespace() {
             let query: Query = text.parse().unwrap();
             let error = crate::sim::bridge::Config::from_pairs(query.pairs()).unwrap_err();

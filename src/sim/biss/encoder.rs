@@ -22,6 +22,7 @@ use super::wiegand::{Pulses, Wiegand};
 use crate::protocol::biss::{
     DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress, WiegandCommand, WiegandStatus,
 };
+use crate::sim::Faults;
 use crate::units::Moment;
 
 /// A virtual encoder.
@@ -139,6 +140,11 @@ impl Encoder {
     pub fn set_temperature(&mut self, celsius: i16) {
         self.celsius = celsius;
         self.watch_temperature();
+    }
+
+    /// Other faults of its flash from now on; stores are counted on.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.die_in_store = faults.die_in_store();
     }
 
     /// Its monitoring finds something, or no longer.

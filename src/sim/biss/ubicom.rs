@@ -79,9 +79,10 @@ impl Port {
         &mut self.encoder
     }
 
-    /// Other faults of the line from now on: a cable that was mended, or one that breaks only now.
+    /// Other faults from now on: a cable that was mended, or one that breaks only now. Frames and stores are counted on.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.wires.faults = faults.clone();
+        self.encoder.set_faults(faults);
     }
 
     fn hear(&mut self) {

@@ -7,8 +7,10 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::bus::Bus;
+use super::clocking::{BissSetting, MAX_CLOCK_HZ, actual_clock};
 use super::config::Config;
 use super::stream::{Analog, Clocked, Kind};
+use super::uart::Uart;
 use crate::protocol::bridge::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
@@ -32,6 +34,7 @@ pub struct Adapter {
     analog: Settings,
     clocked: Option<Clocked>,
     sampled: Option<Analog>,
+    uart: Option<Uart>,
     requests: u32,
     pushed: u8,
     now: Moment,
@@ -40,14 +43,6 @@ pub struct Adapter {
     /// Bytes by the moment in which they have arrived.
     to_host: Queue<Vec<u8>>,
     inbox: Vec<u8>,
-}
-
-/// How BiSS is clocked.
-#[derive(Clone, Copy)]
-struct BissSetting {
-    clock_hz: u32,
-    bits: u8,
-    timeout_us: u16,
 }
 
 /// Why a request is refused.
@@ -60,14 +55,8 @@ const SILENT: Refusal = (ErrorCode::NO_ANSWER, "the encoder does not answer");
 const NOT_THERE: Refusal = (ErrorCode::NOT_SUPPORTED, "this adapter has no such thing");
 
 impl Adapter {
-    const MAX_CLOCK_HZ: u32 = 10_000_000;
-    const MIN_CLOCK_HZ: u32 = 80_000;
-    /// Clocks are whole parts of this.
-    const CRYSTAL_HZ: u32 = 60_000_000;
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
-    /// Longest time that the encoder works on a frame.
-    const ACKNOWLEDGE_US: u32 = 7;
     const CONTROL_CYCLES: u32 = 47;
     /// The encoder's supply (manual, chapter 2).
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
@@ -87,6 +76,7 @@ impl Adapter {
             analog: Settings { seed: config.encoder.seed(), ..Settings::default() }.with(Quantity::Speed, config.rpm),
             clocked: None,
             sampled: None,
+            uart: config.uart.then(Uart::new),
             requests: 0,
             pushed: 0,
             now: Moment::START,
@@ -95,6 +85,9 @@ impl Adapter {
             inbox: Vec::new(),
         };
         adapter.switch_off();
+        if let Some(uart) = &mut adapter.uart {
+            uart.set_rpm(Moment::START, config.rpm);
+        }
         adapter
     }
 
@@ -122,9 +115,18 @@ impl Adapter {
             return;
         }
         self.analog.speed_rpm = rpm;
+        if let Some(uart) = &mut self.uart {
+            uart.set_rpm(self.now, rpm);
+        }
         if let (Some(stream), Ok(settings)) = (&mut self.sampled, self.analog.clone().checked()) {
             stream.change(self.now, settings);
         }
+    }
+
+    /// Other faults from now on; requests and stores are counted on.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.faults = faults.clone();
+        self.bus.encoder.set_faults(faults);
     }
 
     fn advance(&mut self, to: Moment) {
@@ -164,6 +166,8 @@ impl Adapter {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
+            // It does nothing any more: what streams has ended, too.
+            (self.clocked, self.sampled) = (None, None);
             return;
         }
         let refused = |(code, text): Refusal| Message::Error { op: packet.op, code, text: text.to_owned() };
@@ -194,7 +198,7 @@ impl Adapter {
     }
 
     fn execute(&mut self, request: Request) -> Result<Reply, Refusal> {
-        let t_us = u64::try_from(self.now.since_start().as_micros()).unwrap_or(u64::MAX);
+        let t_us = microseconds(self.now);
         let operation = request.operation();
         let stops = matches!(request, Request::SsiStream { period_us: 0 } | Request::BissStream { period_us: 0 });
         let clocked = (Operation::SsiConfig.byte()..=Operation::BissStream.byte()).contains(&operation.byte());
@@ -262,7 +266,17 @@ impl Adapter {
                 }
                 Ok(Reply::AnalogStream { on })
             }
-            Request::UartConfig { .. } | Request::UartTransfer { .. } => Err(NOT_THERE),
+            Request::UartConfig { baud, parity, .. } => {
+                let set = self.uart.as_mut().ok_or(NOT_THERE)?.configure(self.now, baud, parity);
+                if set { Ok(Reply::UartConfig { baud }) } else { Err(OUT_OF_RANGE) }
+            }
+            Request::UartTransfer { timeout_us, idle_us, tx } => {
+                let [timeout, idle] = [timeout_us, idle_us].map(|time| Duration::from_micros(time.into()));
+                let transfer = self.uart.as_mut().ok_or(NOT_THERE)?.transfer(self.now, timeout, idle, &tx);
+                let transfer = transfer.ok_or(NOT_CONFIGURED)?;
+                self.replied = self.replied.max(transfer.end);
+                Ok(Reply::UartTransfer { t_us: microseconds(transfer.start), rx: transfer.rx })
+            }
         }
     }
 
@@ -273,10 +287,11 @@ impl Adapter {
             .and(Capabilities::BISS)
             .and(Capabilities::BISS_REGISTERS)
             .and(Capabilities::ANALOG)
-            .and(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) });
+            .and(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) })
+            .and(if self.uart.is_some() { Capabilities::UART } else { Capabilities::new(0) });
         Hello {
             capabilities: can,
-            max_clock_hz: Self::MAX_CLOCK_HZ,
+            max_clock_hz: MAX_CLOCK_HZ,
             max_sample_hz: Self::MAX_SAMPLE_HZ,
             name: "virtual adapter".to_owned(),
             serial: "V0001".to_owned(),
@@ -339,20 +354,9 @@ impl Adapter {
     }
 }
 
-impl BissSetting {
-    /// Acknowledge, start and control bit, frame, time-out.
-    fn frame(self) -> Duration {
-        let clocks = u64::from(self.bits) + 2;
-        let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
-        let fixed = Adapter::ACKNOWLEDGE_US + u32::from(self.timeout_us);
-        Duration::from_micros(fixed.into()) + Duration::from_micros(clocked.as_nanos().div_ceil(1000) as u64)
-    }
-}
-
-/// The fastest clock that the adapter has and that is not above the one asked for; `None` below its slowest.
-fn actual_clock(clock_hz: u32) -> Option<u32> {
-    let wanted = clock_hz.min(Adapter::MAX_CLOCK_HZ);
-    (wanted >= Adapter::MIN_CLOCK_HZ).then(|| Adapter::CRYSTAL_HZ / Adapter::CRYSTAL_HZ.div_ceil(wanted))
+/// Of the adapter's clock.
+fn microseconds(at: Moment) -> u64 {
+    u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }
 
 fn noisy(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {

@@ -15,6 +15,7 @@ pub struct Config {
     pub(super) noise: f64,
     pub(super) gray: bool,
     pub(super) switched_supply: bool,
+    pub(super) uart: bool,
     pub(super) version: u8,
 }
 
@@ -39,6 +40,7 @@ impl Default for Config {
             noise: 0.0,
             gray: true,
             switched_supply: false,
+            uart: false,
             version: VERSION,
         }
     }
@@ -46,7 +48,7 @@ impl Default for Config {
 
 impl Config {
     /// The keys that [`from_pairs`](Self::from_pairs) takes, beside those of the encoder.
-    pub const KEYS: [&str; 5] = ["line", "noise", "ssi", "supply", "version"];
+    pub const KEYS: [&str; 6] = ["line", "noise", "ssi", "supply", "uart", "version"];
 
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts.
     ///
@@ -80,6 +82,7 @@ impl Config {
                 let supplies = [("external", false), ("switched", true)];
                 self.switched_supply = setting.one_of(&supplies, "external or switched")?;
             }
+            "uart" => self.uart = setting.one_of(&[("none", false), ("hiperface", true)], "none or hiperface")?,
             "version" => self.version = setting.number("a version from 0 to 255")?,
             _ => {
                 let known = [&Self::KEYS[..], &biss::Config::KEYS].concat().join(", ");
@@ -103,7 +106,8 @@ mod tests {
 
     #[test]
     fn every_key_is_read() {
-        let config = read("line=low&noise=0.5&ssi=binary&supply=switched&version=2&rpm=60&seed=3").unwrap();
+        let config =
+            read("line=low&noise=0.5&ssi=binary&supply=switched&uart=hiperface&version=2&rpm=60&seed=3").unwrap();
         let pairs = [("rpm", "60"), ("seed", "3")].map(|(key, value)| (key.to_owned(), value.to_owned()));
         let expected = Config {
             encoder: biss::Config::from_pairs(&pairs).unwrap(),
@@ -112,6 +116,7 @@ mod tests {
             noise: 0.5,
             gray: false,
             switched_supply: true,
+            uart: true,
             version: 2,
         };
         assert_eq!(config, expected);
@@ -125,7 +130,7 @@ mod tests {
         let sentence = "`line=bad` cannot be used: allowed is good, open, low or high";
         assert_eq!(read("line=bad").unwrap_err().to_string(), sentence);
         assert!(matches!(read("rpm=NaN"), Err(ConfigError::Value { .. })));
-        for query in ["noise=2", "noise=NaN", "ssi=x", "supply=on", "version=256", "version=-1"] {
+        for query in ["noise=2", "noise=NaN", "ssi=x", "supply=on", "uart=on", "version=256", "version=-1"] {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
         }
     }

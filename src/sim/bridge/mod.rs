@@ -1,20 +1,24 @@
 //! A virtual adapter that speaks the bridge protocol, with the virtual kit encoder, an SSI encoder on the same shaft and
-//! a sine/cosine encoder behind it (the project's own reference, `protocol/bridge.md`). The serial line of a real adapter
-//! is not there: its operations are refused as not supported.
+//! a sine/cosine encoder behind it (the project's own reference, `protocol/bridge.md`). Where it is asked for, there is a
+//! HIPERFACE encoder at its serial line; else that is refused as not supported.
 //!
 //! | file | what it is |
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `bus` | what one frame of BiSS or SSI carries |
+//! | `clocking` | clocks and how long a frame takes |
 //! | `stream` | samples at equal distances, in packets |
+//! | `uart` | the serial line |
 //! | `adapter` | requests and replies, byte for byte |
 
 mod adapter;
 mod bus;
+mod clocking;
 mod config;
 mod stream;
 #[cfg(test)]
 mod tests;
+mod uart;
 
 pub use adapter::Adapter;
 pub use config::Config;

@@ -1,5 +1,7 @@
 //! What a host sees of the virtual adapter, in virtual time.
 
+mod line;
+
 use std::time::Duration;
 
 use super::*;
@@ -388,27 +390,4 @@ fn what_is_not_fetched_is_lost_and_told() {
         let lost: Vec<u16> = own.iter().map(|data| data.extent().2).filter(|lost| *lost > 0).collect();
         assert!(lost.len() == 1 && usize::from(lost[0]) > 8 * rate.min(8_000), "{lost:?}");
     }
-}
-
-#[test]
-fn faults_of_the_adapters_line() {
-    assert_eq!(Host::with("fault=drop:1").ask(Request::Hello), None);
-    assert_eq!(Host::with("fault=silent-after:0").ask(Request::Hello), None);
-    let mut host = Host::with("fault=delay:50");
-    host.send(&Request::Hello);
-    assert_eq!(host.adapter.poll_at(), Some(Moment::START + Duration::from_micros(50_250)));
-    let mut host = Host::with("fault=flip:0.002&seed=1");
-    host.send(&BISS);
-    host.send(&Request::BissStream { period_us: 100 });
-    host.stream(2_000);
-    assert!(host.receiver.dropped() > 0);
-    let mut host = Host::with("fault=die-in-store:1");
-    host.ask(BISS);
-    for (address, value) in [(0x6B, 0x2A), (0x6A, 0x07), (0x40, 0x01)] {
-        host.expect(Request::BissRegisterWrite { slave: 0, address, value }, Reply::BissRegisterWrite { value });
-    }
-    host.refuses(Request::BissRegisterWrite { slave: 0, address: 0, value: 1 }, ErrorCode::NO_ANSWER);
-    assert!(!host.adapter.encoder_mut().has_power());
-    host.adapter.connect(host.now);
-    assert!(host.adapter.encoder().has_power());
 }

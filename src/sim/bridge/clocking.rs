@@ -1,0 +1,36 @@
+//! How the clocked buses are clocked: which clocks the adapter has, and how long a frame takes with one.
+
+use std::time::Duration;
+
+/// The fastest clock.
+pub(super) const MAX_CLOCK_HZ: u32 = 10_000_000;
+const MIN_CLOCK_HZ: u32 = 80_000;
+/// Clocks are whole parts of this.
+const CRYSTAL_HZ: u32 = 60_000_000;
+/// Longest time that the encoder works on a frame.
+const ACKNOWLEDGE_US: u32 = 7;
+
+/// How BiSS is clocked.
+#[derive(Clone, Copy)]
+pub(super) struct BissSetting {
+    pub(super) clock_hz: u32,
+    /// Data and CRC.
+    pub(super) bits: u8,
+    pub(super) timeout_us: u16,
+}
+
+impl BissSetting {
+    /// Acknowledge, start and control bit, frame, time-out.
+    pub(super) fn frame(self) -> Duration {
+        let clocks = u64::from(self.bits) + 2;
+        let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
+        let fixed = ACKNOWLEDGE_US + u32::from(self.timeout_us);
+        Duration::from_micros(fixed.into()) + Duration::from_micros(clocked.as_nanos().div_ceil(1000) as u64)
+    }
+}
+
+/// The fastest clock that the adapter has and that is not above the one asked for; `None` below its slowest.
+pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
+    let wanted = clock_hz.min(MAX_CLOCK_HZ);
+    (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))
+}

@@ -1,0 +1,75 @@
+//! The adapter's serial line, with a virtual HIPERFACE encoder at its end. Chosen here: the time-out counts from the end
+//! of what is sent.
+
+use std::time::Duration;
+
+use crate::protocol::bridge::MAX_BODY;
+use crate::sim::{ByteDevice, hiperface};
+use crate::units::{Baud, CharacterFormat, Moment, Parity};
+
+/// The line, as it is set.
+#[derive(Clone)]
+pub(super) struct Uart {
+    line: hiperface::Bus,
+    format: Option<CharacterFormat>,
+}
+
+/// What a transfer has brought.
+pub(super) struct Transfer {
+    /// When the first start bit began; without a reply the end of the wait.
+    pub(super) start: Moment,
+    pub(super) rx: Vec<u8>,
+    /// When the adapter has stopped waiting.
+    pub(super) end: Moment,
+}
+
+impl Uart {
+    /// Bytes that fit into a reply beside its time.
+    const MAX_RX: usize = MAX_BODY - 8;
+
+    pub(super) fn new() -> Self {
+        Uart { line: hiperface::Bus::new(&hiperface::Config::default()), format: None }
+    }
+
+    pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        if let Some(encoder) = self.line.encoder_mut(0) {
+            encoder.set_rpm(now, rpm);
+        }
+    }
+
+    /// Sets speed and parity; `false` where there are none such.
+    pub(super) fn configure(&mut self, now: Moment, baud: u32, parity: u8) -> bool {
+        let parity = match parity {
+            0 => Some(Parity::None),
+            1 => Some(Parity::Odd),
+            2 => Some(Parity::Even),
+            _ => None,
+        };
+        let Some((baud, parity)) = Baud::new(baud).zip(parity) else { return false };
+        let format = CharacterFormat { baud, parity };
+        self.line.set_host_format(now, format);
+        self.format = Some(format);
+        true
+    }
+
+    /// Bytes out and in; `None` before the line is set. The line is ahead of the adapter's time until its reply.
+    pub(super) fn transfer(&mut self, now: Moment, timeout: Duration, idle: Duration, tx: &[u8]) -> Option<Transfer> {
+        let character = self.format?.character_time();
+        self.line.poll(now);
+        self.line.on_bytes(now, tx);
+        let sent = now + character * u32::try_from(tx.len()).unwrap_or(u32::MAX);
+        let (mut rx, mut start, mut end) = (Vec::new(), sent + timeout, sent + timeout);
+        while let Some(at) = self.line.poll_at().filter(|at| *at <= end && rx.len() < Self::MAX_RX) {
+            let bytes = self.line.poll(at);
+            if bytes.is_empty() {
+                continue;
+            }
+            if rx.is_empty() {
+                start = at - character;
+            }
+            rx.extend(bytes);
+            end = at + idle;
+        }
+        Some(Transfer { start, rx, end })
+    }
+}
