@@ -247,11 +247,11 @@ impl AnyDevice {
 
     /// What was recorded of it.
     pub fn recorder(&self) -> &Recorder {
-        each!(self, own => &own.record.recorder)
+        each!(self, own => own.record.recorder())
     }
 
     pub(super) fn recorder_mut(&mut self) -> &mut Recorder {
-        each!(self, own => &mut own.record.recorder)
+        each!(self, own => own.record.recorder_mut())
     }
 
     pub(super) fn suggested_file(&self) -> PathBuf {

@@ -5,6 +5,7 @@ mod action;
 mod closing;
 pub mod connect;
 mod devices;
+mod edits;
 pub mod explain;
 mod files;
 pub mod hiperface;
@@ -26,6 +27,7 @@ mod studio;
 mod tasks;
 mod texts;
 mod trace;
+mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, Question, ReviewAction};
 pub use devices::{AnyDevice, Wish};

@@ -23,7 +23,7 @@ fn own(desk: &Desk) -> Of {
 }
 
 fn recorder(desk: &Desk) -> &Recorder {
-    &desk.encoder().record.recorder
+    &desk.encoder().record.recorder()
 }
 
 fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Line {
@@ -160,7 +160,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
     }
     desk.ask(FAST);
     desk.until("the counter has come", |studio| {
-        let recorder = &studio.hiperface().unwrap().record.recorder;
+        let recorder = &studio.hiperface().unwrap().record.recorder();
         recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
     });
     let recording = recorder(&desk);

@@ -109,7 +109,7 @@ pub(crate) struct Desk {
 impl Desk {
     /// Samples of the position that are recorded without a value to believe.
     pub(crate) fn bad_positions(&self) -> u64 {
-        let recorder = &self.encoder().record.recorder;
+        let recorder = &self.encoder().record.recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
         history.statistics(0, history.all()).map_or(0, |statistics| statistics.bad)
     }

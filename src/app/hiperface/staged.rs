@@ -5,8 +5,7 @@
 //! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
 //! known any more, wait until it can.
 
-use std::collections::BTreeMap;
-
+use crate::app::edits::Edits;
 use crate::profile::hiperface::{FieldImage, FieldRange};
 
 /// Data fields with the user's edits.
@@ -14,12 +13,8 @@ use crate::profile::hiperface::{FieldImage, FieldRange};
 pub struct Staged {
     device: Vec<FieldImage>,
     /// Bytes that differ from the device's, by field and address.
-    edits: Edits,
-    undo: Vec<Edits>,
-    redo: Vec<Edits>,
+    edits: Edits<(u8, usize)>,
 }
-
-type Edits = BTreeMap<(u8, usize), u8>;
 
 /// Why an edit cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,21 +42,16 @@ pub enum StagedError {
 }
 
 impl Staged {
-    /// Steps that can be undone.
-    const UNDO_STEPS: usize = 200;
-
     /// Takes what was read from the encoder; edits stay, unless the byte they are for is gone or is as wanted now.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.device = device;
         self.forget_the_impossible();
-        // What was undone belongs to another memory.
-        self.redo.clear();
+        self.edits.forget_redo();
     }
 
     /// The edits were written: what led to them cannot be undone any more.
     pub fn forget_steps(&mut self) {
-        self.undo.clear();
-        self.redo.clear();
+        self.edits.forget_steps();
     }
 
     /// Forgets everything: another encoder.
@@ -77,10 +67,10 @@ impl Staged {
     /// The fields as the user wants them.
     pub fn wanted(&self) -> Vec<FieldImage> {
         let mut fields = self.device.clone();
-        for ((number, address), byte) in &self.edits {
-            let field = fields.iter_mut().find(|field| field.number == *number);
-            if let Some(own) = field.and_then(|field| field.bytes.as_mut()).and_then(|bytes| bytes.get_mut(*address)) {
-                *own = *byte;
+        for ((number, address), byte) in self.edits.iter() {
+            let field = fields.iter_mut().find(|field| field.number == number);
+            if let Some(own) = field.and_then(|field| field.bytes.as_mut()).and_then(|bytes| bytes.get_mut(address)) {
+                *own = byte;
             }
         }
         fields
@@ -93,30 +83,30 @@ impl Staged {
 
     /// One byte as the user wants it.
     pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
-        self.edits.get(&(field, address)).copied().or_else(|| self.on_device(field, address))
+        self.edits.get((field, address)).or_else(|| self.on_device(field, address))
     }
 
     /// The user wants another byte here than the encoder has.
     pub fn is_edited(&self, field: u8, address: usize) -> bool {
-        self.edits.contains_key(&(field, address))
+        self.edits.get((field, address)).is_some()
     }
 
     /// There is something to write.
     pub fn is_dirty(&self) -> bool {
-        !self.edits.is_empty()
+        self.edits.is_dirty()
     }
 
     /// Runs of edited bytes.
     pub fn changes(&self) -> Vec<FieldRange> {
         let mut runs: Vec<FieldRange> = Vec::new();
-        for (field, address) in self.edits.keys() {
+        for ((field, address), _) in self.edits.iter() {
             match runs.last_mut() {
                 Some(FieldRange { field: own, start, count: Some(count) })
-                    if own == field && *start + *count == *address =>
+                    if *own == field && *start + *count == address =>
                 {
                     *count += 1;
                 }
-                _ => runs.push(FieldRange::new(*field, *address, 1)),
+                _ => runs.push(FieldRange::new(field, address, 1)),
             }
         }
         runs
@@ -141,100 +131,77 @@ impl Staged {
         if address.checked_add(bytes.len()).is_none_or(|end| end > size) {
             return Err(StagedError::Outside { field, last: size.saturating_sub(1) });
         }
-        self.step(|staged| {
-            for (at, byte) in (address..).zip(bytes) {
-                staged.set(field, at, *byte);
-            }
-        });
+        self.set((address..).zip(bytes).map(|(at, byte)| ((field, at), *byte)));
         Ok(())
     }
 
     /// Takes all edits back, as one step that can be undone.
     pub fn revert(&mut self) {
-        self.step(|staged| staged.edits.clear());
+        self.edits.revert(|_| true);
     }
 
     /// Takes the edits of one range back.
     pub fn revert_range(&mut self, range: FieldRange) {
-        self.step(|staged| staged.edits.retain(|(field, address), _| !range.contains(*field, *address)));
+        self.edits.revert(|(field, address)| range.contains(field, address));
     }
 
     /// There is a step to undo.
     pub fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
+        self.edits.can_undo()
     }
 
     /// There is a step to do again.
     pub fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
+        self.edits.can_redo()
     }
 
     /// Undoes the last step. False when there is none.
     pub fn undo(&mut self) -> bool {
-        let Some(before) = self.undo.pop() else { return false };
-        self.redo.push(std::mem::replace(&mut self.edits, before));
+        let done = self.edits.undo();
         self.forget_the_impossible();
-        true
+        done
     }
 
     /// Does the last undone step again. False when there is none.
     pub fn redo(&mut self) -> bool {
-        let Some(after) = self.redo.pop() else { return false };
-        self.undo.push(std::mem::replace(&mut self.edits, after));
+        let done = self.edits.redo();
         self.forget_the_impossible();
-        true
+        done
     }
 
     /// The edits, for a draft on disk.
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
-        self.edits.iter().map(|((field, address), byte)| (*field, *address, *byte))
+        self.edits.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
     /// Takes edits from a draft. Those for bytes that are not there, or that are as wanted, fall away.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
-        self.step(|staged| {
-            for (field, address, byte) in draft {
-                staged.set(field, address, byte);
-            }
-        });
+        self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }
 
     fn field(&self, number: u8) -> Option<&FieldImage> {
         self.device.iter().find(|field| field.number == number)
     }
 
-    fn set(&mut self, field: u8, address: usize, byte: u8) {
-        let is_edit = match self.field(field).map(|image| (&image.bytes, image.status)) {
-            Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
-            Some((None, status)) => address < status.size().bytes(),
-            None => false,
-        };
-        if is_edit {
-            self.edits.insert((field, address), byte);
-        } else {
-            self.edits.remove(&(field, address));
-        }
+    fn set(&mut self, bytes: impl IntoIterator<Item = ((u8, usize), u8)>) {
+        let device = &self.device;
+        self.edits.put(bytes, |at, byte| is_edit(device, at, byte));
     }
 
     /// After a refresh, an earlier step may hold edits that are no longer any.
     fn forget_the_impossible(&mut self) {
-        let edits = std::mem::take(&mut self.edits);
-        for ((field, address), byte) in edits {
-            self.set(field, address, byte);
-        }
+        let device = &self.device;
+        self.edits.settle(|at, byte| is_edit(device, at, byte));
     }
+}
 
-    fn step(&mut self, change: impl FnOnce(&mut Self)) {
-        let before = self.edits.clone();
-        change(self);
-        if self.edits == before {
-            return;
-        }
-        self.redo.clear();
-        self.undo.push(before);
-        if self.undo.len() > Self::UNDO_STEPS {
-            self.undo.remove(0);
-        }
+/// A byte here is another than the encoder's, as far as that is known.
+fn is_edit(device: &[FieldImage], (field, address): (u8, usize), byte: u8) -> bool {
+    let image = device.iter().find(|image| image.number == field);
+    match image.map(|image| (&image.bytes, image.status)) {
+        Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
+        Some((None, status)) => address < status.size().bytes(),
+        None => false,
     }
 }
 

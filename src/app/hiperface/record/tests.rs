@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use super::*;
+use crate::signal::history::Flags;
+use crate::units::Moment;
 
 /// 32 steps a period, 4096 a turn; 4096 turns.
 const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
@@ -24,13 +26,13 @@ fn watched(microseconds: u64, value: i64) -> Sample {
 }
 
 fn line<'a>(record: &'a Record, heading: &str) -> &'a Line {
-    record.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
+    record.recorder().lines().iter().find(|line| line.heading == heading).unwrap()
 }
 
 /// Time in nanoseconds, value in the samples' own unit, flags.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
-    let history = record.recorder.history(line).unwrap();
+    let history = record.recorder().history(line).unwrap();
     let sample = |index| history.sample(line.column(), index).unwrap();
     history.all().map(sample).map(|own| (own.time.nanoseconds(), own.value.to_f64(), own.flags)).collect()
 }
@@ -113,7 +115,7 @@ fn a_long_run_misses_no_break_and_no_wrap() {
             record.add(std::mem::take(&mut batch), 0, Some(SKM36));
         }
     }
-    let recorder = &record.recorder;
+    let recorder = &record.recorder();
     let own = line(&record, "position");
     let history = recorder.history(own).unwrap();
     assert_eq!(history.all(), 0..600_000);

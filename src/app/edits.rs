@@ -1,0 +1,109 @@
+//! Bytes that a user wants otherwise than the device has them, by their place, with steps that can be undone. What a byte
+//! is on the device, and whether it may be edited at all, is said by whoever holds the memory.
+
+use std::collections::BTreeMap;
+
+/// Edited bytes by their place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Edits<K: Ord + Copy> {
+    edits: BTreeMap<K, u8>,
+    undo: Vec<BTreeMap<K, u8>>,
+    redo: Vec<BTreeMap<K, u8>>,
+}
+
+impl<K: Ord + Copy> Default for Edits<K> {
+    fn default() -> Self {
+        Edits { edits: BTreeMap::new(), undo: Vec::new(), redo: Vec::new() }
+    }
+}
+
+impl<K: Ord + Copy> Edits<K> {
+    /// Steps that can be undone.
+    const UNDO_STEPS: usize = 200;
+
+    /// The byte that is wanted here; `None`: as the device has it.
+    pub(super) fn get(&self, at: K) -> Option<u8> {
+        self.edits.get(&at).copied()
+    }
+
+    /// There is something to write.
+    pub(super) fn is_dirty(&self) -> bool {
+        !self.edits.is_empty()
+    }
+
+    /// All of them, in the order of their places.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (K, u8)> {
+        self.edits.iter().map(|(at, byte)| (*at, *byte))
+    }
+
+    /// Edits bytes, as one step that can be undone; `is_edit` says whether a byte at its place is one.
+    pub(super) fn put(&mut self, bytes: impl IntoIterator<Item = (K, u8)>, is_edit: impl Fn(K, u8) -> bool) {
+        self.step(|edits| {
+            for (at, byte) in bytes {
+                if is_edit(at, byte) {
+                    edits.insert(at, byte);
+                } else {
+                    edits.remove(&at);
+                }
+            }
+        });
+    }
+
+    /// Takes edits back, as one step that can be undone.
+    pub(super) fn revert(&mut self, is_meant: impl Fn(K) -> bool) {
+        self.step(|edits| edits.retain(|at, _| !is_meant(*at)));
+    }
+
+    /// Forgets what is no edit any more: the device was read again, or a step was undone.
+    pub(super) fn settle(&mut self, is_edit: impl Fn(K, u8) -> bool) {
+        self.edits.retain(|at, byte| is_edit(*at, *byte));
+    }
+
+    /// There is a step to undo.
+    pub(super) fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// There is a step to do again.
+    pub(super) fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// Undoes the last step. False when there is none.
+    pub(super) fn undo(&mut self) -> bool {
+        let Some(before) = self.undo.pop() else { return false };
+        self.redo.push(std::mem::replace(&mut self.edits, before));
+        true
+    }
+
+    /// Does the last undone step again. False when there is none.
+    pub(super) fn redo(&mut self) -> bool {
+        let Some(after) = self.redo.pop() else { return false };
+        self.undo.push(std::mem::replace(&mut self.edits, after));
+        true
+    }
+
+    /// What was undone belongs to another memory.
+    pub(super) fn forget_redo(&mut self) {
+        self.redo.clear();
+    }
+
+    /// What led here cannot be undone any more.
+    pub(super) fn forget_steps(&mut self) {
+        self.undo.clear();
+        self.redo.clear();
+    }
+
+    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, u8>)) {
+        let before = self.edits.clone();
+        change(&mut self.edits);
+        if self.edits == before {
+            return;
+        }
+        self.redo.clear();
+        self.undo.push(before);
+        if self.undo.len() > Self::UNDO_STEPS {
+            self.undo.remove(0);
+        }
+    }
+}
