@@ -217,15 +217,21 @@ impl<'a> Line<'a> {
         Ok(heard)
     }
 
-    /// Before each exchange: the user's wish, and silence on the line. Where somebody talks, silence has to last for
+    /// Before each exchange: the user's wish.
+    ///
+    /// # Errors
+    /// [`LineError::Cancelled`].
+    pub(super) fn start(&mut self) -> Result<(), LineError> {
+        if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Before each exchange on a line without packets: the user's wish, and silence on the line. Where somebody talks, silence has to last for
     /// `quiet`.
     ///
     /// # Errors
     /// See [`LineError`].
     pub(super) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
-        if !self.shielded && self.ctx.cancel.stops_transaction() {
-            return Err(LineError::Cancelled);
-        }
+        self.start()?;
         let mut stray = Vec::new();
         // Looks at least once: what came while nobody listened is no part of the next reply.
         loop {

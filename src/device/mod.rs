@@ -1,6 +1,7 @@
 //! What one does with a device: procedures that read like the manuals' step tables.
 
 pub mod biss;
+pub mod bridge;
 pub mod hiperface;
 mod line;
 

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use crate::device::bridge::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
-use crate::protocol::biss::RegisterAddress;
+use crate::protocol::biss::{FrameError, RegisterAddress};
 use crate::protocol::ubicom::ReplyError;
 
 /// What was asked of an encoder.
@@ -57,6 +58,39 @@ pub enum Error {
     /// Bytes keep arriving where there should be silence.
     #[error("the line is never silent")]
     NeverSilent,
+    /// The adapter between us and the encoder.
+    #[error(transparent)]
+    Adapter(#[from] AdapterError),
+    /// Nobody acknowledges on the bus.
+    #[error("nobody acknowledges on the bus ({tries} tries)")]
+    NoAcknowledge {
+        /// How often it was asked.
+        tries: u32,
+        /// The adapter could supply the encoder and was not told to.
+        supply_off: bool,
+    },
+    /// The data line stays low.
+    #[error("the data line stays low ({tries} tries)")]
+    StuckLow {
+        /// How often it was asked.
+        tries: u32,
+    },
+    /// The data line stays high.
+    #[error("the data line stays high ({tries} tries)")]
+    StuckHigh {
+        /// How often it was asked.
+        tries: u32,
+    },
+    /// No frame has ever had a right checksum: the widths are not those of the encoder.
+    #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
+    WrongWidths {
+        /// How many.
+        frames: u32,
+        /// Position, error and warning bits, as they were taken.
+        data_bits: u8,
+        /// Bits of the checksum, as they were taken.
+        crc_bits: u8,
+    },
     /// The encoder answers, and not when it is asked for this register: it has none there.
     #[error("the encoder has no register {address}")]
     NoSuchRegister {
@@ -130,6 +164,12 @@ pub enum Damage {
     /// A reply came before our own bytes, or these came back changed.
     #[error("our own bytes did not come back before the reply")]
     Echo,
+    /// The checksum of a position frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The checksum of a control frame, as the adapter says.
+    #[error("the encoder's answer to the register access has a wrong CRC")]
+    ControlFrame,
     /// Readings of the same thing differ.
     #[error("two readings differ")]
     Inconsistent,
@@ -145,11 +185,25 @@ impl From<LineError> for Error {
     }
 }
 
+impl From<Failure> for Error {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Adapter(error) => Error::Adapter(error),
+            Failure::Line(error) => error.into(),
+        }
+    }
+}
+
 impl Error {
     /// The encoder can no longer be reached: trying anything else makes no sense.
     pub fn is_lost(&self) -> bool {
         match self {
-            Error::Link(_) | Error::NoReply { .. } => true,
+            Error::Link(_)
+            | Error::NoReply { .. }
+            | Error::NoAcknowledge { .. }
+            | Error::StuckLow { .. }
+            | Error::StuckHigh { .. }
+            | Error::Adapter(AdapterError::Silent) => true,
             Error::Unclear { cause, .. } => cause.is_lost(),
             _ => false,
         }

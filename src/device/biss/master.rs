@@ -1,20 +1,22 @@
 //! The host's side of the line: what is asked again, what is read back, and what is asked twice. One exchange is in
-//! [`ubicom`].
+//! [`ubicom`] or [`bus`].
 //!
 //! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
 
+mod bus;
 mod ubicom;
 
 use std::time::Duration;
 
 use super::error::{Asked, Damage};
 use super::position::PositionReading;
-use super::{Error, Station};
+use super::{Error, Station, Way};
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
 use crate::protocol::biss::RegisterAddress;
 use crate::protocol::ubicom::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::units::Moment;
+use bus::NoFrame;
 
 /// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
 const SILENCES: u32 = 3;
@@ -34,6 +36,8 @@ enum Trouble {
     },
     /// Something came back and is broken.
     Damage(Damage),
+    /// The bus has no frame.
+    NoFrame(NoFrame),
 }
 
 /// How one exchange ended. The outer error ends everything; the inner one may be tried again.
@@ -51,6 +55,8 @@ impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
+        // Who knows what happened to the encoder since the last one.
+        station.bank = None;
         Master { line: Line::new(ctx), station }
     }
 
@@ -105,6 +111,7 @@ impl<'a> Master<'a> {
         let asked = Asked::Read(address);
         match self.read_confirmed(asked, |master| master.read_once(address)) {
             Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
+            Err(failed) if self.station.way == Way::Adapter => Err(self.diagnose(failed)),
             result => result,
         }
     }
@@ -135,6 +142,9 @@ impl<'a> Master<'a> {
         let mut tries = 0;
         loop {
             tries += 1;
+            if self.station.way == Way::Adapter {
+                self.select_bank(address)?;
+            }
             let trouble = match self.write_once(address, value)? {
                 Ok(Taken::Yes) => {
                     self.station.line.recovered();
@@ -165,14 +175,41 @@ impl<'a> Master<'a> {
     /// # Errors
     /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
-        self.ask(Asked::Position, |master| master.position_once())
+        if self.station.way == Way::ConfigPin {
+            return self.ask(Asked::Position, |master| master.pin_position_once());
+        }
+        self.be_ready()?;
+        match self.ask(Asked::Position, |master| master.bus_position_once()) {
+            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.look_at_more_frames(failed),
+            result => result,
+        }
     }
 
-    /// What has to be known before the first register: the order of a register number's bytes.
-    fn be_ready(&mut self) -> Result<(), Error> {
-        if self.station.order.is_some() {
-            return Ok(());
+    fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+        match self.station.way {
+            Way::ConfigPin => self.pin_read_once(address),
+            Way::Adapter => self.bus_read_once(address),
         }
+    }
+
+    fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+        match self.station.way {
+            Way::ConfigPin => self.pin_write_once(address, value),
+            Way::Adapter => self.bus_write_once(address, value),
+        }
+    }
+
+    /// What has to be done before the first register: learning the order of a register number's bytes, or setting the
+    /// bus.
+    fn be_ready(&mut self) -> Result<(), Error> {
+        match self.station.way {
+            Way::Adapter => self.be_ready_on_bus(),
+            Way::ConfigPin if self.station.order.is_some() => Ok(()),
+            Way::ConfigPin => self.probe_order(),
+        }
+    }
+
+    fn probe_order(&mut self) -> Result<(), Error> {
         let Request::Read { register } = Request::PROBE else { return Ok(()) };
         let asked = Asked::Read(RegisterAddress::from_global(register).unwrap_or(RegisterAddress::BANK_SELECT));
         let answer = self.read_confirmed(asked, |master| master.probe_once())?;
@@ -220,19 +257,26 @@ impl<'a> Master<'a> {
         match trouble {
             Trouble::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
             Trouble::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+            Trouble::NoFrame(cause) => self.no_frame(*cause, tries),
         }
     }
 
     /// What is right about a broken line before the next try; `failed` when there is to be none.
     fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
-        let longest = self.longest_exchange();
+        let longest = match self.station.way {
+            Way::ConfigPin => self.longest_pin_exchange(),
+            Way::Adapter => self.longest_bus_exchange(),
+        };
         if !self.line.may_ask_again(&mut self.station.line, tries, longest) {
             return Err(failed);
         }
         match trouble {
+            // Frames come one after the other, good or bad, and late packets are told by their number.
+            Trouble::Damage(Damage::Frame(_)) => {}
+            _ if self.station.way == Way::Adapter => self.pause()?,
             Trouble::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
             // A frame that the encoder still waits for the end of is over after that.
-            Trouble::Damage(_) => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
+            _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
         }
         Ok(())
     }
@@ -248,7 +292,10 @@ impl<'a> Master<'a> {
             if !answers || !matches!(self.read_once(address)?, Err(Trouble::Silence { .. })) {
                 return Ok(false);
             }
-            self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?;
+            match self.station.way {
+                Way::ConfigPin => self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?,
+                Way::Adapter => self.pause()?,
+            }
         }
         Ok(true)
     }

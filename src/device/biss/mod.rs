@@ -3,7 +3,8 @@
 //! kit encoders.
 //!
 //! ```text
-//! read, write, position ── master: what is asked again ──▶ master/ubicom: one exchange over the configuration pin
+//! read, write, position ── master: what is asked again ──┬─▶ master/ubicom: one exchange over the configuration pin
+//!                                                        └─▶ master/bus: one over an adapter (device/bridge)
 //! ```
 
 mod error;
@@ -15,4 +16,4 @@ pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};
 pub use master::Master;
 pub use position::PositionReading;
-pub use station::{PARAMETERS, Station, Way};
+pub use station::{PARAMETERS, Station, Supply, Way};

@@ -4,19 +4,23 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::device::bridge::AdapterState;
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, ByteOrder, Description, Layout, RegisterAddress};
 use crate::protocol::ubicom::REPLY_TIME_OUT;
+use crate::units::Moment;
 
 /// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 4] = ["order", "echo", "timeout", "margin"];
+pub const PARAMETERS: [&str; 6] = ["order", "echo", "timeout", "margin", "clock", "voltage"];
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// UBICOM over its configuration pin: registers by their global address.
     ConfigPin,
+    /// BiSS over an adapter: registers by bank and address.
+    Adapter,
 }
 
 /// What a session knows about its line and the encoder at its end.
@@ -30,15 +34,58 @@ pub struct Station {
     pub order: Option<ByteOrder>,
     /// So long a reply may take, beside the time of its bytes and the margin.
     pub timeout: Duration,
+    /// The clock of BiSS in hertz, as wished; the adapter takes the nearest that it has.
+    pub clock_hz: u32,
+    /// The clock of BiSS in hertz as the adapter has set it; `None` before.
+    pub actual_clock_hz: Option<u32>,
+    /// The encoder's supply, where the adapter is to switch it.
+    pub supply: Option<Supply>,
+    /// The adapter, over that way.
+    pub adapter: AdapterState,
     /// What the encoder's registers are; `None` before it was identified.
     pub description: Option<Arc<Description>>,
     /// The frame as the encoder's data sheet tells it.
     pub layout: Option<Layout>,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
+    /// How the adapter's bus is set.
+    pub(super) bus: Option<Bus>,
+    /// The bank that is selected over BiSS, and when it was last sure.
+    pub(super) bank: Option<(u8, Moment)>,
+    /// Frames with a wrong checksum since the last reading.
+    pub(super) crc_errors: u32,
+    /// A frame with these widths had a right checksum.
+    pub(super) good_frames: bool,
+}
+
+/// The encoder's supply as an adapter gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Supply {
+    /// Millivolts wished.
+    pub millivolt: u16,
+    /// Millivolts and milliamperes measured when it was switched on; `None` before.
+    pub measured: Option<(u16, u16)>,
+}
+
+impl Supply {
+    /// Until registers can be asked: data sheet, 02:0Eh.
+    pub(super) const POWER_UP: Duration = Duration::from_millis(500);
+    /// Millivolts that every version of the kit encoder stands (manual, chapter 2: 4.75 to 12.5 V).
+    const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
+}
+
+/// How an adapter's bus is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Bus {
+    pub(super) clock_hz: u32,
+    pub(super) data_bits: u8,
+    pub(super) crc_bits: u8,
 }
 
 impl Station {
+    /// The clock of BiSS where none is wished: slow enough for long cables.
+    pub const CLOCK_HZ: u32 = 1_000_000;
+
     /// A line that nobody has used.
     pub fn new(way: Way, margin: Duration) -> Self {
         Station {
@@ -46,9 +93,17 @@ impl Station {
             line: LineState::new(margin),
             order: None,
             timeout: REPLY_TIME_OUT,
+            clock_hz: Self::CLOCK_HZ,
+            actual_clock_hz: None,
+            supply: None,
+            adapter: AdapterState::default(),
             description: None,
             layout: None,
             thorough: false,
+            bus: None,
+            bank: None,
+            crc_errors: 0,
+            good_frames: false,
         }
     }
 
@@ -68,6 +123,11 @@ impl Station {
         if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
             station.line.margin = margin;
         }
+        if let Some(clock) = query.read("clock", "hertz from 80000 to 10000000", read_clock)? {
+            station.clock_hz = clock;
+        }
+        let millivolt = query.read("voltage", "volts from 4.75 to 12.5", read_voltage)?;
+        station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
         Ok(station)
     }
 
@@ -89,9 +149,15 @@ impl Station {
             return true;
         }
         let Some(description) = &self.description else { return false };
-        let is_command = description.procedures().iter().any(|procedure| procedure.command == address);
-        let stores = description.at(address).is_none_or(|register| register.saves.is_empty());
-        description.access(address) == Some(Access::Rw) && !is_command && stores
+        description.access(address) == Some(Access::Rw) && !self.is_command(address)
+    }
+
+    /// What is written there is a command: of a procedure, or one that saves something.
+    pub(super) fn is_command(&self, address: RegisterAddress) -> bool {
+        self.description.as_ref().is_some_and(|description| {
+            let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());
+            saves || description.procedures().iter().any(|procedure| procedure.command == address)
+        })
     }
 }
 
@@ -99,6 +165,7 @@ impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.way {
             Way::ConfigPin => f.write_str("UBICOM"),
+            Way::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
         }
     }
 }
@@ -117,6 +184,17 @@ fn read_timeout(text: &str) -> Option<Duration> {
     text.parse().ok().filter(|ms| (1..=10_000).contains(ms)).map(Duration::from_millis)
 }
 
+fn read_clock(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|hz| (80_000..=10_000_000).contains(hz))
+}
+
+/// Volts as millivolts.
+fn read_voltage(text: &str) -> Option<u16> {
+    let volts: f64 = text.parse().ok().filter(|volts: &f64| (0.0..=60.0).contains(volts))?;
+    // At most 60 000.
+    Some((volts * 1000.0).round() as u16).filter(|millivolt| Supply::RANGE.contains(millivolt))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,14 +209,16 @@ mod tests {
         let station = station("").unwrap();
         assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
         assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(100), Duration::from_millis(50)));
-        assert_eq!(station.frame().bits(), 41);
+        assert_eq!((station.clock_hz, station.supply, station.frame().bits()), (1_000_000, None, 41));
     }
 
     #[test]
     fn a_line_is_read_from_its_parameters() {
-        let station = station("order=high-first&echo=on&timeout=250&margin=5").unwrap();
+        let station = station("order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75").unwrap();
         assert_eq!((station.order, station.line.echo), (Some(ByteOrder::HighFirst), Echo::On));
         assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(250), Duration::from_millis(5)));
+        assert_eq!(station.clock_hz, 80_000);
+        assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
     #[test]
@@ -148,6 +228,10 @@ mod tests {
             ("echo=yes", "echo=yes: auto, on or off"),
             ("timeout=0", "timeout=0: milliseconds from 1 to 10000"),
             ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
+            ("clock=10000001", "clock=10000001: hertz from 80000 to 10000000"),
+            ("clock=NaN", "clock=NaN: hertz from 80000 to 10000000"),
+            ("voltage=24", "voltage=24: volts from 4.75 to 12.5"),
+            ("voltage=NaN", "voltage=NaN: volts from 4.75 to 12.5"),
         ];
         for (query, message) in cases {
             assert_eq!(station(query).unwrap_err().to_string(), message);

@@ -59,7 +59,7 @@ fn echo_is_learned_and_removed_whatever_was_told() {
             pin.station.line.echo = setting;
             assert_eq!(pin.master().read_run(at("0x02:0x00"), 4), Ok(vec![0x01, 0x02, 0x04, 0x43]));
             assert_eq!(pin.master().write(at("0x40"), 5), Ok(()));
-            assert_eq!(pin.port().encoder().bank(), 5);
+            assert_eq!(pin.device().encoder().bank(), 5);
             assert_eq!((pin.station.line.echo, pin.station.line.damaged), (told, 0), "{setting:?}");
         }
     }
@@ -213,11 +213,11 @@ fn writes_over_a_noisy_line_end_as_they_say() {
         for seed in 0..20 {
             let mut pin = Pin::new(&format!("seed={seed}&fault={noise}"));
             for value in 1..20 {
-                let before = pin.port().encoder().bank();
+                let before = pin.device().encoder().bank();
                 match pin.master().write(at("0x40"), value) {
-                    Ok(()) => assert_eq!(pin.port().encoder().bank(), value, "{noise}, seed {seed}"),
+                    Ok(()) => assert_eq!(pin.device().encoder().bank(), value, "{noise}, seed {seed}"),
                     Err(Error::Unclear { .. }) => {}
-                    Err(error) => assert_eq!(pin.port().encoder().bank(), before, "{noise}, seed {seed}: {error}"),
+                    Err(error) => assert_eq!(pin.device().encoder().bank(), before, "{noise}, seed {seed}: {error}"),
                 }
             }
         }

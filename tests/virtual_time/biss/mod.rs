@@ -1,4 +1,5 @@
 //! A BiSS encoder at the end of its line.
 
+mod adapter;
 mod master;
 mod support;

@@ -37,7 +37,7 @@ struct Heard {
 
 impl Master<'_> {
     /// Reads a register once.
-    pub(super) fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    pub(super) fn pin_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         self.register_once(Request::Read { register: address.global() }, order)
     }
@@ -56,7 +56,7 @@ impl Master<'_> {
     }
 
     /// Writes a register once.
-    pub(super) fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+    pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
             Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(Taken::Yes),
@@ -67,7 +67,7 @@ impl Master<'_> {
     }
 
     /// Reads the position once.
-    pub(super) fn position_once(&mut self) -> Attempt<PositionReading> {
+    pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
             Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a position: {reply:?}"))),
@@ -82,7 +82,7 @@ impl Master<'_> {
     }
 
     /// The time that an exchange takes at most.
-    pub(super) fn longest_exchange(&self) -> Duration {
+    pub(super) fn longest_pin_exchange(&self) -> Duration {
         characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
@@ -92,7 +92,7 @@ impl Master<'_> {
         let sent_at = self.now();
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
-        let deadline = sent_at + self.longest_exchange();
+        let deadline = sent_at + self.longest_pin_exchange();
         let heard = Heard { receiver: Receiver::new(NODE), sent: frame, bytes: 0, echo_heard: false, damage: None };
         self.listen(request, heard, deadline)
     }

@@ -1,0 +1,252 @@
+//! The host's side of the open adapter, whatever bus is behind it (reference "bridge"): a request, the reply with the same
+//! sequence number, and the request once more where none comes. What streams bring in between is let go here.
+
+use crate::bits::MaskedBytes;
+use crate::device::line::{Line, LineError, LineState};
+use crate::protocol::bridge::{
+    BodyError, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
+};
+use crate::units::Moment;
+
+/// What is known about an adapter, from one job to the next.
+#[derive(Clone, Debug, Default)]
+pub struct AdapterState {
+    receiver: Receiver,
+    next_seq: u8,
+    hello: Option<Hello>,
+    clocks: Clocks,
+}
+
+/// Why an adapter gives no reply that can be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AdapterError {
+    /// Nothing comes, asked twice.
+    #[error("the adapter does not answer")]
+    Silent,
+    /// It speaks another version of the protocol.
+    #[error("the adapter speaks version {got} of the bridge protocol, this program version {expected}")]
+    Version {
+        /// This program's.
+        expected: u8,
+        /// The adapter's.
+        got: u8,
+    },
+    /// It has not what this needs.
+    #[error("the adapter {name} cannot do BiSS")]
+    NoBiss {
+        /// What it calls itself.
+        name: String,
+    },
+    /// It refuses a request.
+    #[error("the adapter refuses operation {:02X}h with code {}: {text}", operation.byte(), code.byte())]
+    Refused {
+        /// What was asked.
+        operation: Operation,
+        /// Why.
+        code: ErrorCode,
+        /// In its own words.
+        text: String,
+    },
+    /// Its reply is none of this version.
+    #[error("the adapter's reply to operation {:02X}h cannot be read: {cause}", operation.byte())]
+    Reply {
+        /// What was asked.
+        operation: Operation,
+        /// What is wrong with it.
+        cause: BodyError,
+    },
+    /// It answers another question.
+    #[error("the adapter answers operation {:02X}h with {:02X}h", asked.byte(), got.byte())]
+    Other {
+        /// What was asked.
+        asked: Operation,
+        /// What was answered.
+        got: Operation,
+    },
+}
+
+/// An adapter's fault, or that of the wire to it.
+#[derive(Debug)]
+pub(super) enum Failure {
+    Adapter(AdapterError),
+    Line(LineError),
+}
+
+impl From<AdapterError> for Failure {
+    fn from(error: AdapterError) -> Self {
+        Failure::Adapter(error)
+    }
+}
+
+impl From<LineError> for Failure {
+    fn from(error: LineError) -> Self {
+        Failure::Line(error)
+    }
+}
+
+/// A reply, and between which moments it was made.
+pub(super) struct Answered {
+    pub(super) reply: Reply,
+    sent_at: Moment,
+    received_at: Moment,
+}
+
+impl AdapterState {
+    /// Who it is; `None` before it was asked.
+    pub const fn hello(&self) -> Option<&Hello> {
+        self.hello.as_ref()
+    }
+
+    /// The moment of our clock in which the adapter's stood at `t_us`, with the reply that told so.
+    pub(super) fn moment_of(&mut self, t_us: u64, answered: &Answered) -> Moment {
+        self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
+    }
+}
+
+/// The host's side, for one exchange.
+pub(super) struct Adapter<'m, 'a> {
+    pub(super) line: &'m mut Line<'a>,
+    pub(super) state: &'m mut LineState,
+    pub(super) adapter: &'m mut AdapterState,
+}
+
+impl Adapter<'_, '_> {
+    /// Asks who is there, once a session: HELLO switches the supply off and ends streams.
+    ///
+    /// # Errors
+    /// [`AdapterError::Version`] among others.
+    pub(super) fn hello(&mut self) -> Result<(), Failure> {
+        if self.adapter.hello.is_none() {
+            // The empty packet before it ends what the adapter may have heard of somebody else.
+            let answered = self.repeat(&Request::Hello, &[0])?;
+            let Reply::Hello(hello) = answered.reply else {
+                return Err(other(Operation::Hello, &answered.reply).into());
+            };
+            self.adapter.hello = Some(hello);
+        }
+        Ok(())
+    }
+
+    /// Asks; once more where no reply comes. Only for what may be done twice.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
+    pub(super) fn ask(&mut self, request: &Request) -> Result<Answered, Failure> {
+        self.repeat(request, &[])
+    }
+
+    fn repeat(&mut self, request: &Request, before: &[u8]) -> Result<Answered, Failure> {
+        for _ in 0..2 {
+            if let Some(answered) = self.exchange(request, before)? {
+                return Ok(answered);
+            }
+        }
+        Err(AdapterError::Silent.into())
+    }
+
+    /// Asks once; `None` where no reply comes.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
+    pub(super) fn ask_once(&mut self, request: &Request) -> Result<Option<Answered>, Failure> {
+        self.exchange(request, &[])
+    }
+
+    fn exchange(&mut self, request: &Request, before: &[u8]) -> Result<Option<Answered>, Failure> {
+        self.line.start()?;
+        let seq = self.adapter.next_seq;
+        self.adapter.next_seq = seq.wrapping_add(1);
+        let bytes = [before, &request.emit(seq).emit()].concat();
+        let sent_at = self.line.now();
+        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at).map_err(LineError::Link)?;
+        let deadline = sent_at + REPEAT_AFTER + self.state.margin;
+        let mut portion = Vec::new();
+        loop {
+            let broken = self.adapter.receiver.dropped();
+            while let Some(packet) = self.adapter.receiver.next_packet() {
+                if let Some(reply) = self.judge(request, seq, &packet)? {
+                    return Ok(Some(Answered { reply, sent_at, received_at: self.line.now() }));
+                }
+            }
+            self.state.damaged += self.adapter.receiver.dropped() - broken;
+            portion.clear();
+            self.line.receive(deadline, &mut portion).map_err(LineError::Link)?;
+            if portion.is_empty() {
+                self.state.damaged += 1;
+                return Ok(None);
+            }
+            self.adapter.receiver.push(&portion);
+        }
+    }
+
+    /// The reply in a packet, where it is the one to this request: late ones have another sequence number.
+    fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
+        let operation = request.operation();
+        let parsed = Message::parse(packet);
+        if packet.seq != seq || matches!(parsed, Ok(Message::Data(_))) {
+            return Ok(None);
+        }
+        let now = self.line.now();
+        self.line.show(now, MaskedBytes::clear(&packet.emit()));
+        match parsed {
+            Ok(Message::Reply(reply)) if reply.operation() == operation => Ok(Some(reply)),
+            Ok(Message::Reply(reply)) => Err(other(operation, &reply)),
+            Ok(Message::Error { code, text, .. }) => Err(AdapterError::Refused { operation, code, text }),
+            Ok(Message::Data(_)) => Ok(None),
+            Err(BodyError::Version { expected, got }) => Err(AdapterError::Version { expected, got }),
+            Err(cause) => Err(AdapterError::Reply { operation, cause }),
+        }
+    }
+}
+
+fn other(asked: Operation, reply: &Reply) -> AdapterError {
+    AdapterError::Other { asked, got: reply.operation() }
+}
+
+/// How far the adapter's clock is behind ours, in nanoseconds: between these two, as far as replies have told. What an
+/// adapter samples it samples after the request left us and before the reply came.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clocks {
+    bounds: Option<(i128, i128)>,
+}
+
+impl Clocks {
+    fn moment_of(&mut self, t_us: u64, sent_at: Moment, received_at: Moment) -> Moment {
+        let nanoseconds = |moment: Moment| i128::try_from(moment.since_start().as_nanos()).unwrap_or(i128::MAX);
+        let own = i128::from(t_us) * 1000;
+        let (least, most) = (nanoseconds(sent_at) - own, nanoseconds(received_at) - own);
+        let narrowed =
+            self.bounds.map(|(low, high)| (low.max(least), high.min(most))).filter(|(low, high)| low <= high);
+        // Clocks drift and adapters restart: then the last exchange counts alone.
+        let (low, high) = narrowed.unwrap_or((least, most));
+        self.bounds = Some((low, high));
+        let moment = u64::try_from(own + (low + high) / 2).unwrap_or(0);
+        Moment::after_start(std::time::Duration::from_nanos(moment)).clamp(sent_at, received_at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn at(microseconds: u64) -> Moment {
+        Moment::after_start(Duration::from_micros(microseconds))
+    }
+
+    #[test]
+    fn the_adapters_clock_is_narrowed_down_and_found_again() {
+        let mut clocks = Clocks::default();
+        // Ours is 1000 µs ahead. Asked at 2000, sampled at 1100 of the adapter's, answered at 2400.
+        assert_eq!(clocks.moment_of(1100, at(2000), at(2400)), at(2200));
+        // 900…1300 so far; now 995…1395: 995…1300.
+        assert_eq!(clocks.moment_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));
+        // 950…1010 narrows it to 995…1010.
+        assert_eq!(clocks.moment_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
+        // A slow exchange no longer widens it.
+        assert_eq!(clocks.moment_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));
+        // The adapter has started anew.
+        assert_eq!(clocks.moment_of(10, at(20_000), at(20_100)), at(20_050));
+        assert_eq!(clocks.moment_of(u64::MAX, at(30_000), at(30_100)), at(30_050));
+    }
+}
