@@ -1,10 +1,24 @@
-//! BiSS: what is saved of an encoder, how two differ, and what restoring would do.
+//! BiSS: what is saved of an encoder, how two differ, and what restoring and the guided procedures would do.
 
+mod compare;
+mod edit;
 mod item;
+mod plan;
 mod record;
+mod restore;
+#[cfg(test)]
+mod test_profiles;
 mod text;
 
+pub use compare::compare;
+pub use edit::{
+    MotorSource, MountingRun, Place, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
+};
 pub use item::{ItemError, RegisterRange};
+pub use plan::{Base, BissPlan, Op, PresetParts, RegisterChange};
 pub use record::{
     Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
+};
+pub use restore::{
+    DeviceState, PlanError, Restore, RestoreOptions, banks_needed, check_device, plan_data, plan_restore,
 };

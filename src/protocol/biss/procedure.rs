@@ -222,6 +222,9 @@ pub struct PresetValue {
 }
 
 impl PresetValue {
+    /// Registers that hold one.
+    pub const BYTES: u8 = 6;
+
     /// 24 bits each; `None` above. The encoder's widths may allow less.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
         if singleturn < 1 << 24 && multiturn < 1 << 24 { Some(PresetValue { singleturn, multiturn }) } else { None }
