@@ -85,6 +85,8 @@ pub(super) struct Device {
 pub(super) enum DeviceKind {
     /// HIPERFACE motor-feedback encoder.
     Hiperface,
+    /// POSITAL kit encoder with BiSS C, over UBICOM (serial:, tcp:) or an adapter (bridge:).
+    Biss,
 }
 
 #[derive(Args)]
@@ -235,7 +237,9 @@ pub(super) enum Action {
 #[derive(Args)]
 pub(super) struct Decode {
     pub(super) protocol: DeviceKind,
-    /// A frame as hex bytes; several frames as one argument each.
+    /// A frame as hex bytes; several frames as one argument each. biss: UBICOM frames, bridge packets (up to their 00), or
+    /// position frames of the kit encoder: 41 bits right-justified (16 turns, 17 steps, error, warning, CRC-6), one word
+    /// of 11 hex digits or with 0x.
     #[arg(required = true)]
     pub(super) hex: Vec<String>,
 }
@@ -291,6 +295,9 @@ pub(super) struct Simulate {
     /// Listen at HOST:PORT.
     #[arg(long, value_name = "ADDR")]
     pub(super) listen: Option<String>,
+    /// biss: be an adapter in front of the encoder, which speaks the bridge protocol, instead of its UBICOM line.
+    #[arg(long)]
+    pub(super) bridge: bool,
     /// Seed of the faults.
     #[arg(long)]
     pub(super) seed: Option<u64>,

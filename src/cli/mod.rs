@@ -3,7 +3,10 @@
 
 mod analyse;
 mod args;
+mod biss;
+mod decode;
 mod hiperface;
+mod kind;
 mod output;
 mod ports;
 mod runner;
@@ -14,7 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, Common, DeviceKind};
+use args::{Arguments, Command, Common};
 use output::Output;
 
 use crate::link::LinkUrl;
@@ -126,37 +129,17 @@ fn dispatch(common: &Common, command: Command) -> Result {
     let output = Output::new(common.json);
     match command {
         Command::Ports => ports::ports(&output),
-        Command::Find(find) => match find.device {
-            DeviceKind::Hiperface => hiperface::find(common, &output, &find),
-        },
-        Command::Identify(on) => match on.device {
-            DeviceKind::Hiperface => hiperface::identify(common, &output),
-        },
-        Command::Status(on) => match on.device {
-            DeviceKind::Hiperface => hiperface::status(common, &output),
-        },
-        Command::Position(position) => match position.device {
-            DeviceKind::Hiperface => hiperface::position(common, &output, &position),
-        },
-        Command::Read(read) => match read.device {
-            DeviceKind::Hiperface => hiperface::read(common, &output, &read.item),
-        },
-        Command::Save(save) => match save.device {
-            DeviceKind::Hiperface => hiperface::save(common, &output, &save),
-        },
-        Command::Write(write) => match write.device {
-            DeviceKind::Hiperface => hiperface::write(common, &output, &write),
-        },
-        Command::Do(act) => match act.device {
-            DeviceKind::Hiperface => hiperface::act(common, &output, &act),
-        },
-        Command::Decode(decode) => match decode.protocol {
-            DeviceKind::Hiperface => hiperface::decode(&output, &decode.hex),
-        },
+        Command::Find(find) => kind::of(find.device).find(common, &output, &find),
+        Command::Identify(on) => kind::of(on.device).identify(common, &output),
+        Command::Status(on) => kind::of(on.device).status(common, &output),
+        Command::Position(position) => kind::of(position.device).position(common, &output, &position),
+        Command::Read(read) => kind::of(read.device).read(common, &output, &read.item),
+        Command::Save(save) => kind::of(save.device).save(common, &output, &save),
+        Command::Write(write) => kind::of(write.device).write(common, &output, &write),
+        Command::Do(act) => kind::of(act.device).act(common, &output, &act),
+        Command::Decode(decode) => kind::of(decode.protocol).decode(&output, &decode.hex),
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
-        Command::Simulate(simulate) => match simulate.device {
-            DeviceKind::Hiperface => simulate::simulate(&simulate),
-        },
+        Command::Simulate(simulate) => simulate::simulate(&simulate),
         // The kind of device is in the file.
         Command::Diff(diff) => hiperface::diff(common, &output, &diff),
         Command::Verify(verify) => hiperface::verify(common, &output, &verify.file),

@@ -11,19 +11,25 @@ use super::args::Simulate;
 use super::{Done, Failure, Result};
 use crate::link::{Clock, RealClock};
 use crate::sim::ByteDevice;
-use crate::sim::hiperface::{Bus, Config};
-use crate::units::{Baud, CharacterFormat};
+use crate::units::{Baud, CharacterFormat, Moment};
 
 /// How long to wait for bytes when the device has nothing to say: also how late an interrupt is noticed.
 const PATIENCE: Duration = Duration::from_millis(20);
 
+/// A virtual device that can be served.
+pub(super) trait Simulated: ByteDevice {
+    /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
+    fn format(&self, now: Moment) -> Option<CharacterFormat>;
+}
+
 pub(super) fn simulate(arguments: &Simulate) -> Result {
-    let config = config(arguments)?;
+    let kind = super::kind::of(arguments.device);
+    let simulated = kind.simulated(arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
-    let mut device = Device { bus: Bus::new(&config), clock: RealClock::start() };
+    let mut device = Device { kind: kind.name(), simulated, clock: RealClock::start() };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
         (None, Some(address)) => listen(address, &mut device, &ended)?,
@@ -32,7 +38,8 @@ pub(super) fn simulate(arguments: &Simulate) -> Result {
     Ok(Done::Well)
 }
 
-fn config(arguments: &Simulate) -> Result<Config> {
+/// The settings of the virtual device, a key with its value each.
+pub(super) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
         let (name, value) =
@@ -41,12 +48,13 @@ fn config(arguments: &Simulate) -> Result<Config> {
     }
     pairs.extend(arguments.seed.map(|seed| ("seed".to_owned(), seed.to_string())));
     pairs.extend(arguments.fault.clone().map(|fault| ("fault".to_owned(), fault)));
-    Config::from_pairs(&pairs).map_err(|error| Failure::Usage(error.to_string()))
+    Ok(pairs)
 }
 
 /// A virtual device in real time.
 struct Device {
-    bus: Bus,
+    kind: &'static str,
+    simulated: Box<dyn Simulated>,
     clock: RealClock,
 }
 
@@ -62,20 +70,20 @@ impl Device {
     /// Serves one client until it goes or the program is interrupted. `baud` is what the client's side is set to, where
     /// that can be seen.
     fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
-        self.bus.connect(self.clock.now());
+        self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
         while !ended.load(Ordering::SeqCst) {
             let now = self.clock.now();
-            let wait = self.bus.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
+            let wait = self.simulated.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
             let heard = client.read(&mut buffer, wait)?;
             let now = self.clock.now();
             self.follow_format(client.baud());
             match heard {
-                Heard::Bytes(count) => self.bus.on_bytes(now, buffer.get(..count).unwrap_or_default()),
+                Heard::Bytes(count) => self.simulated.on_bytes(now, buffer.get(..count).unwrap_or_default()),
                 Heard::Nothing => {}
                 Heard::End => return Ok(()),
             }
-            let reply = self.bus.poll(self.clock.now());
+            let reply = self.simulated.poll(self.clock.now());
             if !reply.is_empty() {
                 client.write(&reply)?;
             }
@@ -86,12 +94,18 @@ impl Device {
     /// Parity cannot be seen from this end, and over TCP not even the speed: there the client is taken to be right.
     fn follow_format(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
-        let active =
-            self.bus.encoder(0).and_then(|encoder| encoder.settings_at(now)).and_then(|settings| settings.format());
-        if let Some(active) = active {
-            let format = CharacterFormat { baud: baud.unwrap_or(active.baud), parity: active.parity };
-            self.bus.set_host_format(now, format);
+        if let Some(own) = self.simulated.format(now) {
+            let format = CharacterFormat { baud: baud.unwrap_or(own.baud), parity: own.parity };
+            self.simulated.set_host_format(now, format);
         }
+    }
+
+    /// One line on stdout that scripts wait for.
+    fn ready(&self, place: &str) -> Result<()> {
+        let mut out = std::io::stdout().lock();
+        writeln!(out, "ready {} {place}", self.kind)
+            .and_then(|()| out.flush())
+            .map_err(|error| Failure::Failed(vec![format!("The result cannot be printed: {error}.")]))
     }
 }
 
@@ -138,7 +152,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     };
     let listener = TcpListener::bind(address).map_err(cannot)?;
     listener.set_nonblocking(true).map_err(cannot)?;
-    ready(&listener.local_addr().map_err(cannot)?.to_string())?;
+    device.ready(&listener.local_addr().map_err(cannot)?.to_string())?;
     while !ended.load(Ordering::SeqCst) {
         match listener.accept() {
             Ok((mut client, _)) => {
@@ -154,14 +168,6 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     Ok(())
 }
 
-/// One line on stdout that scripts wait for.
-fn ready(place: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "ready hiperface {place}")
-        .and_then(|()| out.flush())
-        .map_err(|error| Failure::Failed(vec![format!("The result cannot be printed: {error}.")]))
-}
-
 #[cfg(unix)]
 mod terminal {
     //! Pseudo-terminals. The other side is opened by the client alone: when it closes it, that is seen here as a
@@ -175,7 +181,7 @@ mod terminal {
 
     use serialport::{SerialPort, TTYPort};
 
-    use super::{Client, Device, Failure, Heard, PATIENCE, Result, ready};
+    use super::{Client, Clock as _, Device, Failure, Heard, PATIENCE, Result};
     use crate::units::Baud;
 
     pub(super) fn serve(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
@@ -183,14 +189,16 @@ mod terminal {
         let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
         let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
         // Until a client sets another speed, the terminal has that of the encoder.
-        let _ = slave.set_baud_rate(9600);
+        if let Some(own) = device.simulated.format(device.clock.now()) {
+            let _ = slave.set_baud_rate(own.baud.bits_per_second());
+        }
         drop(slave);
         let _link = Link::make(path, Path::new(&name)).map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => cannot("there is something already; remove it, or choose another path".into()),
             ErrorKind::NotFound => cannot("its folder does not exist; create it, or choose another path".into()),
             _ => cannot(error.to_string()),
         })?;
-        ready(&path.display().to_string())?;
+        device.ready(&path.display().to_string())?;
         while !ended.load(Ordering::SeqCst) {
             device.serve(&mut master, ended).map_err(|error| cannot(error.to_string()))?;
             wait_for_client(&mut master, ended);

@@ -18,7 +18,7 @@ use crate::protocol::hiperface::{EncoderTypes, Geometry, KIND, LineSettings, Sta
 use crate::worker::Device as _;
 use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value};
 
-pub(in crate::cli) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
     output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
@@ -87,7 +87,7 @@ fn link_parameters(found: &Found) -> String {
     format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
 }
 
-pub(in crate::cli) fn identify(common: &Common, output: &Output) -> Result {
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     let free = identity.memory.map(|memory| memory.bytes());
@@ -151,7 +151,7 @@ fn identity(runner: &mut Runner) -> Result<Identity> {
     }
 }
 
-pub(in crate::cli) fn status(common: &Common, output: &Output) -> Result {
+pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let codes = match runner.run(HiperfaceJob::Status)? {
         HiperfaceOutput::Status(codes) => codes,
@@ -178,7 +178,7 @@ pub(in crate::cli) fn codes_text(codes: &[StatusCode]) -> String {
     codes.iter().map(|code| format!("{:7}  {code}\n", kind(code))).collect()
 }
 
-pub(in crate::cli) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
     if identity.geometry.is_none() {
@@ -270,7 +270,7 @@ fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
     output.show(&json, "no position\n")
 }
 
-pub(in crate::cli) fn read(common: &Common, output: &Output, item: &str) -> Result {
+pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let item = &super::item(item)?;
     let mut runner = Runner::open(common)?;
     let value = match runner.run(HiperfaceJob::Read(*item))? {

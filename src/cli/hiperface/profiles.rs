@@ -17,7 +17,7 @@ use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, SavedProfile};
 
-pub(in crate::cli) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;
     let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
     name_locked(output, &saved, "saved without its bytes");

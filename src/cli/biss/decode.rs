@@ -1,0 +1,85 @@
+//! `decode`: captured UBICOM frames, bridge packets and position frames in words, offline. Which of them bytes are is
+//! found by what fits: the sum, the CRC.
+
+mod bridge;
+mod position;
+mod ubicom;
+
+use serde_json::{Map, json};
+
+use super::KIND;
+use crate::cli::decode::{self, Explained, show};
+use crate::cli::output::Output;
+use crate::cli::{Failure, Result};
+use crate::protocol::ubicom::{Request, SYNC};
+
+/// What an argument holds.
+enum Captured {
+    /// The bits of a position frame, as they were written.
+    Bits(String, u64),
+    Bytes(Vec<u8>),
+}
+
+pub(super) fn decode(output: &Output, words: &[String]) -> Result {
+    let mut explained = Vec::new();
+    let mut asked = None;
+    for captured in captured(words)? {
+        match captured {
+            Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
+            Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut asked)),
+        }
+    }
+    show(output, &explained)
+}
+
+/// A word of 11 hex digits, or a short one with 0x, is a number of bits; others are bytes.
+fn captured(words: &[String]) -> Result<Vec<Captured>> {
+    let is_bits = |word: &String| match digits(word) {
+        (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
+        (false, digits) => digits.len() == 11 && digits.chars().all(|c| c.is_ascii_hexdigit()),
+    };
+    if !words.iter().any(is_bits) {
+        return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
+    }
+    let one = |word: &String| match digits(word) {
+        (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
+            .map(|raw| Captured::Bits(word.clone(), raw))
+            .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
+        _ => decode::bytes(word).map(Captured::Bytes),
+    };
+    words.iter().map(one).collect()
+}
+
+/// Whether a word begins with 0x, and what stands behind it.
+fn digits(word: &str) -> (bool, &str) {
+    match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
+        Some(digits) => (true, digits),
+        None => (false, word),
+    }
+}
+
+/// Bytes are what fits; where nothing does, what they look like.
+fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
+    let ubicom = ubicom::explain(bytes, asked);
+    let bridge = bridge::explain(bytes);
+    let position: Vec<Explained> = position::of_bytes(bytes).into_iter().collect();
+    let fits = |found: &Vec<Explained>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());
+    if fits(&ubicom) {
+        ubicom
+    } else if fits(&bridge) {
+        bridge
+    } else if fits(&position) {
+        position
+    } else if bytes.first() == Some(&SYNC) {
+        ubicom
+    } else if !position.is_empty() {
+        position
+    } else {
+        bridge
+    }
+}
+
+/// Which of the three it is, for a script.
+fn form(name: &str) -> Map<String, serde_json::Value> {
+    Map::from_iter([("device".to_owned(), json!(KIND)), ("form".to_owned(), json!(name))])
+}

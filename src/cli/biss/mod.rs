@@ -1,0 +1,49 @@
+//! The commands for BiSS encoders.
+
+mod decode;
+mod words;
+
+use super::args::Simulate;
+use super::kind::Kind;
+use super::output::Output;
+use super::simulate::{Simulated, settings};
+use super::{Failure, Result};
+use crate::protocol::biss::KIND;
+use crate::protocol::ubicom;
+use crate::sim::{ConfigError, biss, bridge};
+use crate::units::{CharacterFormat, Moment};
+
+/// BiSS encoders.
+pub(super) struct Biss;
+
+impl Kind for Biss {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn decode(&self, output: &Output, words: &[String]) -> Result {
+        decode::decode(output, words)
+    }
+
+    fn simulated(&self, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        let settings = settings(arguments)?;
+        let refused = |error: ConfigError| Failure::Usage(error.to_string());
+        Ok(match arguments.bridge {
+            true => Box::new(bridge::Adapter::new(&bridge::Config::from_pairs(&settings).map_err(refused)?)),
+            false => Box::new(biss::Port::new(&biss::Config::from_pairs(&settings).map_err(refused)?)),
+        })
+    }
+}
+
+impl Simulated for biss::Port {
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        Some(ubicom::FORMAT)
+    }
+}
+
+impl Simulated for bridge::Adapter {
+    /// Over USB there is nothing to set.
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        None
+    }
+}

@@ -1,0 +1,42 @@
+//! What registers of the kit encoder are called, and what their bytes say, in words.
+
+use std::sync::LazyLock;
+
+use crate::protocol::biss::{Decoded, Description, Descriptions, Register, RegisterAddress};
+
+static KIT: LazyLock<Option<Description>> =
+    LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
+
+fn register(address: RegisterAddress) -> Option<&'static Register> {
+    KIT.as_ref()?.at(address)
+}
+
+/// What the byte at an address belongs to.
+pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
+    let area = || Some(KIT.as_ref()?.area_at(address)?.name.as_str());
+    register(address).map(|register| register.name.as_str()).or_else(area)
+}
+
+/// What the bytes from an address on say, where they are a whole register whose number has a meaning of its own.
+pub(super) fn said(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
+    let register = register(address).filter(|register| register.address == address)?;
+    words(register, bytes)
+}
+
+/// What a register's bytes say; `None` for a code without meaning.
+pub(super) fn words(register: &Register, bytes: &[u8]) -> Option<String> {
+    let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
+    Some(match register.decode(bytes)? {
+        Decoded::Number(number) => format!("{number}{unit}"),
+        Decoded::Hex(_) => return None,
+        Decoded::Scaled(value) => format!("{value}{unit}"),
+        Decoded::Bits(bits) if bits.is_empty() => "none".to_owned(),
+        Decoded::Bits(bits) => {
+            let named = |(bit, name): (u8, Option<&str>)| name.map_or_else(|| format!("bit {bit}"), str::to_owned);
+            bits.into_iter().map(named).collect::<Vec<_>>().join(", ")
+        }
+        Decoded::Choice(_, Some(name)) => name.to_owned(),
+        Decoded::Choice(value, None) => format!("unknown ({value:02X}h)"),
+        Decoded::Text(text) => text,
+    })
+}

@@ -1,0 +1,70 @@
+//! What `decode` shares between the kinds of device: captured bytes from the arguments, and what they mean, printed.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::output::Output;
+use super::{Done, Failure, Result};
+use crate::bits::parse_hex;
+
+/// A captured frame and what it means.
+pub(super) struct Explained {
+    /// As it was captured, for a person.
+    pub(super) shown: String,
+    /// As JSON carries it.
+    pub(super) compact: String,
+    /// A line each; or why it is no frame.
+    pub(super) meaning: std::result::Result<Vec<String>, String>,
+    /// Further keys for a script.
+    pub(super) more: Map<String, Json>,
+}
+
+/// Prints what frames mean. One that is none makes the command fail after all are told.
+pub(super) fn show(output: &Output, frames: &[Explained]) -> Result {
+    let mut list = Vec::new();
+    let mut text = String::new();
+    let mut broken = Vec::new();
+    for Explained { shown, compact, meaning, more } in frames {
+        let (valid, lines) = match meaning {
+            Ok(lines) => {
+                text.push_str(&format!("{shown}\n"));
+                text.extend(lines.iter().map(|line| format!("  {line}\n")));
+                (true, lines.clone())
+            }
+            Err(why) => {
+                broken.push(format!("{shown}: {why}."));
+                (false, vec![why.clone()])
+            }
+        };
+        let mut json = more.clone();
+        json.extend([
+            ("bytes".to_owned(), json!(compact)),
+            ("valid".to_owned(), json!(valid)),
+            ("meaning".to_owned(), json!(lines)),
+        ]);
+        list.push(Json::Object(json));
+    }
+    output.show(&json!({ "frames": list }), &text)?;
+    if broken.is_empty() {
+        return Ok(Done::Well);
+    }
+    let more = broken.len().saturating_sub(3);
+    if more > 1 {
+        broken.truncate(3);
+        broken.push(format!("{more} more are none either."));
+    }
+    Err(Failure::Failed(broken))
+}
+
+/// Hex bytes: arguments of three bytes or more are frames of their own; shorter ones together are one frame.
+pub(super) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
+    let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
+    if parts.iter().all(Vec::is_empty) {
+        return Err(Failure::Usage("there are no bytes to explain".to_owned()));
+    }
+    if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
+}
+
+/// The hex bytes of an argument.
+pub(super) fn bytes(word: &str) -> Result<Vec<u8>> {
+    parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not hex bytes: {why}")))
+}
