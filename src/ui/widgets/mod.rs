@@ -3,6 +3,7 @@
 
 mod chart;
 mod field_map;
+mod frame_strip;
 mod hex_editor;
 mod lissajous;
 mod step_ring;
@@ -14,6 +15,7 @@ use super::Skin;
 
 pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
+pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use step_ring::{StepRing, step_ring};

@@ -8,6 +8,7 @@ use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
 mod field_map;
+mod frame_strip;
 mod hex_editor;
 mod typed_view;
 

@@ -1,0 +1,172 @@
+//! A frame as it goes over the line: a cell a bit, in the order in which they come, its fields named below.
+//!
+//! * **Size**: as wide as there is room; the cells are as large as lets the frame lie on as few lines as it can. A field
+//!   goes to the next line as a whole, and is parted only where it is longer than a line.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: what a field is, under it.
+//! * **Accessible**: an image with the label given; its value are the fields with theirs. A field is a label with its name
+//!   and its value.
+//! * **Painting**: the bits of a field in the colour of its series, ones stronger than zeros, groups of four counted from
+//!   its last bit; a field that is lit is filled with the colour of its verdict and carries its icon.
+
+mod place;
+
+use egui::accesskit::Role;
+use egui::{Color32, CornerRadius, FontId, Galley, Painter, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
+use std::sync::Arc;
+
+use super::series;
+use crate::signal::quality::Verdict;
+use crate::ui::{Skin, controls};
+
+use place::{Placed, Want, place};
+
+/// A field of a frame.
+#[derive(Clone, Debug, Default)]
+pub struct StripField {
+    /// What it is called, below its bits.
+    pub name: String,
+    /// What it says, below its name.
+    pub value: String,
+    /// How many bits it has, 1 at least.
+    pub bits: usize,
+    /// Which of the eight series' colours; `None`: it only frames the others.
+    pub colour: Option<usize>,
+    /// It tells of something: a fault, a warning, or that all is well.
+    pub lit: Option<Verdict>,
+    /// Shown under the pointer.
+    pub tooltip: String,
+}
+
+/// A whole frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FrameStrip<'a> {
+    /// Accessible name.
+    pub label: &'a str,
+    /// Its fields, the first on the line first.
+    pub fields: &'a [StripField],
+    /// Their bits in the same order; what is missing or `None` is not known.
+    pub bits: &'a [Option<bool>],
+}
+
+/// Height of a cell, of the bar below it, and of the two lines of words.
+const CELL: f32 = 24.0;
+const BAR: f32 = 2.0;
+const NAME: f32 = 15.0;
+const VALUE: f32 = 18.0;
+
+/// Draws it.
+pub fn frame_strip(ui: &mut Ui, skin: &Skin, strip: &FrameStrip<'_>) {
+    let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, skin, field)).collect();
+    let wants = strip.fields.iter().zip(&words).map(|(field, words)| Want { bits: field.bits, words: words.width() });
+    let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), skin.space.between);
+    let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
+    let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + skin.space.inside;
+    let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * skin.space.between;
+    let (outer, response) = ui.allocate_exact_size(Vec2::new(placing.width, height), Sense::hover());
+    let told: Vec<String> = strip.fields.iter().map(StripField::words).collect();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, strip.label);
+        info.current_text_value = Some(told.join(", "));
+        info
+    });
+    for piece in &placing.pieces {
+        let (Some(field), Some(words)) = (strip.fields.get(piece.field), words.get(piece.field)) else { continue };
+        let top = outer.top() + piece.line as f32 * (line + skin.space.between);
+        let rect = Rect::from_min_size(pos2(outer.left() + piece.left, top), Vec2::new(piece.width, line));
+        let id = response.id.with((piece.field, piece.first));
+        let own = ui.interact(rect, id, Sense::hover());
+        if piece.first == 0 {
+            own.widget_info(|| WidgetInfo::labeled(Role::Label, true, field.words()));
+        }
+        if ui.is_rect_visible(rect) {
+            let first = strip.fields.iter().take(piece.field).map(|field| field.bits).sum::<usize>() + piece.first;
+            let bits = (first..first + piece.bits).map(|at| strip.bits.get(at).copied().flatten());
+            cells(ui.painter(), skin, rect, (piece, placing.cell), field, bits);
+            if piece.first == 0 {
+                words.paint(ui.painter(), skin, rect);
+            }
+        }
+        if !field.tooltip.is_empty() {
+            own.on_hover_ui(|ui| {
+                ui.label(&field.tooltip);
+            });
+        }
+    }
+}
+
+impl StripField {
+    fn words(&self) -> String {
+        if self.value.is_empty() { self.name.clone() } else { format!("{}: {}", self.name, self.value) }
+    }
+
+    fn ink(&self, skin: &Skin) -> Color32 {
+        match (self.lit, self.colour) {
+            (Some(own), _) => controls::verdict(skin, own).1.into(),
+            (None, Some(colour)) => series(skin, colour),
+            (None, None) => skin.palette.muted.into(),
+        }
+    }
+}
+
+/// The two lines below a field.
+struct Words {
+    name: Arc<Galley>,
+    value: Arc<Galley>,
+}
+
+impl Words {
+    fn of(ui: &Ui, skin: &Skin, field: &StripField) -> Self {
+        let name = match field.lit {
+            Some(own) => format!("{} {}", controls::verdict(skin, own).0, field.name),
+            None => field.name.clone(),
+        };
+        let ink = if field.lit.is_some() { field.ink(skin) } else { skin.palette.muted.into() };
+        let name = ui.painter().layout_no_wrap(name, FontId::proportional(skin.sizes.caption), ink);
+        let font = FontId::monospace(skin.sizes.body);
+        let value = ui.painter().layout_no_wrap(field.value.clone(), font, skin.palette.text.into());
+        Words { name, value }
+    }
+
+    fn width(&self) -> f32 {
+        self.name.size().x.max(self.value.size().x)
+    }
+
+    fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
+        let top = rect.top() + CELL + BAR + skin.space.inside;
+        for (galley, y) in [(&self.name, top), (&self.value, top + NAME)] {
+            painter.galley(pos2(rect.left(), y), galley.clone(), skin.palette.text.into());
+        }
+    }
+}
+
+/// The bits of a piece, and the bar below them that holds them together.
+fn cells(
+    painter: &Painter,
+    skin: &Skin,
+    rect: Rect,
+    (piece, cell): (&Placed, f32),
+    field: &StripField,
+    bits: impl Iterator<Item = Option<bool>>,
+) {
+    let ink = field.ink(skin);
+    let size = if cell < 12.0 { skin.sizes.caption } else { skin.sizes.body };
+    let corners = CornerRadius::same(2);
+    for (at, bit) in bits.enumerate() {
+        let left = rect.left() + piece.offset(at, field.bits, cell);
+        let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL));
+        let (strength, colour) = match (field.lit, bit) {
+            (Some(Verdict::Warn | Verdict::Fault), _) => (1.0, Color32::from(skin.palette.on_bad)),
+            (_, Some(true)) => (0.4, skin.palette.text.into()),
+            (_, Some(false)) => (0.14, skin.palette.text.into()),
+            (_, None) => (0.0, skin.palette.muted.into()),
+        };
+        painter.rect_filled(own, corners, skin.palette.sunken);
+        painter.rect_filled(own, corners, ink.gamma_multiply(strength));
+        let digit = bit.map_or("·", |bit| if bit { "1" } else { "0" });
+        painter.text(own.center(), egui::Align2::CENTER_CENTER, digit, FontId::monospace(size), colour);
+    }
+    let end = rect.left() + piece.offset(piece.bits.saturating_sub(1), field.bits, cell) + cell - 1.0;
+    let y = rect.top() + CELL + 1.0 + BAR / 2.0;
+    painter.hline(rect.left()..=end, y, Stroke::new(BAR, ink));
+}

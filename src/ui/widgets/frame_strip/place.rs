@@ -1,0 +1,166 @@
+//! Where the fields of a frame lie: on as few lines as there is room for, each with its bits in cells of one width.
+
+/// What a field needs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Want {
+    /// Its bits.
+    pub(super) bits: usize,
+    /// The width of the words below it.
+    pub(super) words: f32,
+}
+
+/// A field, or what lies of it on a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placed {
+    pub(super) field: usize,
+    /// Its first bit here, counted in the field.
+    pub(super) first: usize,
+    pub(super) bits: usize,
+    pub(super) line: usize,
+    pub(super) left: f32,
+    pub(super) width: f32,
+}
+
+/// All of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Placing {
+    pub(super) pieces: Vec<Placed>,
+    pub(super) lines: usize,
+    /// The widest of them.
+    pub(super) width: f32,
+    /// Width of a cell with the gap behind it.
+    pub(super) cell: f32,
+}
+
+/// Widths that a cell may have.
+const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
+/// Behind each four bits.
+const GROUP: f32 = 3.0;
+
+impl Placed {
+    /// Where the bit `at` of the piece begins, from its left; groups of four are counted from the end of the field.
+    pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
+        at as f32 * cell + groups(self.first, self.first + at, field_bits) as f32 * GROUP
+    }
+}
+
+/// How many groups of four end between two bits of a field.
+fn groups(from: usize, to: usize, field_bits: usize) -> usize {
+    let behind = |bit: usize| field_bits.saturating_sub(bit).div_ceil(4);
+    behind(from).saturating_sub(behind(to))
+}
+
+/// The fields within a width, `gap` between them. A field that is longer than a line is parted.
+pub(super) fn place(wants: &[Want], width: f32, gap: f32) -> Placing {
+    let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
+    let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
+    fits.unwrap_or_default()
+}
+
+fn with_cell(wants: &[Want], width: f32, gap: f32, cell: f32) -> Placing {
+    let mut placing = Placing { cell, ..Placing::default() };
+    let (mut left, mut line) = (0.0, 0);
+    for (field, want) in wants.iter().enumerate() {
+        let mut first = 0;
+        while first < want.bits {
+            let rest = want.bits - first;
+            let words = if first == 0 { want.words } else { 0.0 };
+            let whole = cells(first, rest, want.bits, cell).max(words);
+            if left > 0.0 && left + whole > width {
+                (left, line) = (0.0, line + 1);
+            }
+            // Whole bytes, as many as fit; one of them in any case.
+            let fit = (1..=rest).rev().find(|bits| cells(first, *bits, want.bits, cell) <= width).unwrap_or(1);
+            let bits = if fit == rest { rest } else { (fit - fit % 8).clamp(8.min(rest), rest) };
+            let own = cells(first, bits, want.bits, cell).max(words);
+            placing.pieces.push(Placed { field, first, bits, line, left, width: own });
+            placing.width = placing.width.max(left + own);
+            left += own + gap;
+            first += bits;
+        }
+    }
+    placing.lines = placing.pieces.last().map_or(0, |last| last.line + 1);
+    placing
+}
+
+/// How wide so many bits of a field are from `first` on.
+fn cells(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
+    bits as f32 * cell + groups(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAP: f32 = 8.0;
+
+    /// The kit encoder's frame with its acknowledge, start and control bit.
+    fn kit() -> Vec<Want> {
+        let want = |(bits, words)| Want { bits, words };
+        [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]
+            .map(want)
+            .into_iter()
+            .collect()
+    }
+
+    fn lines(placing: &Placing) -> Vec<Vec<usize>> {
+        (0..placing.lines)
+            .map(|line| placing.pieces.iter().filter(|own| own.line == line).map(|own| own.field).collect())
+            .collect()
+    }
+
+    #[test]
+    fn a_frame_lies_on_one_line_where_there_is_room() {
+        // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their words, which are
+        // 123 together, and seven gaps between fields.
+        let placing = place(&kit(), 1100.0, GAP);
+        assert_eq!((placing.lines, placing.cell), (1, 20.0));
+        let expected = 42.0 * 20.0 + 8.0 * 3.0 + 123.0 + 7.0 * 8.0;
+        assert!((placing.width - expected).abs() < 0.01, "{}", placing.width);
+    }
+
+    #[test]
+    fn cells_shrink_before_the_frame_goes_to_another_line() {
+        // 42 · 13 + 24 + 123 + 56 = 749.
+        let placing = place(&kit(), 749.0, GAP);
+        assert_eq!((placing.lines, placing.cell), (1, 13.0));
+        let placing = place(&kit(), 748.0, GAP);
+        assert_eq!((placing.lines, placing.cell), (1, 12.0));
+    }
+
+    #[test]
+    fn fields_stay_together_on_their_lines() {
+        let placing = place(&kit(), 420.0, GAP);
+        assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
+        assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
+        // With one point less a cell this would be as many lines: they are as wide as they can be.
+        let wider = with_cell(&kit(), 420.0, GAP, placing.cell + 1.0);
+        assert!(wider.lines > placing.lines);
+    }
+
+    #[test]
+    fn a_field_longer_than_a_line_is_parted_at_bytes() {
+        let wants = [Want { bits: 64, words: 50.0 }];
+        let placing = place(&wants, 400.0, GAP);
+        // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
+        let parts: Vec<(usize, usize)> = placing.pieces.iter().map(|own| (own.first, own.bits)).collect();
+        assert_eq!(parts, [(0, 32), (32, 32)]);
+        assert_eq!(place(&wants, 10.0, GAP).pieces.len(), 8, "eight bits in any case");
+    }
+
+    #[test]
+    fn groups_of_four_are_counted_from_the_last_bit() {
+        let piece = Placed { field: 0, first: 0, bits: 17, line: 0, left: 0.0, width: 0.0 };
+        // 17 bits: one, then four times four.
+        let offsets: Vec<f32> = [0, 1, 4, 5, 16].map(|at| piece.offset(at, 17, 10.0)).into_iter().collect();
+        assert_eq!(offsets, [0.0, 13.0, 43.0, 56.0, 172.0]);
+    }
+
+    #[test]
+    fn nothing_is_nothing() {
+        assert_eq!(place(&[], 100.0, GAP).lines, 0);
+        let none = [Want { bits: 0, words: 10.0 }];
+        assert!(place(&none, f32::NAN, GAP).pieces.is_empty());
+        assert!(!place(&kit(), 0.0, GAP).pieces.is_empty());
+    }
+}
