@@ -7,6 +7,7 @@ mod frame_strip;
 mod hex_editor;
 mod lissajous;
 mod step_ring;
+mod steps;
 mod typed_view;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
@@ -19,6 +20,7 @@ pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use step_ring::{StepRing, step_ring};
+pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.

@@ -1,0 +1,271 @@
+//! A guided procedure as a list of steps: what is done, what is to be done now, what comes, and how what is measured stands
+//! to its limits.
+//!
+//! * **Size**: as wide as there is room; a line a step, the one that counts now as high as what it says.
+//! * **Keyboard**: Tab goes from button to button.
+//! * **Pointer**: the buttons; why one cannot be pressed, under it.
+//! * **Accessible**: a label a step, with how far it is; a progress indicator a gauge, with its value and what is allowed;
+//!   buttons with the words given.
+//! * **Painting**: a rail with a dot a step, filled, ringed or hollow, its icon in the colour of how it ended; on a gauge
+//!   the allowed band, a hand where the value is, in the warning's colour outside of it.
+
+mod gauge;
+
+use std::ops::RangeInclusive;
+
+use egui::accesskit::Role;
+use egui::{Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
+
+use crate::app::Rgb;
+use crate::ui::controls::{enabled_button, fill, paragraph, primary};
+use crate::ui::{Skin, icons};
+
+/// A step of a procedure.
+#[derive(Clone, Debug, Default)]
+pub struct Step {
+    /// What it is.
+    pub title: String,
+    /// How far it is.
+    pub state: StepState,
+    /// How far it is, in a word, for whoever does not see it.
+    pub word: String,
+    /// What to do now, what came of it, why it failed; empty where there is nothing to say.
+    pub note: String,
+    /// What is measured while it counts.
+    pub gauges: Vec<Gauge>,
+    /// How much of it is done, 0 to 1; `None` where it does not run or nobody knows.
+    pub progress: Option<f32>,
+}
+
+/// How far a step is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StepState {
+    /// Its turn has not come.
+    #[default]
+    ToCome,
+    /// It waits for a person.
+    Waiting,
+    /// It runs.
+    Running,
+    /// It is done.
+    Done,
+    /// It was left out.
+    Skipped,
+    /// It failed.
+    Failed,
+}
+
+/// A measured value and what it may be.
+#[derive(Clone, Debug)]
+pub struct Gauge {
+    /// What is measured.
+    pub name: String,
+    /// The value; `None` where there is none now.
+    pub value: Option<f64>,
+    /// The value with its unit.
+    pub shown: String,
+    /// What it may be.
+    pub allowed: RangeInclusive<f64>,
+    /// What it may be, in words: `498…502 rpm`.
+    pub limits: String,
+    /// Ends of the scale; they reach beyond what is allowed.
+    pub scale: RangeInclusive<f64>,
+}
+
+/// A procedure.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Steps<'a> {
+    /// Its steps, the first first.
+    pub steps: &'a [Step],
+    /// What starts what waits: its word, and why it may not be pressed. It stands in the step that waits.
+    pub start: Option<(&'a str, Result<(), &'a str>)>,
+    /// What leaves the step out that waits.
+    pub skip: Option<&'a str>,
+    /// What ends the procedure.
+    pub cancel: Option<&'a str>,
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepsEvent {
+    /// Begin with what waits.
+    Start,
+    /// Leave out what waits.
+    Skip,
+    /// End the procedure.
+    Cancel,
+}
+
+impl Gauge {
+    /// The value is there and allowed.
+    pub fn fits(&self) -> bool {
+        self.value.is_some_and(|value| self.allowed.contains(&value))
+    }
+}
+
+impl StepState {
+    const fn counts(self) -> bool {
+        matches!(self, StepState::Waiting | StepState::Running)
+    }
+
+    fn mark(self, skin: &Skin) -> (&'static str, Rgb) {
+        let palette = skin.palette;
+        match self {
+            StepState::ToCome => ("", palette.muted),
+            StepState::Waiting => (icons::CARET_RIGHT, palette.accent),
+            StepState::Running => (icons::SPINNER, palette.accent),
+            StepState::Done => (icons::CHECK, palette.good),
+            StepState::Skipped => (icons::X, palette.muted),
+            StepState::Failed => (icons::X, palette.bad),
+        }
+    }
+}
+
+/// Radius of a step's dot, and the width of the rail on which it stands.
+const DOT: f32 = 9.0;
+const RAIL: f32 = 32.0;
+
+/// Draws the list and says what was pressed.
+pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
+    let mut event = None;
+    let mut dots: Vec<Pos2> = Vec::new();
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        for (number, step) in (1_usize..).zip(model.steps) {
+            let left = ui.cursor().left();
+            let mut middle = pos2(left + DOT + 1.0, 0.0);
+            ui.horizontal_top(|ui| {
+                ui.add_space(RAIL);
+                ui.vertical(|ui| {
+                    fill(ui);
+                    middle.y = title(ui, skin, step);
+                    event = event.or(content(ui, skin, model, step));
+                });
+            });
+            dot(ui.painter(), skin, middle, number, step);
+            dots.push(middle);
+            ui.add_space(skin.space.between + skin.space.inside);
+        }
+    });
+    for (upper, lower) in dots.iter().zip(dots.iter().skip(1)) {
+        let (from, to) = (upper.y + DOT + skin.space.inside, lower.y - DOT - skin.space.inside);
+        ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, skin.palette.line));
+    }
+    if let Some(word) = model.cancel {
+        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+            if enabled_button(ui, true, icons::STOP, word).clicked() {
+                event = Some(StepsEvent::Cancel);
+            }
+        });
+    }
+    event
+}
+
+/// Draws the title, which may have several lines; the middle of the first of them.
+fn title(ui: &mut Ui, skin: &Skin, step: &Step) -> f32 {
+    let palette = skin.palette;
+    let ink = match step.state {
+        StepState::ToCome | StepState::Skipped => palette.muted,
+        StepState::Failed => palette.bad,
+        StepState::Waiting | StepState::Running | StepState::Done => palette.text,
+    };
+    let font =
+        if step.state.counts() { skin.strong(skin.sizes.section) } else { FontId::proportional(skin.sizes.body) };
+    let half = ui.fonts_mut(|fonts| fonts.row_height(&font)) / 2.0;
+    let response = ui.add(egui::Label::new(RichText::new(&step.title).font(font).color(ink)).wrap());
+    let words = format!("{}: {}", step.title, step.word);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
+    response.rect.top() + half
+}
+
+fn content(ui: &mut Ui, skin: &Skin, model: &Steps<'_>, step: &Step) -> Option<StepsEvent> {
+    let palette = skin.palette;
+    if !step.note.is_empty() {
+        let ink = match step.state {
+            StepState::Failed => palette.bad,
+            StepState::Waiting | StepState::Running => palette.text,
+            StepState::ToCome | StepState::Done | StepState::Skipped => palette.muted,
+        };
+        paragraph(ui, RichText::new(&step.note).color(ink));
+    }
+    if !step.state.counts() {
+        return None;
+    }
+    gauge::gauges_ui(ui, skin, &step.gauges);
+    if let Some(share) = step.progress {
+        progress(ui, skin, &step.title, share);
+    }
+    if step.state != StepState::Waiting {
+        return None;
+    }
+    buttons(ui, skin, model)
+}
+
+/// Start where the eye ends, and leaving out beside it.
+fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
+    let mut event = None;
+    if let Some((_, Err(why))) = model.start {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+            paragraph(ui, RichText::new(why).color(skin.palette.warn));
+        });
+    }
+    if model.start.is_none() && model.skip.is_none() {
+        return None;
+    }
+    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+        if let Some((word, allowed)) = model.start {
+            let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, word);
+            if response.clicked() {
+                event = Some(StepsEvent::Start);
+            }
+            if let Err(why) = allowed {
+                response.on_disabled_hover_text(why);
+            }
+        }
+        if let Some(word) = model.skip
+            && enabled_button(ui, true, "", word).clicked()
+        {
+            event = Some(StepsEvent::Skip);
+        }
+    });
+    event
+}
+
+/// How much is done.
+fn progress(ui: &mut Ui, skin: &Skin, label: &str, share: f32) {
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());
+    let done = Rect::from_min_size(rect.min, Vec2::new(rect.width() * share, rect.height()));
+    ui.painter().rect_filled(rect, 3.0, skin.palette.sunken);
+    ui.painter().rect_filled(done, 3.0, skin.palette.accent);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, label);
+        info.current_text_value = Some(format!("{:.0} %", share * 100.0));
+        info
+    });
+}
+
+/// The dot of a step: its number, or how it stands.
+fn dot(painter: &Painter, skin: &Skin, middle: Pos2, number: usize, step: &Step) {
+    let palette = skin.palette;
+    let (icon, colour) = step.state.mark(skin);
+    let (font, ink) = match step.state {
+        StepState::Done | StepState::Failed => {
+            painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
+            (skin.sizes.body, colour)
+        }
+        StepState::Waiting | StepState::Running => {
+            painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
+            painter.circle_stroke(middle, DOT, Stroke::new(2.0, colour));
+            (skin.sizes.caption, palette.text)
+        }
+        StepState::ToCome | StepState::Skipped => {
+            painter.circle_stroke(middle, DOT, Stroke::new(1.0, colour));
+            (skin.sizes.caption, palette.muted)
+        }
+    };
+    let has_icon = matches!(step.state, StepState::Done | StepState::Failed | StepState::Skipped);
+    let words = if has_icon { icon.to_owned() } else { number.to_string() };
+    painter.text(middle, Align2::CENTER_CENTER, words, FontId::proportional(font), ink.into());
+}

@@ -1,0 +1,102 @@
+//! A value on a scale with the band that is allowed.
+
+use egui::accesskit::Role;
+use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
+
+use super::Gauge;
+use crate::ui::{Skin, icons};
+
+/// Least width of the scale, and widths of what stands before it.
+const SCALE: f32 = 96.0;
+const ICON: f32 = 16.0;
+const NAME: f32 = 112.0;
+const VALUE: f32 = 96.0;
+const HEIGHT: f32 = 20.0;
+
+/// Draws name, value, scale and limits of each on one line; the limits below where there is no room.
+pub(super) fn gauges_ui(ui: &mut Ui, skin: &Skin, gauges: &[Gauge]) {
+    let width = |gauge: &Gauge| {
+        let font = FontId::proportional(skin.sizes.caption);
+        ui.painter().layout_no_wrap(gauge.limits.clone(), font, skin.palette.muted.into()).size().x
+    };
+    // The scales of all of them are equally long.
+    let limits = gauges.iter().map(width).fold(0.0, f32::max);
+    let room = ui.available_width() - ICON - NAME - VALUE - skin.space.between * 3.0;
+    let beside = room - limits - skin.space.between;
+    let (scale, below) = if beside >= SCALE { (beside, false) } else { (room, true) };
+    ui.scope(|ui| {
+        // What is read stands closer than what is touched.
+        ui.spacing_mut().interact_size.y = HEIGHT;
+        for gauge in gauges {
+            gauge_ui(ui, skin, gauge, scale.clamp(SCALE / 2.0, SCALE * 3.0), below);
+        }
+    });
+}
+
+fn gauge_ui(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, limits_below: bool) {
+    let palette = skin.palette;
+    let (icon, ink) = match (gauge.fits(), gauge.value) {
+        (true, _) => (icons::CHECK_CIRCLE, palette.good),
+        (false, Some(_)) => (icons::WARNING, palette.warn),
+        (false, None) => (icons::QUESTION, palette.muted),
+    };
+    ui.horizontal(|ui| {
+        column(ui, ICON, RichText::new(icon).color(ink));
+        column(ui, NAME, skin.label(&gauge.name));
+        column(ui, VALUE, skin.mono(&gauge.shown).color(ink));
+        scale(ui, skin, gauge, width, ink.into());
+        if !limits_below {
+            ui.label(skin.caption(&gauge.limits));
+        }
+    });
+    if limits_below {
+        ui.horizontal(|ui| {
+            ui.add_space(ICON + skin.space.between);
+            ui.label(skin.caption(&gauge.limits));
+        });
+    }
+}
+
+fn column(ui: &mut Ui, width: f32, words: RichText) {
+    ui.allocate_ui_with_layout(Vec2::new(width, HEIGHT), egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(words).truncate());
+    });
+}
+
+/// The band that is allowed, and a hand where the value is; beyond the scale an arrow at its end.
+fn scale(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, ink: Color32) {
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Meter, true, &gauge.name);
+        info.current_text_value = Some(format!("{} ({})", gauge.shown, gauge.limits));
+        info
+    });
+    let (low, high) = (*gauge.scale.start(), *gauge.scale.end());
+    let span = high - low;
+    if !(span.is_finite() && span > 0.0) {
+        return;
+    }
+    let share = |value: f64| ((value - low) / span) as f32;
+    let x = |share: f32| rect.left() + rect.width() * share.clamp(0.0, 1.0);
+    let painter = ui.painter();
+    let track = Rect::from_center_size(rect.center(), Vec2::new(rect.width(), 6.0));
+    painter.rect_filled(track, 3.0, skin.palette.sunken);
+    painter.rect_stroke(track, 3.0, Stroke::new(1.0, skin.palette.line), egui::StrokeKind::Inside);
+    // A narrow band is still to be seen.
+    let (from, to) = (x(share(*gauge.allowed.start())), x(share(*gauge.allowed.end())));
+    let half = ((to - from) / 2.0).max(1.5);
+    let middle = (from + to) / 2.0;
+    let band = Rect::from_min_max(pos2(middle - half, track.top()), pos2(middle + half, track.bottom()));
+    painter.rect_filled(band, 2.0, Color32::from(skin.palette.good).gamma_multiply(0.6));
+    let Some(value) = gauge.value.filter(|value| !value.is_nan()) else { return };
+    let place = share(value);
+    if (0.0..=1.0).contains(&place) {
+        painter.vline(x(place), rect.top() + 2.0..=rect.bottom() - 2.0, Stroke::new(2.0, ink));
+        return;
+    }
+    let (tip, side) = if place < 0.0 { (rect.left(), 1.0) } else { (rect.right(), -1.0) };
+    let middle = rect.center().y;
+    let points = vec![pos2(tip, middle), pos2(tip + side * 7.0, middle - 5.0), pos2(tip + side * 7.0, middle + 5.0)];
+    painter.add(Shape::convex_polygon(points, ink, Stroke::NONE));
+}
