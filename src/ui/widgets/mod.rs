@@ -6,6 +6,7 @@ mod field_map;
 mod frame_strip;
 mod hex_editor;
 mod lissajous;
+mod register_table;
 mod step_ring;
 mod steps;
 mod typed_view;
@@ -19,6 +20,10 @@ pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
+pub use register_table::{
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterOutput, RegisterRow, RegisterTable, RegisterView,
+    register_table,
+};
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;

@@ -10,6 +10,7 @@ use crate::ui::{Skin, install_fonts};
 mod field_map;
 mod frame_strip;
 mod hex_editor;
+mod register_table;
 mod steps;
 mod typed_view;
 

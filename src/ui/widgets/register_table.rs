@@ -1,0 +1,345 @@
+//! Registers as a table, grouped by their banks: address, name, value as hex, as a number and decoded, access, default.
+//! Thousands of them scroll as easily as ten: a register is asked for only while it is in sight.
+//!
+//! * **Size**: as wide as there is room, as high as given; columns that matter least fall away, and stand under the pointer.
+//!   Below it one line about what is selected, or why something was not taken.
+//! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
+//!   Enter, F2 or a character edits the value, Enter takes it, Escape gives it up; Backspace takes the device's value
+//!   back; Ctrl+C copies.
+//! * **Pointer**: a press selects, on a heading or a caret folds; a double click edits.
+//! * **Accessible**: a table with the label given, whose value is what is selected; a row a register in sight, with its
+//!   value and how it stands; a button a group.
+//! * **Painting**: edited values in the colour of what is staged and underlined; what changed since the last reading has a
+//!   dot, what costs a write cycle a flash.
+
+mod columns;
+mod editor;
+mod keys;
+mod lines;
+mod paint;
+mod view;
+
+use std::ops::Range;
+
+use egui::accesskit::Role;
+use egui::{Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo, pos2};
+
+use super::focus_ring;
+use crate::app::Text;
+use crate::ui::{Skin, controls, icons};
+
+use columns::Columns;
+use lines::{LineKind, Lines};
+pub use view::RegisterView;
+use view::Selected;
+
+/// Where a register stands: its group, and its number in that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Place {
+    /// Number of the group.
+    pub group: usize,
+    /// Number in the group.
+    pub row: usize,
+}
+
+/// The table.
+#[derive(Clone, Copy)]
+pub struct RegisterTable<'a> {
+    /// Accessible name.
+    pub label: &'a str,
+    /// Banks.
+    pub groups: &'a [RegisterGroup],
+    /// A register of a group; asked for what is in sight or unfolded.
+    pub row: &'a dyn Fn(Place) -> RegisterRow,
+}
+
+/// A bank.
+#[derive(Clone, Debug, Default)]
+pub struct RegisterGroup {
+    /// Its heading.
+    pub title: String,
+    /// What there is to know about it, at the end of its heading.
+    pub note: String,
+    /// Registers in it.
+    pub rows: usize,
+}
+
+/// A register as it is shown.
+#[derive(Clone, Debug, Default)]
+pub struct RegisterRow {
+    /// Where it is: `04:1F`.
+    pub address: String,
+    /// What it is called.
+    pub name: String,
+    /// Its value in hexadecimal digits; empty where it was not read.
+    pub hex: String,
+    /// The same as a number.
+    pub decimal: String,
+    /// What it means, with its unit.
+    pub meaning: String,
+    /// `R`, `W`, `RW`.
+    pub access: String,
+    /// As delivered, in hexadecimal digits; empty where nobody knows.
+    pub default: String,
+    /// It is not as it was at the reading before.
+    pub changed: bool,
+    /// Its value was edited and is not written.
+    pub edited: bool,
+    /// Writing it costs something: what, in words.
+    pub cost: Option<String>,
+    /// Why its value cannot be edited; `None` where it can.
+    pub read_only: Option<String>,
+    /// What there is to know about it, under the pointer.
+    pub tooltip: String,
+    /// Its bit fields.
+    pub fields: Vec<RegisterBits>,
+}
+
+/// A bit field of a register.
+#[derive(Clone, Debug, Default)]
+pub struct RegisterBits {
+    /// Which bits: `b3…b0`.
+    pub bits: String,
+    /// What it is called.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+    /// What that means.
+    pub meaning: String,
+    /// It tells of something that matters.
+    pub lit: bool,
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RegisterEvent {
+    /// The device's value back in an edited register.
+    Revert(Place),
+}
+
+/// What came of drawing the table.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RegisterOutput {
+    /// What the user wants.
+    pub event: Option<RegisterEvent>,
+    /// The groups that are in sight.
+    pub groups: Range<usize>,
+}
+
+/// Height of a line.
+const LINE: f32 = 18.0;
+
+impl RegisterRow {
+    /// What a screen reader says of it.
+    fn words(&self, skin: &Skin) -> String {
+        let mut parts = vec![self.hex.clone(), self.decimal.clone(), self.meaning.clone()];
+        parts.extend(self.changed.then(|| skin.say("widget.register_changed")));
+        parts.extend(self.edited.then(|| skin.say("widget.register_edited")));
+        parts.retain(|part| !part.is_empty());
+        parts.join(", ")
+    }
+
+    fn label(&self) -> String {
+        format!("{} {}", self.address, self.name)
+    }
+}
+
+/// Draws the table with so much height and says what was done to it. `take` hears what was typed for a register, and says
+/// why it cannot be.
+pub fn register_table(
+    ui: &mut Ui,
+    skin: &Skin,
+    table: &RegisterTable<'_>,
+    height: f32,
+    view: &mut RegisterView,
+    take: &mut dyn FnMut(Place, &str) -> Result<(), Text>,
+) -> RegisterOutput {
+    let id = ui.make_persistent_id(("register_table", table.label));
+    let mut output = RegisterOutput::default();
+    let mut lines = Lines::new(table, view);
+    if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
+        output.event = keys::listen(ui, table, &lines, view);
+        lines = Lines::new(table, view);
+    }
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::ZERO;
+        ui.spacing_mut().scroll.fade.strength = 0.0;
+        let status = LINE + skin.space.inside;
+        let frame = skin.sunken().show(ui, |ui| {
+            controls::fill(ui);
+            // The lines lie beside their scroll bar.
+            let columns = Columns::new(ui.available_width() - ui.spacing().scroll.allocated_width());
+            paint::header(ui, skin, &columns);
+            let margins = 2.0 * f32::from(skin.sunken().inner_margin.top);
+            let room = (height - status - margins - paint::HEADER).max(LINE * 3.0);
+            body(ui, skin, id, &columns, table, &lines, room, view, take, &mut output)
+        });
+        let response = frame.inner;
+        if response.has_focus() {
+            keys::hold(ui, id);
+            focus_ring(ui.painter(), skin, frame.response.rect, skin.radius);
+        }
+        tell(&response, skin, table, view);
+        ui.add_space(skin.space.inside);
+        below(ui, skin, table, view);
+    });
+    output
+}
+
+/// The lines in sight.
+#[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
+fn body(
+    ui: &mut Ui,
+    skin: &Skin,
+    id: Id,
+    columns: &Columns,
+    table: &RegisterTable<'_>,
+    lines: &Lines,
+    height: f32,
+    view: &mut RegisterView,
+    take: &mut dyn FnMut(Place, &str) -> Result<(), Text>,
+    output: &mut RegisterOutput,
+) -> Response {
+    view.page = ((height / LINE) as usize).saturating_sub(1);
+    let area = ScrollArea::vertical().id_salt(id.with("lines")).auto_shrink(false).max_height(height);
+    let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
+        let size = Vec2::new(columns.width(), lines.total() as f32 * LINE);
+        let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
+        let response = ui.interact(ui.clip_rect(), id, Sense::click());
+        let at = |line: usize| {
+            let top = whole.top() + line as f32 * LINE;
+            Rect::from_min_size(pos2(whole.left(), top), Vec2::new(columns.width(), LINE))
+        };
+        if std::mem::take(&mut view.reveal)
+            && let Some(line) = view.selected.and_then(|own| lines.line_of(own))
+        {
+            ui.scroll_to_rect_animation(at(line), None, egui::style::ScrollAnimation::none());
+        }
+        let first = (viewport.top() / LINE).floor().max(0.0) as usize;
+        let behind = ((viewport.bottom() / LINE).ceil().max(0.0) as usize).min(lines.total());
+        let groups = lines.group_at(first).zip(lines.group_at(behind.saturating_sub(1)));
+        output.groups = groups.map_or(0..0, |(first, last)| first..last + 1);
+        for line in first..behind {
+            let Some(kind) = lines.at(line) else { continue };
+            let rect = at(line);
+            match kind {
+                LineKind::Group(group) => heading(ui, skin, id, rect, table, group, view),
+                LineKind::Row(place) => row(ui, skin, id, rect, columns, table, place, view),
+                LineKind::Bits(place, number) => {
+                    if let Some(bits) = (table.row)(place).fields.get(number) {
+                        paint::bits(ui, skin, rect, columns, bits);
+                        let own = ui.interact(rect, id.with((place, number)), Sense::hover());
+                        let words = format!("{} {}", bits.bits, bits.name);
+                        own.widget_info(|| told(Role::Row, &words, &format!("{} {}", bits.value, bits.meaning)));
+                    }
+                }
+            }
+        }
+        if let Some(edit) = &view.edit
+            && let Some(line) = lines.line_of(Selected::Row(edit.place))
+            && let Some(range) = columns.range(columns::Column::Hex)
+        {
+            let own = at(line);
+            let cell = Rect::from_x_y_ranges(own.left() + range.min..=own.left() + range.max, own.y_range());
+            let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
+            editor::editor_ui(&mut ui.new_child(builder), skin, id, cell, table, view, take);
+        }
+        response
+    });
+    shown.inner
+}
+
+fn heading(ui: &Ui, skin: &Skin, id: Id, rect: Rect, table: &RegisterTable<'_>, group: usize, view: &mut RegisterView) {
+    let Some(own) = table.groups.get(group) else { return };
+    let response = ui.interact(rect, id.with("group").with(group), Sense::CLICK);
+    let selected = view.selected == Some(Selected::Group(group));
+    response.widget_info(|| {
+        let mut info = told(Role::Button, &own.title, &own.note);
+        info.selected = Some(selected);
+        info
+    });
+    if response.clicked() {
+        let folded = view.is_folded(group);
+        view.fold(group, !folded);
+        view.selected = Some(Selected::Group(group));
+        view.refused = None;
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
+    paint::heading(ui, skin, rect, own, view.is_folded(group), paint::State::of(selected, &response));
+}
+
+#[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
+fn row(
+    ui: &Ui,
+    skin: &Skin,
+    id: Id,
+    rect: Rect,
+    columns: &Columns,
+    table: &RegisterTable<'_>,
+    place: Place,
+    view: &mut RegisterView,
+) {
+    let row = (table.row)(place);
+    let response = ui.interact(rect, id.with(place), Sense::CLICK);
+    let selected = view.selected == Some(Selected::Row(place));
+    response.widget_info(|| told(Role::Row, &row.label(), &row.words(skin)));
+    ui.accesskit_node_builder(response.id, |node| node.set_selected(selected));
+    let open = view.open.contains(&place);
+    if response.clicked() {
+        let marks = columns.range(columns::Column::Marks);
+        let on_caret = response
+            .interact_pointer_pos()
+            .zip(marks)
+            .is_some_and(|(pos, marks)| pos.x - rect.left() < marks.min + paint::CARET && !row.fields.is_empty());
+        if on_caret {
+            view.unfold(place, !open);
+        }
+        view.selected = Some(Selected::Row(place));
+        view.refused = None;
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
+    if response.double_clicked() {
+        keys::begin_at(table, view, place, None);
+    }
+    let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
+    paint::row(ui, skin, rect, columns, &row, (open, typing), paint::State::of(selected, &response));
+    if response.hovered() && !typing {
+        response.on_hover_ui(|ui| paint::tip(ui, skin, columns, &row));
+    }
+}
+
+fn told(role: Role, label: &str, value: &str) -> WidgetInfo {
+    let mut info = WidgetInfo::labeled(role, true, label);
+    info.current_text_value = Some(value.to_owned());
+    info
+}
+
+/// What a screen reader hears of the whole.
+fn tell(response: &Response, skin: &Skin, table: &RegisterTable<'_>, view: &RegisterView) {
+    let value = match view.selected {
+        Some(Selected::Row(place)) => {
+            let row = (table.row)(place);
+            format!("{}: {}", row.label(), row.words(skin))
+        }
+        Some(Selected::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
+        None => String::new(),
+    };
+    response.widget_info(|| told(Role::Table, table.label, &value));
+}
+
+/// Why something was not taken, or what is selected is about.
+fn below(ui: &mut Ui, skin: &Skin, table: &RegisterTable<'_>, view: &RegisterView) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(LINE);
+        let problem = view.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| skin.words(problem));
+        if let Some(problem) = problem.or_else(|| view.refused.clone()) {
+            let words = format!("{} {problem}", icons::WARNING_CIRCLE);
+            ui.add(egui::Label::new(skin.caption(words).color(skin.palette.bad)).truncate());
+            return;
+        }
+        let Some(place) = view.selected() else { return };
+        let row = (table.row)(place);
+        let first = row.tooltip.lines().next().unwrap_or_default();
+        ui.add(egui::Label::new(skin.caption(first)).truncate());
+    });
+}

@@ -1,0 +1,143 @@
+//! What the keyboard does in a register table. What is understood is taken out of the input, so that nobody else acts on
+//! it.
+
+use egui::{Event, EventFilter, Id, Key, Modifiers, Ui};
+
+use super::lines::Lines;
+use super::view::{Edit, Selected};
+use super::{Place, RegisterEvent, RegisterTable, RegisterView};
+
+/// Keeps the arrows for the table while it has the keyboard.
+pub(super) fn hold(ui: &Ui, id: Id) {
+    let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+}
+
+/// Hears the keys of this frame.
+pub(super) fn listen(
+    ui: &Ui,
+    table: &RegisterTable<'_>,
+    lines: &Lines,
+    view: &mut RegisterView,
+) -> Option<RegisterEvent> {
+    let mut event = None;
+    let mut copied = None;
+    ui.input_mut(|input| {
+        input.events.retain(|own| match own {
+            Event::Key { key, pressed: true, modifiers, .. } => {
+                view.refused = None;
+                let act = walk(*key, *modifiers, lines, view) || fold(*key, *modifiers, table, view);
+                !act && !edit(*key, *modifiers, table, view, &mut event)
+            }
+            Event::Text(text) => text.trim().is_empty() || !begin(table, view, Some(text)),
+            Event::Copy => {
+                copied = view.selected().map(|place| (table.row)(place).hex);
+                copied.is_none()
+            }
+            _ => true,
+        });
+    });
+    if let Some(text) = copied {
+        ui.copy_text(text);
+    }
+    event
+}
+
+/// Keys that go from line to line.
+fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) -> bool {
+    if modifiers.alt || modifiers.shift {
+        return false;
+    }
+    let last = lines.total().saturating_sub(1);
+    let at = view.selected.and_then(|own| lines.line_of(own));
+    let page = view.page.max(1);
+    let to = match (key, at) {
+        (Key::ArrowUp | Key::ArrowDown | Key::PageUp | Key::PageDown, None) => 0,
+        (Key::ArrowUp, Some(at)) => return step(at, lines, view, |line| line.checked_sub(1)),
+        (Key::ArrowDown, Some(at)) => return step(at, lines, view, |line| Some(line + 1).filter(|to| *to <= last)),
+        (Key::PageUp, Some(at)) => at.saturating_sub(page),
+        (Key::PageDown, Some(at)) => (at + page).min(last),
+        (Key::Home, _) => 0,
+        (Key::End, _) => last,
+        _ => return false,
+    };
+    if let Some(own) = lines.select_at(to) {
+        view.go(own);
+    }
+    true
+}
+
+/// To the next line that can be selected: bit fields are passed.
+fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) -> Option<usize>) -> bool {
+    let mut line = at;
+    while let Some(to) = next(line) {
+        line = to;
+        let own = lines.select_at(line);
+        if own.is_some() && own != view.selected {
+            own.into_iter().for_each(|own| view.go(own));
+            break;
+        }
+    }
+    true
+}
+
+/// Left folds, right unfolds; from a folded register left goes to the heading of its group.
+fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
+    let open = match key {
+        Key::ArrowLeft => false,
+        Key::ArrowRight => true,
+        _ => return false,
+    };
+    if modifiers.any() {
+        return false;
+    }
+    match view.selected {
+        Some(Selected::Group(group)) => view.fold(group, !open),
+        Some(Selected::Row(place)) if open => {
+            view.unfold(place, !(table.row)(place).fields.is_empty());
+        }
+        Some(Selected::Row(place)) if view.open.contains(&place) => view.unfold(place, false),
+        Some(Selected::Row(place)) => view.go(Selected::Group(place.group)),
+        None => {}
+    }
+    true
+}
+
+fn edit(
+    key: Key,
+    modifiers: Modifiers,
+    table: &RegisterTable<'_>,
+    view: &mut RegisterView,
+    event: &mut Option<RegisterEvent>,
+) -> bool {
+    if modifiers.any() {
+        return false;
+    }
+    match (key, view.selected) {
+        (Key::Enter | Key::Space, Some(Selected::Group(group))) => view.fold(group, !view.is_folded(group)),
+        (Key::Enter | Key::F2, Some(Selected::Row(_))) => return begin(table, view, None),
+        (Key::Backspace | Key::Delete, Some(Selected::Row(place))) if (table.row)(place).edited => {
+            *event = Some(RegisterEvent::Revert(place));
+        }
+        _ => return false,
+    }
+    true
+}
+
+/// Begins to type over the value of what is selected, where that is allowed.
+pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: Option<&str>) -> bool {
+    let Some(place) = view.selected() else { return false };
+    begin_at(table, view, place, typed)
+}
+
+/// The same for a register.
+pub(super) fn begin_at(table: &RegisterTable<'_>, view: &mut RegisterView, place: Place, typed: Option<&str>) -> bool {
+    let row = (table.row)(place);
+    if let Some(why) = row.read_only {
+        view.refused = Some(why);
+        return true;
+    }
+    let text = typed.map_or(row.hex, ToOwned::to_owned);
+    view.edit = Some(Edit { place, text, problem: None, begins: true, typed: typed.is_some() });
+    true
+}

@@ -1,0 +1,156 @@
+//! Which line of the table is what: headings of groups, registers, and the bit fields of those that are unfolded. Nothing is
+//! built a line; thousands of registers cost no more than their groups.
+
+use super::view::Selected;
+use super::{Place, RegisterTable, RegisterView};
+
+/// What a line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LineKind {
+    Group(usize),
+    Row(Place),
+    /// A bit field of a register, by its number.
+    Bits(Place, usize),
+}
+
+/// All lines.
+#[derive(Clone, Debug)]
+pub(super) struct Lines {
+    sections: Vec<Section>,
+    total: usize,
+}
+
+/// A group.
+#[derive(Clone, Debug)]
+struct Section {
+    start: usize,
+    /// Registers that are shown.
+    rows: usize,
+    /// Those of them that are unfolded, with how many bit fields they have.
+    open: Vec<(usize, usize)>,
+}
+
+impl Lines {
+    pub(super) fn new(table: &RegisterTable<'_>, view: &RegisterView) -> Self {
+        let mut total = 0;
+        let section = |(number, group): (usize, &super::RegisterGroup)| {
+            let rows = if view.folded.contains(&number) { 0 } else { group.rows };
+            let range = Place { group: number, row: 0 }..Place { group: number, row: rows };
+            let fields = |place: &Place| (place.row, (table.row)(*place).fields.len());
+            let open: Vec<_> = if rows > 0 { view.open.range(range).map(fields).collect() } else { Vec::new() };
+            let own = Section { start: total, rows, open };
+            total += 1 + rows + own.open.iter().map(|(_, fields)| fields).sum::<usize>();
+            own
+        };
+        let sections = table.groups.iter().enumerate().map(section).collect();
+        Lines { sections, total }
+    }
+
+    pub(super) fn total(&self) -> usize {
+        self.total
+    }
+
+    /// What a line is, counted from 0.
+    pub(super) fn at(&self, line: usize) -> Option<LineKind> {
+        let group = self.group_at(line)?;
+        let section = self.sections.get(group)?;
+        let Some(mut rest) = line.checked_sub(section.start + 1) else { return Some(LineKind::Group(group)) };
+        for (row, fields) in &section.open {
+            if rest <= *row {
+                break;
+            }
+            if rest <= row + fields {
+                return Some(LineKind::Bits(Place { group, row: *row }, rest - row - 1));
+            }
+            rest -= fields;
+        }
+        Some(LineKind::Row(Place { group, row: rest }))
+    }
+
+    /// The group that a line belongs to.
+    pub(super) fn group_at(&self, line: usize) -> Option<usize> {
+        if line >= self.total {
+            return None;
+        }
+        self.sections.partition_point(|section| section.start <= line).checked_sub(1)
+    }
+
+    /// Where something stands; `None` where it is not shown.
+    pub(super) fn line_of(&self, what: Selected) -> Option<usize> {
+        match what {
+            Selected::Group(group) => self.sections.get(group).map(|section| section.start),
+            Selected::Row(place) => {
+                let section = self.sections.get(place.group).filter(|section| place.row < section.rows)?;
+                let above = section.open.iter().take_while(|(row, _)| *row < place.row);
+                Some(section.start + 1 + place.row + above.map(|(_, fields)| fields).sum::<usize>())
+            }
+        }
+    }
+
+    /// What can be selected nearest to a line: itself, or the register whose bit field it is.
+    pub(super) fn select_at(&self, line: usize) -> Option<Selected> {
+        Some(match self.at(line)? {
+            LineKind::Group(group) => Selected::Group(group),
+            LineKind::Row(place) | LineKind::Bits(place, _) => Selected::Row(place),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{RegisterBits, RegisterGroup, RegisterRow};
+    use super::*;
+
+    fn group(rows: usize) -> RegisterGroup {
+        RegisterGroup { rows, ..RegisterGroup::default() }
+    }
+
+    fn place(group: usize, row: usize) -> Place {
+        Place { group, row }
+    }
+
+    #[test]
+    fn every_line_is_found_both_ways() {
+        let groups = [group(3), group(0), group(2), group(4)];
+        let row = |own: Place| RegisterRow { fields: vec![RegisterBits::default(); own.row + 1], ..Default::default() };
+        let table = RegisterTable { label: "", groups: &groups, row: &row };
+        let mut view = RegisterView::default();
+        view.fold(2, true);
+        [place(0, 0), place(0, 1), place(3, 3), place(2, 1)].into_iter().for_each(|own| view.unfold(own, true));
+        let lines = Lines::new(&table, &view);
+        let expected = [
+            LineKind::Group(0),
+            LineKind::Row(place(0, 0)),
+            LineKind::Bits(place(0, 0), 0),
+            LineKind::Row(place(0, 1)),
+            LineKind::Bits(place(0, 1), 0),
+            LineKind::Bits(place(0, 1), 1),
+            LineKind::Row(place(0, 2)),
+            LineKind::Group(1),
+            LineKind::Group(2),
+            LineKind::Group(3),
+            LineKind::Row(place(3, 0)),
+            LineKind::Row(place(3, 1)),
+            LineKind::Row(place(3, 2)),
+            LineKind::Row(place(3, 3)),
+            LineKind::Bits(place(3, 3), 0),
+            LineKind::Bits(place(3, 3), 1),
+            LineKind::Bits(place(3, 3), 2),
+            LineKind::Bits(place(3, 3), 3),
+        ];
+        assert_eq!(lines.total(), expected.len());
+        for (line, kind) in expected.into_iter().enumerate() {
+            assert_eq!(lines.at(line), Some(kind), "{line}");
+            let back = match kind {
+                LineKind::Group(group) => lines.line_of(Selected::Group(group)),
+                LineKind::Row(place) => lines.line_of(Selected::Row(place)),
+                LineKind::Bits(..) => Some(line),
+            };
+            assert_eq!(back, Some(line), "{kind:?}");
+        }
+        assert_eq!(lines.at(expected.len()), None);
+        assert_eq!(lines.line_of(Selected::Row(place(2, 0))), None, "its group is folded");
+        assert_eq!(lines.select_at(4), Some(Selected::Row(place(0, 1))));
+        assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).at(0), None);
+    }
+}

@@ -1,0 +1,207 @@
+//! The painting of a register table.
+
+use egui::{
+    Align2, Color32, FontId, Pos2, Rangef, Rect, Response, Sense, Stroke, TextStyle, TextWrapMode, Ui, Vec2, pos2,
+};
+
+use super::columns::{Column, Columns};
+use super::{RegisterBits, RegisterGroup, RegisterRow};
+use crate::ui::{Skin, icons};
+
+/// Height of the line with the names of the columns.
+pub(super) const HEADER: f32 = 22.0;
+/// Where the caret of a register with bit fields ends.
+pub(super) const CARET: f32 = 16.0;
+/// Distance of the marks.
+const MARK: f32 = 15.0;
+
+/// How a line stands.
+#[derive(Clone, Copy)]
+pub(super) struct State {
+    selected: bool,
+    hovered: bool,
+}
+
+impl State {
+    pub(super) fn of(selected: bool, response: &Response) -> Self {
+        State { selected, hovered: response.hovered() }
+    }
+
+    fn paint(self, ui: &Ui, skin: &Skin, rect: Rect) {
+        let strength = match (self.selected, self.hovered) {
+            (true, _) => 0.22,
+            (false, true) => 0.08,
+            (false, false) => return,
+        };
+        ui.painter().rect_filled(rect, 2.0, Color32::from(skin.palette.accent).gamma_multiply(strength));
+    }
+}
+
+const fn title(column: Column) -> &'static str {
+    match column {
+        Column::Marks => "",
+        Column::Address => "widget.register_address",
+        Column::Name => "widget.register_name",
+        Column::Hex => "widget.register_hex",
+        Column::Decimal => "widget.register_decimal",
+        Column::Meaning => "widget.register_meaning",
+        Column::Access => "widget.register_access",
+        Column::Default => "widget.register_default",
+    }
+}
+
+/// The names of the columns.
+pub(super) fn header(ui: &mut Ui, skin: &Skin, columns: &Columns) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
+    let middle = rect.top() + HEADER / 2.0 - 2.0;
+    for (column, range) in columns.iter().filter(|(column, _)| *column != Column::Marks) {
+        let words = skin.caption(skin.say(title(column)));
+        inscribe(ui, skin, rect, middle, range, words, column == Column::Decimal);
+    }
+    ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, skin.palette.line));
+}
+
+/// The heading of a group.
+pub(super) fn heading(ui: &Ui, skin: &Skin, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
+    let painter = ui.painter();
+    painter.rect_filled(rect, 2.0, skin.palette.raised);
+    state.paint(ui, skin, rect);
+    let caret = if folded { icons::CARET_RIGHT } else { icons::CARET_DOWN };
+    let palette = skin.palette;
+    let middle = rect.center().y;
+    let font = FontId::proportional(skin.sizes.caption);
+    painter.text(pos2(rect.left() + 4.0, middle), Align2::LEFT_CENTER, caret, font.clone(), palette.muted.into());
+    let title = painter.layout_no_wrap(group.title.clone(), skin.strong(skin.sizes.body), palette.text.into());
+    let right = rect.left() + CARET + title.size().x;
+    painter.galley(pos2(rect.left() + CARET, middle - title.size().y / 2.0), title, palette.text.into());
+    let room = Rangef::new(right - rect.left() + skin.space.groups, rect.width());
+    inscribe(ui, skin, rect, middle, room, skin.caption(&group.note), false);
+}
+
+/// A register. Its value is not drawn while it is typed over.
+pub(super) fn row(
+    ui: &Ui,
+    skin: &Skin,
+    rect: Rect,
+    columns: &Columns,
+    row: &RegisterRow,
+    (open, typing): (bool, bool),
+    state: State,
+) {
+    state.paint(ui, skin, rect);
+    marks(ui, skin, rect.left_center(), row, open);
+    let palette = skin.palette;
+    let value = if row.edited { palette.staged } else { palette.text };
+    for (column, range) in columns.iter() {
+        let (words, ink) = match column {
+            Column::Marks => continue,
+            Column::Address => (skin.mono(&row.address), palette.muted),
+            Column::Name => (egui::RichText::new(&row.name), palette.text),
+            Column::Hex if typing => continue,
+            Column::Hex if row.hex.is_empty() => (skin.mono("–"), palette.muted),
+            Column::Hex => (skin.mono(&row.hex), value),
+            Column::Decimal => (skin.mono(&row.decimal), value),
+            Column::Meaning => (egui::RichText::new(&row.meaning), value),
+            Column::Access => (skin.mono(&row.access), palette.muted),
+            Column::Default => (skin.mono(&row.default), palette.muted),
+        };
+        let right = column == Column::Decimal;
+        let width = inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), right);
+        if row.edited && column == Column::Hex {
+            let left = rect.left() + range.min;
+            let y = rect.bottom() - 2.0;
+            ui.painter().hline(left..=left + width, y, Stroke::new(1.0, palette.staged));
+        }
+    }
+}
+
+/// A caret for bit fields, a dot for what changed, a pencil for what was edited, a flash for what costs.
+fn marks(ui: &Ui, skin: &Skin, left: Pos2, row: &RegisterRow, open: bool) {
+    let palette = skin.palette;
+    let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
+    let font = FontId::proportional(skin.sizes.caption);
+    let text = |at: f32, icon: &str, colour: Color32| {
+        ui.painter().text(left + Vec2::new(at, 0.0), Align2::CENTER_CENTER, icon, font.clone(), colour);
+    };
+    if !row.fields.is_empty() {
+        text(MARK / 2.0, caret, palette.muted.into());
+    }
+    if row.edited {
+        text(MARK * 1.5, icons::PENCIL_SIMPLE, palette.staged.into());
+    } else if row.changed {
+        ui.painter().circle_filled(left + Vec2::new(MARK * 1.5, 0.0), 3.0, palette.accent);
+    }
+    if row.cost.is_some() {
+        text(MARK * 2.5, icons::LIGHTNING, palette.warn.into());
+    }
+}
+
+/// A bit field, below its register.
+pub(super) fn bits(ui: &Ui, skin: &Skin, rect: Rect, columns: &Columns, bits: &RegisterBits) {
+    let palette = skin.palette;
+    let ink = if bits.lit { palette.warn } else { palette.muted };
+    for (column, range) in columns.iter() {
+        let (words, inset) = match column {
+            Column::Address => (skin.mono(&bits.bits), skin.space.between),
+            Column::Name => (egui::RichText::new(&bits.name), skin.space.between),
+            Column::Hex => (skin.mono(&bits.value), 0.0),
+            Column::Meaning => (egui::RichText::new(&bits.meaning), 0.0),
+            Column::Marks | Column::Decimal | Column::Access | Column::Default => continue,
+        };
+        let range = Rangef::new(range.min + inset, range.max);
+        inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), false);
+    }
+    let x = rect.left() + MARK / 2.0;
+    ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
+}
+
+/// Words within a column, cut off where they are too long; how wide they are.
+fn inscribe(
+    ui: &Ui,
+    skin: &Skin,
+    line: Rect,
+    middle: f32,
+    range: Rangef,
+    words: egui::RichText,
+    to_the_right: bool,
+) -> f32 {
+    let room = range.span() - skin.space.between;
+    if room <= 0.0 {
+        return 0.0;
+    }
+    let galley = egui::WidgetText::from(words).into_galley(ui, Some(TextWrapMode::Truncate), room, TextStyle::Body);
+    let width = galley.size().x;
+    let left = if to_the_right { range.max - skin.space.groups - width } else { range.min };
+    ui.painter().galley(pos2(line.left() + left, middle - galley.size().y / 2.0), galley, skin.palette.text.into());
+    width
+}
+
+/// What a register is, and what there was no room for.
+pub(super) fn tip(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &RegisterRow) {
+    ui.spacing_mut().item_spacing.y = skin.space.inside;
+    ui.label(egui::RichText::new(row.label()).color(skin.palette.text));
+    if !row.tooltip.is_empty() {
+        ui.label(skin.caption(&row.tooltip));
+    }
+    let values = [(Column::Decimal, &row.decimal), (Column::Access, &row.access), (Column::Default, &row.default)];
+    for (column, value) in values {
+        if columns.range(column).is_none() && !value.is_empty() {
+            ui.horizontal(|ui| {
+                ui.label(skin.caption(skin.say(title(column))));
+                ui.label(skin.mono(value));
+            });
+        }
+    }
+    let note = |ui: &mut Ui, icon: &str, words: &str, colour: Color32| {
+        ui.label(skin.caption(format!("{icon} {words}")).color(colour));
+    };
+    let palette = skin.palette;
+    if row.edited {
+        note(ui, icons::PENCIL_SIMPLE, &skin.say("widget.register_edited"), palette.staged.into());
+    } else if row.changed {
+        note(ui, icons::INFO, &skin.say("widget.register_changed"), palette.accent.into());
+    }
+    if let Some(cost) = &row.cost {
+        note(ui, icons::LIGHTNING, cost, palette.warn.into());
+    }
+}

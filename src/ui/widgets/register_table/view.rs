@@ -1,0 +1,86 @@
+//! What a register table remembers: what is selected, folded and unfolded, and what is being typed.
+
+use std::collections::BTreeSet;
+
+use super::Place;
+use crate::app::Text;
+
+/// What a table remembers between two frames.
+#[derive(Clone, Debug, Default)]
+pub struct RegisterView {
+    pub(super) selected: Option<Selected>,
+    /// Groups of which only the heading is shown.
+    pub(super) folded: BTreeSet<usize>,
+    /// Registers whose bit fields are shown.
+    pub(super) open: BTreeSet<Place>,
+    pub(super) edit: Option<Edit>,
+    /// Why the value that should be edited cannot be.
+    pub(super) refused: Option<String>,
+    /// What is selected has moved and has to be seen.
+    pub(super) reveal: bool,
+    /// Lines of a page.
+    pub(super) page: usize,
+}
+
+/// A line that can be selected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Selected {
+    Group(usize),
+    Row(Place),
+}
+
+/// What is being typed.
+#[derive(Clone, Debug)]
+pub(super) struct Edit {
+    pub(super) place: Place,
+    pub(super) text: String,
+    /// Why it was not taken.
+    pub(super) problem: Option<Text>,
+    /// It shall have the keyboard now.
+    pub(super) begins: bool,
+    /// It began with a character instead of the value.
+    pub(super) typed: bool,
+}
+
+impl RegisterView {
+    /// The register that is selected.
+    pub fn selected(&self) -> Option<Place> {
+        match self.selected {
+            Some(Selected::Row(place)) => Some(place),
+            Some(Selected::Group(_)) | None => None,
+        }
+    }
+
+    /// Selects a register, unfolds its group and brings it in sight.
+    pub fn select(&mut self, place: Place) {
+        self.folded.remove(&place.group);
+        self.go(Selected::Row(place));
+    }
+
+    /// Shows or hides the registers of a group.
+    pub fn fold(&mut self, group: usize, folded: bool) {
+        if folded {
+            self.folded.insert(group);
+        } else {
+            self.folded.remove(&group);
+        }
+    }
+
+    /// Whether the registers of a group are hidden.
+    pub fn is_folded(&self, group: usize) -> bool {
+        self.folded.contains(&group)
+    }
+
+    pub(super) fn go(&mut self, to: Selected) {
+        self.selected = Some(to);
+        self.reveal = true;
+    }
+
+    pub(super) fn unfold(&mut self, place: Place, shown: bool) {
+        if shown {
+            self.open.insert(place);
+        } else {
+            self.open.remove(&place);
+        }
+    }
+}

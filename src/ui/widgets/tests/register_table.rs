@@ -1,0 +1,206 @@
+//! A register table of the size of the kit encoder's, by its keys, its pointer and its accessible labels.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use egui::{Event, Key, PointerButton, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use super::{CTRL, NONE, focus, press, skin, window};
+use crate::app::Text;
+use crate::ui::widgets::{
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterOutput, RegisterRow, RegisterTable, RegisterView,
+    register_table,
+};
+
+#[derive(Default)]
+struct Registers {
+    edits: BTreeMap<Place, u8>,
+    view: RegisterView,
+    events: Vec<RegisterEvent>,
+    output: RegisterOutput,
+    /// Registers asked for in the last frame.
+    asked: usize,
+}
+
+const TABLE: &str = "Registers";
+const BANKS: usize = 68;
+
+fn register(place: Place, edited: Option<u8>) -> RegisterRow {
+    let value = edited.unwrap_or((place.row & 0xFF) as u8);
+    let bits = |at: usize| RegisterBits { bits: format!("b{at}"), name: format!("flag {at}"), ..Default::default() };
+    RegisterRow {
+        address: format!("{:02X}:{:02X}", place.group, place.row),
+        name: format!("register {}", place.row),
+        hex: format!("{value:02X}"),
+        decimal: value.to_string(),
+        meaning: if place.row == 3 { "idle".to_owned() } else { String::new() },
+        edited: edited.is_some(),
+        changed: place.row == 4,
+        read_only: (place.row == 1).then(|| "The encoder measures it.".to_owned()),
+        fields: if place.row == 2 { (0..3).map(bits).collect() } else { Vec::new() },
+        ..RegisterRow::default()
+    }
+}
+
+fn table() -> Harness<'static, Registers> {
+    let groups: Vec<RegisterGroup> = (0..BANKS)
+        .map(|bank| RegisterGroup { title: format!("Bank {bank:02X}"), note: String::new(), rows: 64 })
+        .collect();
+    window(Registers::default(), move |ui, state: &mut Registers| {
+        let (asked, edits) = (RefCell::new(0), &state.edits);
+        let row = |place: Place| {
+            *asked.borrow_mut() += 1;
+            register(place, edits.get(&place).copied())
+        };
+        let model = RegisterTable { label: TABLE, groups: &groups, row: &row };
+        let mut put = None;
+        let mut take = |place, text: &str| {
+            let value = u8::from_str_radix(text, 16).map_err(|_| Text::new("widget.hex_nothing"))?;
+            put = Some((place, value));
+            Ok(())
+        };
+        let output = register_table(ui, &skin(), &model, 400.0, &mut state.view, &mut take);
+        state.asked = asked.into_inner();
+        state.edits.extend(put);
+        if let Some(RegisterEvent::Revert(place)) = output.event {
+            state.edits.remove(&place);
+        }
+        state.events.extend(output.event);
+        state.output = output;
+    })
+}
+
+fn selected(harness: &Harness<'_, Registers>) -> String {
+    harness.get_by_label(TABLE).value().unwrap()
+}
+
+fn place(group: usize, row: usize) -> Place {
+    Place { group, row }
+}
+
+/// Presses at a row, at so many points from its left.
+fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, times: usize) {
+    let rect = harness.get_by_label(label).rect();
+    let pos = Pos2::new(rect.left() + from_left, rect.center().y);
+    // No double click together with one before.
+    harness.run_steps(20);
+    for _ in 0..times {
+        harness.event(Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: NONE });
+        }
+    }
+    harness.run();
+}
+
+#[test]
+fn only_what_is_in_sight_is_asked_for_wherever_it_is() {
+    let mut harness = table();
+    assert_eq!(harness.state().output.groups, 0..1);
+    focus(&mut harness, TABLE);
+    for (key, groups, label) in [(Key::End, 67..68, "43:3F register 63"), (Key::Home, 0..1, "00:00 register 0")] {
+        press(&mut harness, &[(NONE, key)]);
+        assert_eq!(harness.state().output.groups, groups);
+        harness.get_by_label(label);
+        // 400 points hold 18 lines; some are asked for again by what is selected.
+        assert!(harness.state().asked < 30, "{}", harness.state().asked);
+    }
+}
+
+#[test]
+fn the_arrows_go_over_headings_and_pass_bit_fields() {
+    let mut harness = table();
+    focus(&mut harness, TABLE);
+    press(&mut harness, &[(NONE, Key::ArrowDown)]);
+    assert_eq!(selected(&harness), "Bank 00");
+    press(&mut harness, &[(NONE, Key::ArrowDown), (NONE, Key::ArrowDown), (NONE, Key::ArrowDown)]);
+    assert_eq!(selected(&harness), "00:02 register 2: 02, 2");
+    press(&mut harness, &[(NONE, Key::ArrowRight)]);
+    harness.get_by_label("b1 flag 1");
+    press(&mut harness, &[(NONE, Key::ArrowDown)]);
+    assert_eq!(selected(&harness), "00:03 register 3: 03, 3, idle");
+    press(&mut harness, &[(NONE, Key::ArrowDown)]);
+    assert_eq!(selected(&harness), "00:04 register 4: 04, 4, changed since the reading before");
+    press(&mut harness, &[(NONE, Key::ArrowUp), (NONE, Key::ArrowUp), (NONE, Key::ArrowLeft)]);
+    assert!(harness.query_by_label("b1 flag 1").is_none(), "left folds what is unfolded");
+    press(&mut harness, &[(NONE, Key::ArrowLeft)]);
+    assert_eq!(selected(&harness), "Bank 00");
+    press(&mut harness, &[(NONE, Key::ArrowLeft), (NONE, Key::ArrowDown)]);
+    assert_eq!(selected(&harness), "Bank 01", "a folded group is one line");
+    assert!(harness.get_by_label(TABLE).is_focused());
+    press(&mut harness, &[(NONE, Key::PageDown)]);
+    assert_eq!(harness.state().view.selected(), Some(place(1, 16)), "18 lines are a page, one of them is seen again");
+}
+
+#[test]
+fn a_value_is_typed_over_refused_and_taken() {
+    let mut harness = table();
+    harness.state_mut().view.select(place(5, 7));
+    focus(&mut harness, TABLE);
+    press(&mut harness, &[(NONE, Key::Enter)]);
+    let entry = |harness: &Harness<'_, Registers>| harness.get_by_role(egui::accesskit::Role::TextInput).value();
+    assert_eq!(entry(&harness), Some("07".to_owned()));
+    harness.event(Event::Text("zz".to_owned()));
+    press(&mut harness, &[(NONE, Key::Enter)]);
+    harness.get_by_label_contains("The clipboard holds no bytes.");
+    assert_eq!(entry(&harness), Some("zz".to_owned()), "what was typed stays");
+    press(&mut harness, &[(CTRL, Key::A)]);
+    harness.event(Event::Text("2a".to_owned()));
+    press(&mut harness, &[(NONE, Key::Enter)]);
+    assert_eq!(harness.state().edits, BTreeMap::from([(place(5, 7), 0x2A)]));
+    assert!(harness.get_by_label(TABLE).is_focused());
+    assert_eq!(selected(&harness), "05:07 register 7: 2A, 42, edited, not written");
+    // A character begins; Escape gives up.
+    harness.event(Event::Text("f".to_owned()));
+    harness.run();
+    assert_eq!(entry(&harness), Some("f".to_owned()));
+    press(&mut harness, &[(NONE, Key::Escape)]);
+    assert!(harness.query_by_role(egui::accesskit::Role::TextInput).is_none());
+    assert_eq!(harness.state().edits.len(), 1);
+    press(&mut harness, &[(NONE, Key::Backspace), (NONE, Key::Backspace)]);
+    assert_eq!(harness.state().events, [RegisterEvent::Revert(place(5, 7))], "what is as read is not reverted again");
+}
+
+#[test]
+fn what_cannot_be_edited_says_why() {
+    let mut harness = table();
+    harness.state_mut().view.select(place(0, 1));
+    focus(&mut harness, TABLE);
+    let why = "The encoder measures it.";
+    press(&mut harness, &[(NONE, Key::F2)]);
+    harness.get_by_label_contains(why);
+    press(&mut harness, &[(NONE, Key::ArrowDown)]);
+    assert!(harness.query_by_label_contains(why).is_none());
+    click(&mut harness, "00:01 register 1", 200.0, 2);
+    harness.get_by_label_contains(why);
+    assert!(harness.query_by_role(egui::accesskit::Role::TextInput).is_none());
+}
+
+#[test]
+fn the_pointer_selects_folds_and_edits() {
+    let mut harness = table();
+    click(&mut harness, "00:03 register 3", 200.0, 1);
+    assert_eq!(harness.state().view.selected(), Some(place(0, 3)));
+    assert_eq!(harness.get_by_label("00:03 register 3").accesskit_node().is_selected(), Some(true));
+    click(&mut harness, "00:02 register 2", 6.0, 1);
+    harness.get_by_label("b2 flag 2");
+    click(&mut harness, "00:02 register 2", 200.0, 2);
+    harness.get_by_role(egui::accesskit::Role::TextInput);
+    // What is left without being changed is taken as it is.
+    click(&mut harness, "Bank 00", 100.0, 1);
+    assert_eq!(harness.state().edits.get(&place(0, 2)), Some(&2));
+    assert!(harness.state().view.is_folded(0) && harness.query_by_label("00:03 register 3").is_none());
+    harness.get_by_label("Bank 01");
+}
+
+#[test]
+fn a_selected_register_is_brought_in_sight() {
+    let mut harness = table();
+    harness.state_mut().view.fold(0x23, true);
+    harness.run();
+    harness.state_mut().view.select(place(0x23, 0x3F));
+    harness.run();
+    harness.get_by_label("23:3F register 63");
+}
