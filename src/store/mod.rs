@@ -4,6 +4,7 @@
 
 mod backups;
 mod captures;
+mod descriptions;
 mod drafts;
 mod file_error;
 mod file_names;
@@ -23,6 +24,7 @@ pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, writ
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
 
+use crate::protocol::biss::{DescriptionError, Descriptions};
 use crate::protocol::hiperface::{EncoderTypes, TypeTableError};
 
 /// Where the program keeps what outlives it.
@@ -49,6 +51,9 @@ pub enum StoreError {
         /// What is wrong, with line and column or with the row's type byte.
         cause: TypeTableError,
     },
+    /// A description of a BiSS encoder of the user's own is broken.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
 }
 
 impl Store {
@@ -116,6 +121,22 @@ impl Store {
             Err(cause) => Err(StoreError::EncoderTypes { path, cause }),
         }
     }
+
+    /// The folder in which a user may add descriptions of BiSS encoders (`*.ron`); it need not exist.
+    pub fn biss_descriptions_path(&self) -> PathBuf {
+        self.config.join("devices").join("biss")
+    }
+
+    /// The built-in descriptions of BiSS encoders, those of the user's own before them, and what is wrong with those that
+    /// cannot be used.
+    pub fn biss_descriptions(&self) -> (Descriptions, Vec<StoreError>) {
+        let (files, unread) = descriptions::read_folder(&self.biss_descriptions_path(), "ron");
+        let named: Vec<(String, String)> =
+            files.into_iter().map(|(path, text)| (path.display().to_string(), text)).collect();
+        let (own, broken) = Descriptions::read(named.iter().map(|(name, text)| (name.as_str(), text.as_str())));
+        let errors = unread.into_iter().map(StoreError::from).chain(broken.into_iter().map(StoreError::from)).collect();
+        (Descriptions::built_in().overlaid_with(own), errors)
+    }
 }
 
 #[cfg(test)]
@@ -150,6 +171,27 @@ mod tests {
         let types = store.encoder_types().unwrap();
         assert_eq!(types.find(0x37).unwrap().name, "own");
         assert_eq!(types.find(0x22), EncoderTypes::built_in().find(0x22));
+    }
+
+    #[test]
+    fn broken_descriptions_are_named_with_their_place_and_the_rest_counts() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        assert_eq!(store.biss_descriptions(), (Descriptions::built_in(), Vec::new()));
+        let folder = store.biss_descriptions_path();
+        fs::create_dir_all(folder.join("folder.ron")).unwrap();
+        fs::write(folder.join("broken.ron"), "(\n  name: \"mine\",\n  register: [],\n)").unwrap();
+        fs::write(folder.join("latin.ron"), b"(name: \"\xFC\")").unwrap();
+        fs::write(folder.join("notes.txt"), "no description").unwrap();
+        let (_, unknown) = Descriptions::BUILT_IN[1];
+        fs::write(folder.join("own.RON"), unknown.replace("\"BiSS C encoder\"", "\"own\"")).unwrap();
+        let (descriptions, errors) = store.biss_descriptions();
+        assert!(descriptions.named("own").is_some() && descriptions.named("POSITAL IXARC kit encoder").is_some());
+        let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };
+        assert!(folder.contains("folder.ron: it is a folder"), "{folder}");
+        assert!(latin.contains("latin.ron: it is not UTF-8 text: byte 8 does not fit"), "{latin}");
+        assert!(broken.contains("broken.ron, line 3, column "), "{broken}");
     }
 
     #[test]

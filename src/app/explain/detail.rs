@@ -192,7 +192,8 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
-fn syntax(line: usize, column: usize, what: &str) -> Text {
+/// A place in a text, and what is wrong there.
+pub(super) fn syntax(line: usize, column: usize, what: &str) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", phrase(what))
 }
 

@@ -7,6 +7,7 @@ pub mod signal;
 
 use std::path::Path;
 
+use detail::syntax;
 pub use detail::{document, logbook_problem, phrase, recording, setting, type_table, url};
 
 use super::Text;
@@ -89,6 +90,10 @@ pub fn store(error: &StoreError) -> Text {
         StoreError::File(error) => file(error),
         StoreError::EncoderTypes { path, cause } => {
             Text::new("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
+        }
+        StoreError::Description(error) => {
+            let why = syntax(error.line, error.column, &error.what);
+            Text::new("store.description").with("path", &error.file).with_text("why", why)
         }
     }
 }

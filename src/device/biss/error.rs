@@ -5,7 +5,7 @@ use std::fmt;
 use crate::device::bridge::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
-use crate::protocol::biss::{FrameError, RegisterAddress};
+use crate::protocol::biss::{FrameError, Identity, RegisterAddress};
 use crate::protocol::ubicom::ReplyError;
 
 /// What was asked of an encoder.
@@ -143,6 +143,18 @@ pub enum Error {
         start: RegisterAddress,
         /// How many.
         count: usize,
+    },
+    /// No description is for this encoder, nor for any.
+    #[error("no description fits the encoder, which says {0}")]
+    NoDescription(Identity),
+    /// What the encoder's registers are has not been asked yet.
+    #[error("the encoder was not identified")]
+    NotIdentified,
+    /// The shaft turns where it must stand still.
+    #[error("the shaft moves: {readings:?}")]
+    Moving {
+        /// The positions read one after the other, in steps.
+        readings: Vec<u64>,
     },
     /// The encoder answers, and not as the reference says; with what it did.
     #[error("{0}")]

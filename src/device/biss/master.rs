@@ -6,6 +6,7 @@
 mod bus;
 mod ubicom;
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::error::{Asked, Damage};
@@ -13,7 +14,7 @@ use super::position::PositionReading;
 use super::{Error, Station, Way};
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
-use crate::protocol::biss::RegisterAddress;
+use crate::protocol::biss::{Description, RegisterAddress};
 use crate::protocol::ubicom::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::units::Moment;
 use bus::NoFrame;
@@ -63,6 +64,14 @@ impl<'a> Master<'a> {
     /// What is known about the line and the encoder.
     pub fn station(&mut self) -> &mut Station {
         self.station
+    }
+
+    /// What the encoder's registers are.
+    ///
+    /// # Errors
+    /// [`Error::NotIdentified`] before that is known.
+    pub fn description(&self) -> Result<Arc<Description>, Error> {
+        self.station.description.clone().ok_or(Error::NotIdentified)
     }
 
     /// Now.

@@ -8,12 +8,20 @@
 //! ```
 
 mod error;
+mod identify;
 mod master;
+mod memory;
 mod position;
+mod registers;
 mod station;
+mod survey;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};
+pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
 pub use master::Master;
-pub use position::PositionReading;
+pub use memory::{Place, ensure_standstill, profile_of, read_area, read_range, save};
+pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
+pub use registers::Registers;
 pub use station::{PARAMETERS, Station, Supply, Way};
+pub use survey::{Bits, Status, Survey, read_status, survey};

@@ -1,5 +1,7 @@
-//! The position as a person or a plot takes it.
+//! The position as a person or a plot takes it, and registers that are watched beside it.
 
+use super::{Damage, Error, Master};
+use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{Layout, Reading};
 use crate::units::Moment;
 
@@ -56,4 +58,58 @@ impl PositionReading {
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
+}
+
+/// What polling gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    /// The position.
+    Position(PositionReading),
+    /// Frames came, and none with a right checksum.
+    Missed {
+        /// When the last one came.
+        at: Moment,
+        /// How many there were, with those before that were asked again.
+        crc_errors: u32,
+    },
+    /// Registers that are watched beside the position.
+    Watched(WatchedReading),
+}
+
+/// Registers that are watched, as they were read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedReading {
+    /// When the answer was there.
+    pub at: Moment,
+    /// Which.
+    pub what: RegisterRange,
+    /// Their values, in the order of their addresses, or why there are none: no such register.
+    pub value: Result<Vec<u8>, Error>,
+}
+
+/// Reads the position once; that frames were damaged is an answer too, as long as there have been good ones.
+///
+/// # Errors
+/// The line.
+pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
+    match master.position() {
+        Ok(reading) => Ok(Sample::Position(reading)),
+        Err(Error::Damaged { cause: Damage::Frame(_), .. }) => {
+            Ok(Sample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads watched registers once; that there are none is an answer too.
+///
+/// # Errors
+/// The line.
+pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
+    let value = match master.read_run(what.start(), what.count().into()) {
+        Ok(bytes) => Ok(bytes),
+        Err(error @ Error::NoSuchRegister { .. }) => Err(error),
+        Err(error) => return Err(error),
+    };
+    Ok(WatchedReading { at: master.now(), what, value })
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::device::bridge::AdapterState;
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
-use crate::protocol::biss::{Access, ByteOrder, Description, Layout, RegisterAddress};
+use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
 use crate::protocol::ubicom::REPLY_TIME_OUT;
 use crate::units::Moment;
 
@@ -21,6 +21,16 @@ pub enum Way {
     ConfigPin,
     /// BiSS over an adapter: registers by bank and address.
     Adapter,
+}
+
+impl Way {
+    /// Those of [`PARAMETERS`] that mean something over it.
+    pub const fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Way::ConfigPin => &["order", "echo", "timeout", "margin"],
+            Way::Adapter => &["margin", "clock", "voltage"],
+        }
+    }
 }
 
 /// What a session knows about its line and the encoder at its end.
@@ -44,6 +54,8 @@ pub struct Station {
     pub adapter: AdapterState,
     /// What the encoder's registers are; `None` before it was identified.
     pub description: Option<Arc<Description>>,
+    /// The encoder's firmware, as it was identified.
+    pub firmware: Option<Firmware>,
     /// The frame as the encoder's data sheet tells it.
     pub layout: Option<Layout>,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
@@ -98,6 +110,7 @@ impl Station {
             supply: None,
             adapter: AdapterState::default(),
             description: None,
+            firmware: None,
             layout: None,
             thorough: false,
             bus: None,
@@ -135,6 +148,11 @@ impl Station {
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
+    }
+
+    /// Takes the number of frames with a wrong checksum since the last reading.
+    pub fn take_crc_errors(&mut self) -> u32 {
+        std::mem::take(&mut self.crc_errors)
     }
 
     /// Once is not enough: a sum lets some pairs of flipped bits through.

@@ -176,7 +176,7 @@ impl<'a> Master<'a> {
                 Ok(PositionReading {
                     error: layout.has_error_bit().then_some(reading.error),
                     warning: layout.has_warning_bit().then_some(reading.warning),
-                    crc_errors: std::mem::take(&mut self.station.crc_errors),
+                    crc_errors: self.station.take_crc_errors(),
                     ..PositionReading::new(at, raw, &reading, &layout)
                 })
             }
@@ -224,7 +224,7 @@ impl<'a> Master<'a> {
         }
         let layout = self.station.frame();
         Err(Error::WrongWidths {
-            frames: std::mem::take(&mut self.station.crc_errors),
+            frames: self.station.take_crc_errors(),
             data_bits: layout.data_bits(),
             crc_bits: layout.crc_bits(),
         })

@@ -1,0 +1,175 @@
+//! The encoder's memory: banks, whole areas of data, and all that can be restored. Areas of data are not touched while the
+//! shaft turns (manual 6.5).
+
+use std::time::Duration;
+
+use super::identify::identify_with;
+use super::registers::Registers;
+use super::survey::look_around;
+use super::{Error, Master, PositionReading, Survey};
+use crate::profile::Unknown;
+use crate::profile::biss::{
+    Bank, BissProfile, DataImage, ListedBank, PresetSetting, ProfileIdentity, Recorded, RegisterRange,
+};
+use crate::protocol::biss::{Area, Descriptions, RegisterAddress};
+
+/// Positions that say whether the shaft stands still, and the time between two.
+const READINGS: usize = 3;
+const BETWEEN: Duration = Duration::from_millis(100);
+/// A shaft that moves by no more than a revolution's 8192nd part stands still: the position trembles (`U`).
+const TREMBLE: u64 = 8192;
+
+/// Where reading of memory is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A register.
+    Register(RegisterAddress),
+    /// A bank.
+    Bank(u8),
+}
+
+/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Error> {
+    let first = master.position()?;
+    let mut readings = vec![first.position()];
+    let mut last = first;
+    for _ in 1..READINGS {
+        master.wait(BETWEEN)?;
+        last = master.position()?;
+        readings.push(last.position());
+    }
+    let range = 1u64.checked_shl((first.multiturn_bits + first.singleturn_bits).into());
+    let allowed = ((1u64 << first.singleturn_bits) / TREMBLE).max(1);
+    if readings.iter().all(|reading| distance(first.position(), *reading, range) <= allowed) {
+        Ok(last)
+    } else {
+        Err(Error::Moving { readings })
+    }
+}
+
+/// Steps between two positions, the short way round: a shaft at rest may tremble across zero.
+fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
+    let straight = a.abs_diff(b);
+    range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
+}
+
+/// Reads registers; those of an area of data only at standstill.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn read_range(master: &mut Master<'_>, range: RegisterRange) -> Result<Vec<u8>, Error> {
+    let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(range.start()).is_some());
+    if in_area {
+        ensure_standstill(master)?;
+    }
+    certainly(master, |master| master.read_run(range.start(), range.count().into()))
+}
+
+/// Reads an area of data; the shaft stands still.
+///
+/// # Errors
+/// What reading gives.
+pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+    let mut banks = Vec::new();
+    for number in area.banks() {
+        told(number);
+        let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
+        let bytes = master.read_run(start, Bank::SIZE)?;
+        let short = || Error::Unexpected(format!("bank {number:02X}h has not 64 registers"));
+        banks.push(Bank { number, bytes: bytes.try_into().map_err(|_| short())? });
+    }
+    Ok(banks)
+}
+
+/// Reads everything that can be restored, and what identifies the encoder.
+///
+/// # Errors
+/// The line, or [`Error::Moving`].
+pub fn save(
+    master: &mut Master<'_>,
+    types: &Descriptions,
+    progress: &mut dyn FnMut(u64, u64, Place),
+) -> Result<BissProfile, Error> {
+    certainly(master, |master| {
+        let mut registers = Registers::default();
+        let identity = identify_with(master, types, &mut registers)?;
+        let description = identity.description.clone();
+        let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.reads()).collect();
+        let (mut done, mut total) = (0, areas.iter().map(|area| area.size() as u64).sum());
+        let in_areas = total;
+        let survey = look_around(master, identity, registers, &mut |at, of, address| {
+            (done, total) = (of, of + in_areas);
+            progress(at, total, Place::Register(address));
+        })?;
+        let mut data = Vec::new();
+        for area in areas {
+            ensure_standstill(master)?;
+            let banks = read_area(master, area, &mut |bank| {
+                progress(done, total, Place::Bank(bank));
+                done += Bank::SIZE as u64;
+            })?;
+            data.push(DataImage::of(area, banks));
+        }
+        Ok(profile_of(&survey, data))
+    })
+}
+
+/// A line that has damaged something while this was read may have damaged more, unseen: then all is read again, and has
+/// to come twice.
+fn certainly<T>(
+    master: &mut Master<'_>,
+    mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let before = master.station().line.damaged;
+    let was_sure = master.station().reads_twice();
+    let value = read(master)?;
+    if was_sure || master.station().line.damaged == before { Ok(value) } else { master.thoroughly(read) }
+}
+
+/// A profile of an encoder with these data.
+pub fn profile_of(survey: &Survey, data: Vec<DataImage>) -> BissProfile {
+    let identity = &survey.identity;
+    let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
+    let mut profile = BissProfile {
+        identity: ProfileIdentity {
+            serial_number: identity.serial_number.clone(),
+            profile_id: identity.kind.profile,
+            device_id: identity.kind.device_id,
+            manufacturer: identity.kind.manufacturer,
+            firmware: identity.firmware,
+            description: identity.description.name().to_owned(),
+            multiturn_bits: identity.multiturn_bits(),
+            singleturn_bits: identity.singleturn_bits(),
+            unknown: Unknown::new(),
+        },
+        filter: survey.status.filter,
+        preset: survey.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
+        recorded: Recorded {
+            eds: sheets.map(|sheet| ListedBank::from(Bank { number: sheet.bank, bytes: sheet.bytes })).collect(),
+            wiegand_last: survey.wiegand_last,
+            wiegand_production: survey.wiegand_production,
+            wiegand_saved: survey.wiegand_saved,
+            calibration_status: survey.calibration.map(|status| status.byte()),
+            unknown: Unknown::new(),
+        },
+        mounting: Vec::new(),
+        data,
+    };
+    profile.mark_mounting();
+    profile
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_go_the_short_way_round() {
+        assert_eq!(distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
+        assert_eq!(distance(5, 3, Some(1 << 33)), 2);
+        assert_eq!(distance(0, u64::MAX, None), u64::MAX);
+    }
+}

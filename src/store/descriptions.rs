@@ -1,0 +1,39 @@
+//! The user's own descriptions of devices: the files of a folder, each for itself. One that cannot be read does not keep
+//! the others from being read.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::file_error::{FileError, FileProblem, FileTask};
+use super::files::read_file;
+
+/// The texts of a folder's files with this ending, with their paths, by name; and those that cannot be read. A folder
+/// that does not exist has none.
+pub(super) fn read_folder(folder: &Path, ending: &str) -> (Vec<(PathBuf, String)>, Vec<FileError>) {
+    let (mut texts, mut errors) = (Vec::new(), Vec::new());
+    match list(folder, ending) {
+        Ok(paths) => {
+            for path in paths {
+                match read_file(&path) {
+                    Ok(text) => texts.push((path, text)),
+                    Err(error) => errors.push(error),
+                }
+            }
+        }
+        Err(FileProblem::NotFound) => {}
+        Err(problem) => errors.push(problem.of(FileTask::List, folder)),
+    }
+    (texts, errors)
+}
+
+fn list(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FileProblem> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
