@@ -8,6 +8,7 @@
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
 mod agenda;
+pub mod biss;
 mod commit;
 pub mod hiperface;
 mod live;

@@ -1,5 +1,6 @@
 //! A BiSS encoder at the end of its line.
 
 mod adapter;
+mod jobs;
 mod master;
 mod support;

@@ -1,0 +1,174 @@
+//! A BiSS encoder at the end of a session, and its jobs.
+
+mod job;
+mod open;
+
+use std::fmt;
+use std::sync::Arc;
+
+pub use job::{BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key};
+pub use open::open;
+
+use super::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::device::biss::{
+    self as device, Error, Identity, Master, Place, Sample, Station, identify, read_range, read_sample, read_status,
+    read_watched,
+};
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::profile::biss::RegisterRange;
+use crate::protocol::biss::{Descriptions, RegisterAddress};
+use crate::sim::biss::Motor;
+use crate::store::{Store, StoreError};
+
+/// A BiSS encoder at the end of its wire.
+pub struct Biss {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    types: Arc<Descriptions>,
+    /// Descriptions of the user's own that cannot be used; told once.
+    broken: Vec<StoreError>,
+    /// What turns a virtual encoder.
+    motor: Option<Motor>,
+}
+
+impl fmt::Debug for Biss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Biss({})", self.station)
+    }
+}
+
+impl Biss {
+    /// The host's side of the line.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+
+    /// Who is there, where that is not known in this session yet: it tells the frame and the registers.
+    fn know(&mut self, desk: &mut Desk) -> Result<(), Error> {
+        if self.station.description.is_none() {
+            let types = self.types.clone();
+            identify(&mut self.master(desk), &types)?;
+        }
+        Ok(())
+    }
+}
+
+impl Session<Biss> {
+    /// A session on an open wire, with the descriptions of `store`. With a motor the encoder lives in this process, and
+    /// its wear counts apart.
+    pub fn over(
+        wire: Box<dyn ByteLink>,
+        clock: Arc<dyn Clock>,
+        station: Station,
+        store: Store,
+        motor: Option<Motor>,
+    ) -> Self {
+        let (types, broken) = store.biss_descriptions();
+        let is_virtual = motor.is_some();
+        Session::with(Biss { wire, station, types: Arc::new(types), broken, motor }, clock, store, is_virtual)
+    }
+
+    /// What is known about the line and the encoder.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// What turns the shaft, where the encoder lives in this process.
+    pub fn motor(&self) -> Option<Motor> {
+        self.device.motor.clone()
+    }
+}
+
+impl Device for Biss {
+    type Job = BissJob;
+    type Output = BissOutput;
+    type Error = JobError;
+    type Remark = Remark;
+    type Sample = Sample;
+    type Watch = RegisterRange;
+    type Doing = Doing;
+
+    fn run(
+        &mut self,
+        desk: &mut Desk,
+        job: BissJob,
+        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+    ) -> Result<BissOutput, JobError> {
+        let types = self.types.clone();
+        let steps = &mut |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        Ok(match job {
+            BissJob::Survey => {
+                let progress = &mut |done, total, at| steps(done, total, Doing::Register(at));
+                BissOutput::Surveyed(Box::new(device::survey(&mut self.master(desk), &types, progress)?))
+            }
+            BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(desk), &types)?)),
+            BissJob::Status => {
+                self.know(desk)?;
+                BissOutput::Status(Box::new(read_status(&mut self.master(desk))?))
+            }
+            BissJob::Position => {
+                self.know(desk)?;
+                BissOutput::Position(self.master(desk).position()?)
+            }
+            BissJob::Read(range) => {
+                self.know(desk)?;
+                let bytes = read_range(&mut self.master(desk), range)?;
+                BissOutput::Registers(ReadRegisters { start: range.start(), bytes })
+            }
+            BissJob::ReadDirect => self.read_all(desk, None)?,
+            BissJob::ReadBank(bank) => self.read_all(desk, Some(bank))?,
+            BissJob::Save => {
+                let progress = &mut |done, total, place| steps(done, total, doing(place));
+                BissOutput::Saved(Box::new(device::save(&mut self.master(desk), &types, progress)?))
+            }
+        })
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+        self.know(desk)?;
+        Ok(read_sample(&mut self.master(desk))?)
+    }
+
+    fn watch(&mut self, desk: &mut Desk, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
+        let reading = read_watched(&mut self.master(desk), *what)?;
+        let refused = reading.value.is_err();
+        let sample = Sample::Watched(reading);
+        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        matches!(error, JobError::Device(Error::Cancelled))
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        if !self.broken.is_empty() {
+            return Some(Remark::Descriptions(std::mem::take(&mut self.broken)));
+        }
+        Some(self.station.take_crc_errors()).filter(|count| *count > 0).map(Remark::CrcErrors)
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}
+
+impl Biss {
+    /// The 64 direct registers, or those of a bank.
+    fn read_all(&mut self, desk: &mut Desk, bank: Option<u8>) -> Result<BissOutput, JobError> {
+        self.know(desk)?;
+        let start = match bank {
+            None => RegisterAddress::BANK_SELECT,
+            Some(bank) => RegisterAddress::banked(bank, 0).unwrap_or(RegisterAddress::BANK_SELECT),
+        };
+        let range = RegisterRange::new(start, RegisterAddress::BANK_SIZE).unwrap_or(RegisterRange::one(start));
+        let bytes = read_range(&mut self.master(desk), range)?;
+        Ok(BissOutput::Registers(ReadRegisters { start, bytes }))
+    }
+}
+
+fn doing(place: Place) -> Doing {
+    match place {
+        Place::Register(address) => Doing::Register(address),
+        Place::Bank(bank) => Doing::Bank(bank),
+    }
+}

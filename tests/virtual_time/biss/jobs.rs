@@ -1,0 +1,334 @@
+//! The jobs of a session with a BiSS encoder, over both ways to it.
+
+use std::fs;
+use std::time::Duration;
+
+use encoder_studio::device::biss::{self as device, Error, FrameSource, PositionReading, Sample, Status, Survey};
+use encoder_studio::link::{Cancel, LinkUrl};
+use encoder_studio::profile::biss::BissProfile;
+use encoder_studio::protocol::biss::{Descriptions, DeviceMode, ErrorRegister, Filter, Firmware, WiegandResult};
+use encoder_studio::store::Store;
+use encoder_studio::worker::biss::{
+    Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key, open,
+};
+use encoder_studio::worker::{Event, JobId, OpenError, Session, Watched};
+
+use super::support::{Bench, Pin, Way, at};
+
+fn survey(bench: &mut Bench) -> Survey {
+    match bench.run(BissJob::Survey) {
+        Ok(BissOutput::Surveyed(survey)) => *survey,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn status(bench: &mut Bench) -> Status {
+    match bench.run(BissJob::Status) {
+        Ok(BissOutput::Status(status)) => *status,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn position(bench: &mut Bench) -> PositionReading {
+    match bench.run(BissJob::Position) {
+        Ok(BissOutput::Position(reading)) => reading,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn save(bench: &mut Bench) -> Result<BissProfile, JobError> {
+    match bench.run(BissJob::Save)? {
+        BissOutput::Saved(profile) => Ok(*profile),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn device_error(error: JobError) -> Error {
+    match error {
+        JobError::Device(error) => error,
+    }
+}
+
+const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+
+/// Manual, appendix 9.1; the serial number is the simulator's.
+#[test]
+fn a_survey_shows_what_is_there_over_both_ways() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "serial=1234567&temperature=25&errors=0x12&filter=dynamic");
+        let survey = survey(&mut bench);
+        let identity = &survey.identity;
+        assert_eq!(
+            identity.kind.to_string(),
+            "profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01",
+            "{way:?}"
+        );
+        assert_eq!(
+            (identity.serial_number.as_str(), &identity.serial_bytes),
+            ("1234567", &vec![0x00, 0x12, 0xD6, 0x87])
+        );
+        assert_eq!(identity.firmware, Some(Firmware::new(1, 6, 0)));
+        assert_eq!(identity.description.name(), "POSITAL IXARC kit encoder");
+        assert_eq!((identity.mismatch.as_ref(), identity.source), (None, FrameSource::DataSheet));
+        assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(16), Some(17)));
+        let sheet = identity.data_sheet.as_ref().unwrap();
+        assert_eq!((sheet.common.bank, sheet.common.bytes[0x3F]), (2, 0xF4));
+        assert_eq!((sheet.encoder.bank, sheet.encoder.bytes[0x3F]), (3, 0x31));
+        assert_eq!(
+            identity.adapter.as_ref().map(|hello| hello.name.as_str()),
+            (way == Way::Adapter).then_some("virtual adapter")
+        );
+        let key = device_key(identity, true);
+        assert_eq!((key.kind.as_str(), key.device_type.as_str()), ("biss", "4672-010168110001"));
+
+        assert_eq!((survey.status.mode, survey.status.protection), (Some(DeviceMode::OPERATION), Some(0)));
+        assert_eq!((survey.status.celsius, survey.status.filter), (Some(25.0), Some(Filter::Dynamic)));
+        let errors = survey.status.errors.unwrap();
+        let names: Vec<_> = errors.set.iter().map(|(bit, name)| (*bit, name.as_deref().unwrap())).collect();
+        let expected: Vec<_> = ErrorRegister::new(0x12).set().collect();
+        assert_eq!((errors.raw, names), (0x12, expected));
+        assert_eq!(survey.status.warnings.map(|bits| bits.raw), Some(0));
+        // The frame has an error bit, the word over the configuration pin has none.
+        assert_eq!(survey.status.position.unwrap().error, (way == Way::Adapter).then_some(true));
+
+        assert_eq!(survey.wiegand_last, Some(WiegandResult::parse([0; 4])));
+        assert_eq!(survey.wiegand_production, Some(WiegandResult::parse([64, 60, 64, 59])));
+        assert_eq!(survey.preset.map(|preset| preset.emit()), Some([0; 6]));
+        assert_eq!(survey.registers.get(at("0x02:0x05")), Some(0x1C));
+        assert_eq!(survey.missing, []);
+        assert!(bench.now() < Duration::from_secs(2), "{way:?}: {:?}", bench.now());
+    }
+}
+
+/// Manual: errors and warnings since 1.6.0, filter since 1.1.0, preset since 1.2.0.
+#[test]
+fn what_an_older_firmware_does_not_have_is_not_there() {
+    let mut bench = Bench::new(Way::Adapter, "firmware=1.0.9&errors=0x10");
+    let survey = survey(&mut bench);
+    assert_eq!((&survey.status.errors, &survey.status.warnings, survey.status.filter), (&None, &None, None));
+    assert_eq!(survey.preset, None);
+    assert_eq!(survey.status.celsius, Some(30.0));
+    assert_eq!(survey.status.position.unwrap().error, Some(true), "the frame tells all the same");
+    let later = status(&mut bench);
+    assert_eq!(Status { position: survey.status.position, ..later }, survey.status);
+}
+
+#[test]
+fn status_and_position_know_the_encoder_without_being_asked_who_it_is() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "temperature=130&position=0x20001");
+        let status = status(&mut bench);
+        assert_eq!(status.warnings.unwrap().set, [(0, Some("temperature too high".to_owned()))]);
+        assert_eq!(status.celsius, Some(130.0));
+        let sent = bench.tap().sent.len();
+        let reading = position(&mut bench);
+        assert_eq!((reading.turns, reading.steps), (1, 1));
+        assert_eq!(bench.tap().sent.len(), sent + 1, "{way:?}: known by now");
+        let mut fresh = Bench::new(way, "position=0x20001");
+        assert_eq!(position(&mut fresh).turns, 1);
+    }
+}
+
+#[test]
+fn registers_and_banks_are_read() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "temperature=25");
+        let mut read = |job| match bench.run(job) {
+            Ok(BissOutput::Registers(registers)) => registers,
+            other => panic!("{other:?}"),
+        };
+        let temperature = ReadRegisters { start: at("0x66"), bytes: vec![75] };
+        assert_eq!(read(BissJob::Read("0x66".parse().unwrap())), temperature);
+        assert_eq!(read(BissJob::Read("0x03:0x2C+2".parse().unwrap())).bytes, [0x2E, 0xE0]);
+        let direct = read(BissJob::ReadDirect);
+        assert_eq!((direct.start, direct.bytes.len(), &direct.bytes[0x3E..]), (at("0x40"), 64, &b"Fr"[..]));
+        let bank = read(BissJob::ReadBank(0x02));
+        assert_eq!((bank.start, bank.bytes[0x3F]), (at("0x02:0x00"), 0xF4));
+    }
+}
+
+/// Manual 6.5: data are not touched while the motor runs.
+#[test]
+fn data_are_not_read_while_the_shaft_turns() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "rpm=60");
+        for job in [BissJob::Save, BissJob::ReadBank(0x24), BissJob::Read("0x04:0x00".parse().unwrap())] {
+            let error = device_error(bench.run(job).unwrap_err());
+            assert!(matches!(&error, Error::Moving { readings } if readings.len() == 3), "{error}");
+        }
+        assert!(bench.run(BissJob::ReadBank(0x02)).is_ok(), "the data sheet is no area of data");
+        bench.motor().set_rpm(0.0);
+        assert!(bench.run(BissJob::ReadBank(0x24)).is_ok());
+    }
+}
+
+#[test]
+fn everything_that_can_be_restored_is_saved_over_both_ways() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "serial=77&filter=dynamic");
+        let profile = save(&mut bench).unwrap();
+        assert_eq!((profile.identity.serial_number.as_str(), profile.filter), ("77", Some(Filter::Dynamic)));
+        assert_eq!((profile.identity.multiturn_bits, profile.identity.singleturn_bits), (Some(16), Some(17)));
+        let areas: Vec<_> = profile.data.iter().map(|image| (image.name.as_str(), image.first, image.last)).collect();
+        assert_eq!(areas, [("EDS motor data", 0x04, 0x23), ("OEM data", 0x24, 0x43)]);
+        assert_eq!(profile.banks().count(), 64);
+        for bank in profile.banks() {
+            for (address, value) in bank.registers() {
+                assert_eq!(Some(value), bench.encoder_reads(address), "{way:?} {address}");
+            }
+        }
+        let sheets: Vec<u8> = profile.recorded.eds.iter().map(|sheet| sheet.bank.number).collect();
+        assert_eq!(sheets, [2, 3]);
+        assert_eq!(profile.recorded.wiegand_production, Some(WiegandResult::parse([64, 60, 64, 59])));
+        assert_eq!(profile.mounting.len(), 2, "preset and calibration");
+        assert_eq!(bench.flash_cycles(), 3, "as at the start");
+    }
+}
+
+#[test]
+fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut told = Vec::new();
+    let end = bench.session.run(JobId::default(), BissJob::Save, &mut |event| {
+        if let Event::Progress(_, progress) = event {
+            told.push((progress.done, progress.total, progress.what));
+        }
+    });
+    assert!(matches!(end, Event::Finished(..)));
+    assert!(told.is_sorted_by_key(|(done, ..)| *done), "{told:?}");
+    assert!(told.iter().all(|(done, total, _)| done < total && *total == told[0].1));
+    assert_eq!(told.last().unwrap().2, Doing::Bank(0x43));
+    assert_eq!(told.iter().filter(|(.., what)| matches!(what, Doing::Bank(_))).count(), 64);
+    let mut stopped = Bench::new(Way::ConfigPin, "");
+    stopped.session.set_cancel(Cancel::after(1000));
+    assert_eq!(device_error(save(&mut stopped).unwrap_err()), Error::Cancelled);
+    assert_eq!(stopped.tap().sent.len(), 1000);
+}
+
+/// What is kept is right, whatever the line does, or there is an error.
+#[test]
+fn a_save_over_a_noisy_line_is_right_or_an_error() {
+    let (mut saved, mut failed) = (0, 0);
+    let truth = save(&mut Bench::new(Way::ConfigPin, "")).unwrap();
+    for noise in ["drop:0.002", "flip:0.002", "garbage:0.002", "flip:0.0003"] {
+        for seed in 0..3 {
+            let mut bench = Bench::new(Way::ConfigPin, &format!("seed={seed}&fault={noise}"));
+            match save(&mut bench) {
+                Ok(profile) => {
+                    saved += 1;
+                    assert_eq!(profile, truth, "{noise}, seed {seed}");
+                }
+                Err(JobError::Device(Error::NoReply { .. } | Error::Damaged { .. })) => failed += 1,
+                Err(other) => panic!("{noise}, seed {seed}: {other}"),
+            }
+        }
+    }
+    println!("{saved} saved, {failed} failed");
+    assert!(saved > 9);
+}
+
+/// A description of another device of the same manufacturer: it is told, and what every encoder has is shown.
+#[test]
+fn a_device_id_that_fits_no_description_is_told() {
+    let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
+    let other = kit.replace("device_id: (0x01, 0x01, 0x68, 0x11, 0x00, 0x01)", "device_id: (1, 1, 0x68, 0x11, 0, 2)");
+    let (types, errors) = Descriptions::read([("other.ron", other.as_str()), ("unknown.ron", unknown)]);
+    assert_eq!(errors, []);
+    let mut pin = Pin::new("serial=1234567");
+    let survey = device::survey(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap();
+    assert_eq!(
+        survey.identity.mismatch.as_ref().unwrap().to_string(),
+        "the encoder says profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01; the description \"POSITAL \
+         IXARC kit encoder\" is for profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 02"
+    );
+    assert_eq!(survey.identity.description.name(), "BiSS C encoder");
+    assert_eq!((survey.status.mode, survey.status.celsius), (None, None));
+    assert_eq!(survey.identity.serial_number, "1234567");
+    assert_eq!(survey.identity.multiturn_bits(), Some(16), "the data sheet tells it");
+    assert_eq!(device::save(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap().data, []);
+    let (none, _) = Descriptions::read([("other.ron", other.as_str())]);
+    let error = device::identify(&mut pin.master(), &none).unwrap_err();
+    assert!(matches!(error, Error::NoDescription(_)), "{error}");
+}
+
+#[test]
+fn samples_and_watched_registers_come_one_by_one() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "temperature=25&rpm=60");
+        let Ok(Sample::Position(first)) = bench.session.sample() else { panic!("no position") };
+        let Ok(Sample::Position(second)) = bench.session.sample() else { panic!("no position") };
+        assert!(first.at < second.at && first.position() < second.position(), "{way:?}");
+        let watched = bench.session.watch_value(&"0x66".parse().unwrap()).unwrap();
+        let Watched::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
+        assert_eq!((reading.what.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
+        let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
+        assert!(matches!(refused, Watched::Refused(Sample::Watched(_))), "{refused:?}");
+    }
+}
+
+/// A frame that comes through now and then: the wrong ones are counted with the next right one, or are a sample.
+#[test]
+fn polling_survives_damaged_frames() {
+    let mut bench = Bench::new(Way::Adapter, "noise=0.6&seed=2");
+    let (mut right, mut wrong) = (0, 0);
+    for _ in 0..100 {
+        match bench.session.sample() {
+            Ok(Sample::Position(reading)) => {
+                right += 1;
+                wrong += reading.crc_errors;
+            }
+            Ok(Sample::Missed { crc_errors, .. }) => wrong += crc_errors,
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(right > 80 && wrong > 80, "{right}, {wrong}");
+}
+
+#[test]
+fn links_lead_to_the_way_that_they_name() {
+    let root = tempfile::tempdir().unwrap();
+    let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at(root.path()));
+    for (text, line) in [("sim:?rpm=5", "UBICOM"), ("sim:?bridge=on&noise=0&clock=2000000", "BiSS at 2000000 Hz")] {
+        let session: Session<Biss> = open(text).unwrap();
+        assert_eq!(session.station().to_string(), line);
+        assert!(session.is_virtual());
+    }
+    assert_eq!(open("sim:?rpm=5").unwrap().motor().unwrap().rpm(), 5.0);
+    let cases = [
+        ("sim:?bridge=yes", "bridge=yes: on or off"),
+        (
+            "serial:/dev/null?clock=1",
+            "clock is not a parameter of serial: links; known are order, echo, timeout, margin",
+        ),
+        ("bridge:/dev/null?echo=on", "echo is not a parameter of bridge: links; known are margin, clock, voltage"),
+        ("bridge:/dev/null?clock=1", "clock=1: hertz from 80000 to 10000000"),
+    ];
+    for (text, sentence) in cases {
+        match open(text) {
+            Err(OpenError::Url(error)) => assert_eq!(error.to_string(), sentence),
+            other => panic!("{text}: {:?}", other.err()),
+        }
+    }
+    assert!(matches!(open("sim:?line=low"), Err(OpenError::Sim(_))), "the adapter's settings need the adapter");
+}
+
+#[test]
+fn broken_descriptions_are_told_once_with_the_first_job() {
+    let root = tempfile::tempdir().unwrap();
+    let store = Store::at(root.path());
+    fs::create_dir_all(store.biss_descriptions_path()).unwrap();
+    fs::write(store.biss_descriptions_path().join("mine.ron"), "(name: 7)").unwrap();
+    let mut bench = Bench::in_store(Way::ConfigPin, "", store);
+    for expected in [1, 0] {
+        let mut remarks = Vec::new();
+        bench.session.run(JobId::default(), BissJob::Identify, &mut |event| {
+            if let Event::Remark(remark) = event {
+                remarks.push(remark);
+            }
+        });
+        assert_eq!(remarks.len(), expected);
+        if let Some(Remark::Descriptions(errors)) = remarks.first() {
+            assert!(errors[0].to_string().contains("mine.ron, line 1, column"), "{}", errors[0]);
+        }
+    }
+}
