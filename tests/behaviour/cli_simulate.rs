@@ -1,50 +1,13 @@
 //! `simulate`, examined by a host that is not our program, with the frames of the reference.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use super::support::{Bench, ended, frame, host, python, signal};
-
-/// A virtual encoder in a process of its own.
-struct Simulated {
-    child: Option<Child>,
-    /// The word after `ready hiperface`.
-    place: String,
-}
-
-impl Simulated {
-    fn start(bench: &Bench, arguments: &[&str]) -> Self {
-        let mut child = bench.program(&[&["simulate", "hiperface"], arguments].concat()).spawn().unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let place = line.trim_end().strip_prefix("ready hiperface ").unwrap_or_else(|| panic!("{line:?}")).to_owned();
-        Simulated { child: Some(child), place }
-    }
-
-    /// Interrupts it and waits for its end.
-    fn end(mut self, signal_name: &str) {
-        let child = self.child.take().unwrap();
-        signal(&child, signal_name);
-        let ran = ended(child, Instant::now());
-        assert!(ran.status.is_some(), "killed instead of ended: {ran:?}");
-        assert!(ran.took < Duration::from_secs(5), "{ran:?}");
-        assert!(!ran.err.contains("panicked"), "{ran:?}");
-    }
-}
-
-impl Drop for Simulated {
-    fn drop(&mut self) {
-        if let Some(mut child) = self.child.take() {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
-    }
-}
+use super::support::{Bench, Simulated, frame, host, python};
 
 /// What the reference says about an encoder as delivered, with the two ways an error frame may begin.
 fn examine(path: &str) {
@@ -92,7 +55,7 @@ fn a_terminal_answers_the_frames_of_the_reference_and_one_client_after_the_other
     if python("master.py").is_none() {
         return;
     }
-    let simulated = Simulated::start(&bench, &["--pty", &bench.file("enc")]);
+    let simulated = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc")]);
     assert_eq!(simulated.place, bench.file("enc"));
     assert!(bench.path("enc").is_symlink());
     examine(&simulated.place);
@@ -112,7 +75,7 @@ fn a_port_answers_the_frames_of_the_reference_and_one_client_after_the_other() {
     if python("master.py").is_none() {
         return;
     }
-    let simulated = Simulated::start(&bench, &["--listen", "127.0.0.1:0"]);
+    let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
     assert!(simulated.place.starts_with("127.0.0.1:") && !simulated.place.ends_with(":0"));
     let path = format!("tcp:{}", simulated.place);
     examine(&path);
@@ -126,13 +89,13 @@ fn a_port_answers_the_frames_of_the_reference_and_one_client_after_the_other() {
 fn an_interrupt_ends_it_with_a_client_connected_too() {
     let bench = Bench::new();
     for name in ["INT", "TERM"] {
-        let simulated = Simulated::start(&bench, &["--listen", "127.0.0.1:0"]);
+        let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
         let client = TcpStream::connect(&simulated.place).unwrap();
         sleep(Duration::from_millis(100));
         simulated.end(name);
         drop(client);
     }
-    let simulated = Simulated::start(&bench, &["--pty", &bench.file("enc")]);
+    let simulated = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc")]);
     simulated.end("TERM");
     assert!(!bench.path("enc").is_symlink());
 }
@@ -140,7 +103,7 @@ fn an_interrupt_ends_it_with_a_client_connected_too() {
 #[test]
 fn after_a_reset_the_encoder_is_deaf_and_then_answers() {
     let bench = Bench::new();
-    let simulated = Simulated::start(&bench, &["--listen", "127.0.0.1:0"]);
+    let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
     let mut line = TcpStream::connect(&simulated.place).unwrap();
     line.set_nodelay(true).unwrap();
     let mut ask = |bytes: &[u8], wait: u64| {
@@ -178,7 +141,7 @@ fn power_is_lost_in_the_middle_of_a_store_and_comes_back_with_the_next_client() 
     if python("master.py").is_none() {
         return;
     }
-    let simulated = Simulated::start(&bench, &["--pty", &bench.file("enc"), "--fault", "die-in-store:1"]);
+    let simulated = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc"), "--fault", "die-in-store:1"]);
     let replies = host(&simulated.place, &["40 4D 00 C9 55 91", "40 4B 00 00 04 55 DE AD BE EF 78", "40 50 10"]);
     assert_eq!(replies, ["40 4D 00 C9 C4", "-", "-"]);
     sleep(Duration::from_millis(1500));
@@ -192,8 +155,8 @@ fn power_is_lost_in_the_middle_of_a_store_and_comes_back_with_the_next_client() 
 #[test]
 fn our_own_restore_works_on_our_own_encoder_over_both_wires() {
     let bench = Bench::new();
-    let terminal = Simulated::start(&bench, &["--pty", &bench.file("enc"), "--set", "serial=HF0000001"]);
-    let port = Simulated::start(&bench, &["--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
+    let terminal = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc"), "--set", "serial=HF0000001"]);
+    let port = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
     let (serial, tcp) = (format!("serial:{}", terminal.place), format!("tcp:{}", port.place));
     let there = bench.run(&["identify", "hiperface", "--link", &serial, "--json"]).json()["data_fields"].to_string();
     let create = ["do", "hiperface", "create-field", &there, "32", "--yes", "--link", &serial];

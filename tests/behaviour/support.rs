@@ -83,18 +83,32 @@ impl Bench {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
 
-    /// Starts a foreign encoder; `None`, and a line that says so, where that is not possible.
+    /// Starts a foreign HIPERFACE encoder; `None`, and a line that says so, where that is not possible.
     pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
+        self.on_terminal("encoder.py", "serial:", arguments)
+    }
+
+    fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
+        let number = self.encoders.load(Ordering::SeqCst);
+        let link = self.file(&format!("enc{number}"));
+        let mut foreign = self.foreign(script, &[&["--link", &link], arguments].concat())?;
+        foreign.url = format!("{scheme}{link}");
+        foreign.place = link;
+        Some(foreign)
+    }
+
+    fn foreign(&self, script: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.fetch_add(1, Ordering::SeqCst);
-        let (link, log) = (self.file(&format!("enc{number}")), self.path(&format!("log{number}")));
-        let mut command = python("encoder.py")?;
-        command.args(["--stdin-eof", "--link", &link, "--log", log.to_str().unwrap()]).args(arguments);
+        let log = self.path(&format!("log{number}"));
+        let mut command = python(script)?;
+        command.args(["--stdin-eof", "--log", log.to_str().unwrap()]).args(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let mut ready = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut ready).unwrap();
-        let encoder = Foreign { child, url: format!("serial:{link}"), link, log };
-        if ready.starts_with("ready ") {
-            return Some(encoder);
+        let place = ready.trim_end().strip_prefix("ready ").map(str::to_owned);
+        let foreign = Foreign { child, url: String::new(), place: place.clone().unwrap_or_default(), log };
+        if place.is_some() {
+            return Some(foreign);
         }
         skip("no pseudo-terminal can be made here");
         None
@@ -189,13 +203,13 @@ pub(crate) struct Foreign {
     child: Child,
     /// For `--link`.
     pub(crate) url: String,
-    /// The symbolic link to its terminal.
-    pub(crate) link: String,
+    /// The symbolic link to its terminal, or its address.
+    pub(crate) place: String,
     log: PathBuf,
 }
 
 impl Foreign {
-    /// Request frames since the last time it was asked, in hex.
+    /// What was asked since the last time, a line each: of HIPERFACE the frames in hex, of BiSS the registers.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
@@ -216,7 +230,7 @@ impl Foreign {
 
     /// Sends frames as another host would; the checksum is added.
     pub(crate) fn host(&self, frames: &[&str]) -> Vec<String> {
-        host(&self.link, &[&["--sum"], frames].concat())
+        host(&self.place, &[&["--sum"], frames].concat())
     }
 }
 
@@ -226,15 +240,58 @@ impl Drop for Foreign {
     }
 }
 
-/// A foreign host at a path or `tcp:HOST:PORT`: a line a reply, `-` for none.
+/// A foreign HIPERFACE host at a path or `tcp:HOST:PORT`: a line a reply, `-` for none.
 pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
-    let mut command = python("master.py").unwrap();
+    foreign_host("master.py", path, arguments)
+}
+
+/// A foreign host: a line for each thing it was told to do.
+pub(crate) fn foreign_host(script: &str, path: &str, arguments: &[&str]) -> Vec<String> {
+    let mut command = python(script).unwrap();
     let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
     let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
     let Output { status, stdout, stderr } = command.args(options).arg(path).args(frames).output().unwrap();
     assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
     sleep(Duration::from_millis(20));
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+/// One of our virtual devices in a process of its own.
+pub(crate) struct Simulated {
+    child: Option<Child>,
+    /// The word after `ready KIND`.
+    pub(crate) place: String,
+}
+
+impl Simulated {
+    /// The first argument is its kind.
+    pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
+        let mut child = bench.program(&[&["simulate"], arguments].concat()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let ready = format!("ready {} ", arguments[0]);
+        let place = line.trim_end().strip_prefix(&ready).unwrap_or_else(|| panic!("{line:?}")).to_owned();
+        Simulated { child: Some(child), place }
+    }
+
+    /// Interrupts it and waits for its end.
+    pub(crate) fn end(mut self, signal_name: &str) {
+        let child = self.child.take().unwrap();
+        signal(&child, signal_name);
+        let ran = ended(child, Instant::now());
+        assert!(ran.status.is_some(), "killed instead of ended: {ran:?}");
+        assert!(ran.took < Duration::from_secs(5), "{ran:?}");
+        assert!(!ran.err.contains("panicked"), "{ran:?}");
+    }
+}
+
+impl Drop for Simulated {
+    fn drop(&mut self) {
+        if let Some(mut child) = self.child.take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
 }
 
 /// Says that a test is skipped. Where everything has to be there (`ENCODER_STUDIO_NO_SKIP`), it fails instead.

@@ -16,67 +16,44 @@ Every option that takes bytes takes them as hex.
 
 import argparse
 import json
-import os
-import pty
 import random
-import select
-import signal
 import sys
-import termios
 import time
-import tty
 
 sys.dont_write_bytecode = True  # the tests leave nothing behind
 
 from device import BLOCK, Died, Encoder  # noqa: E402
+from terminal import END, Terminal  # noqa: E402
 
 SILENCE = 0.006  # seconds that end a frame
 
 
 class Line:
-    """The pty: cuts what arrives into frames and notices when nobody is there."""
+    """Cuts what arrives into frames, and answers them."""
 
     def __init__(self, encoder, options):
         self.encoder, self.options = encoder, options
-        self.master, slave = pty.openpty()
-        self.path = os.ttyname(slave)
-        tty.setraw(slave)
-        os.close(slave)  # from now on the only one who holds it is the client
+        self.terminal = Terminal(options.stdin_eof)
         self.dead = False
         self.random = random.Random(options.seed)
 
     def run(self):
         frame = b""
-        watched = [self.master] + ([sys.stdin.fileno()] if self.options.stdin_eof else [])
         while True:
-            ready, _, _ = select.select(watched, [], [], SILENCE if frame else None)
-            if len(watched) == 2 and watched[1] in ready and not os.read(watched[1], 4096):
+            data = self.terminal.read(SILENCE if frame else None)
+            if data is END:
                 return
-            data = self.read() if self.master in ready else b""
             if data:
+                if self.options.echo:
+                    self.terminal.write(data)
                 frame += data
                 continue
-            if frame and (data is None or not ready):
+            if frame:
                 self.serve(frame)
                 frame = b""
             if data is None:
-                self.hang_up()
-
-    def read(self):
-        """What the client sent; None when there is no client."""
-        try:
-            data = os.read(self.master, 4096)
-        except OSError:  # EIO
-            return None
-        if self.options.echo:
-            self.write(data)
-        return data
-
-    def hang_up(self):
-        self.dead = False
-        termios.tcflush(self.master, termios.TCIOFLUSH)  # no late reply for the next client
-        tty.setraw(self.master)
-        time.sleep(0.002)
+                self.dead = False
+                self.terminal.hang_up()
 
     def serve(self, frame):
         if self.options.log:
@@ -85,7 +62,7 @@ class Line:
         if self.dead or self.options.silent:
             return
         if self.options.nonsense:
-            self.write(self.random.randbytes(self.random.randint(1, 40)))
+            self.terminal.write(self.random.randbytes(self.random.randint(1, 40)))
             return
         try:
             reply = self.encoder.answer(frame)
@@ -95,13 +72,7 @@ class Line:
             self.encoder.save(self.options.state)
         if reply:
             time.sleep(self.options.delay)
-            self.write(reply)
-
-    def write(self, data):
-        try:
-            os.write(self.master, data)
-        except OSError:
-            pass  # the client has gone
+            self.terminal.write(reply)
 
 
 def parse_options():
@@ -151,19 +122,7 @@ def parse_options():
 def main():
     options = parse_options()
     line = Line(Encoder(options), options)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
-    try:
-        if options.link:
-            if os.path.islink(options.link):
-                os.unlink(options.link)
-            os.symlink(line.path, options.link)
-        print("ready", line.path, flush=True)
-        line.run()
-    except KeyboardInterrupt:
-        pass
-    finally:
-        if options.link and os.path.islink(options.link) and os.readlink(options.link) == line.path:
-            os.unlink(options.link)
+    line.terminal.serve(options.link, line.run)
 
 
 if __name__ == "__main__":

@@ -12,65 +12,18 @@ Nothing is corrected on the way: frames go out as they are given, replies are pr
 """
 
 import argparse
-import os
-import select
-import socket
 import sys
-import termios
 import time
-import tty
 
-BIT_RATES = {600: termios.B600, 1200: termios.B1200, 2400: termios.B2400, 4800: termios.B4800,
-             9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400}
+sys.dont_write_bytecode = True  # the tests leave nothing behind
+
+from wire import BIT_RATES, Wire  # noqa: E402
 
 # Longest time to process a command in milliseconds.
 MAX_MS = {0x42: 10, 0x43: 40, 0x44: 5, 0x46: 5, 0x47: 30, 0x49: 30, 0x4A: 30, 0x4B: 250, 0x4C: 5, 0x4D: 70, 0x4E: 5,
           0x4F: 40, 0x50: 5, 0x52: 5, 0x53: 0, 0x55: 40, 0x56: 5, 0x57: 40, 0x63: 40, 0x67: 5}
 RESET = 0x53
 LONGEST_REPLY = 3 + 3 + 128
-
-
-class Wire:
-    """A file descriptor to the encoder, whatever is behind it."""
-
-    def __init__(self, path, baud, parity):
-        self.socket = None
-        if path.startswith("tcp:"):
-            _, host, port = path.split(":")
-            self.socket = socket.create_connection((host, int(port)), timeout=5)
-            self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self.socket.settimeout(None)
-            self.fd = self.socket.fileno()
-        else:
-            self.fd = os.open(path, os.O_RDWR | os.O_NOCTTY)
-            self.set_line(baud, parity)
-
-    def set_line(self, baud, parity):
-        tty.setraw(self.fd)
-        line = termios.tcgetattr(self.fd)
-        line[2] &= ~(termios.PARENB | termios.PARODD | termios.CSTOPB)
-        line[2] |= termios.CLOCAL | termios.CREAD | termios.CS8
-        line[2] |= {"none": 0, "even": termios.PARENB, "odd": termios.PARENB | termios.PARODD}[parity]
-        line[4] = line[5] = BIT_RATES[baud]
-        try:
-            termios.tcsetattr(self.fd, termios.TCSANOW, line)
-        except termios.error:  # a pty has no parity bit, and some systems say so
-            line[2] &= ~(termios.PARENB | termios.PARODD)
-            termios.tcsetattr(self.fd, termios.TCSANOW, line)
-
-    def send(self, data):
-        while data:
-            data = data[os.write(self.fd, data):]
-
-    def receive(self, seconds):
-        """Bytes that arrive within the time; none when it runs out, None when the other end has closed."""
-        ready, _, _ = select.select([self.fd], [], [], max(0.0, seconds))
-        if not ready:
-            return b""
-        try:
-            return os.read(self.fd, 4096) or None
-        except OSError:
-            return None
 
 
 class Host:
