@@ -1,0 +1,173 @@
+//! A BiSS encoder in words: the errors of jobs with it and with the adapter, and what is said on the way.
+
+mod adapter;
+mod damage;
+
+pub use adapter::adapter;
+pub use damage::damage;
+
+use super::{link, store};
+use crate::app::Text;
+use crate::device::biss::{Asked, Error};
+use crate::protocol::biss::Mismatch;
+use crate::worker::biss::{Doing, JobError, Remark};
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![encoder(error)],
+    }
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match error {
+        JobError::Device(Error::Link(error)) => Some(link(error)),
+        JobError::Device(_) => None,
+    }
+}
+
+/// An exchange with a BiSS encoder that failed.
+pub fn encoder(error: &Error) -> Text {
+    match error {
+        Error::Link(error) => link(error),
+        Error::Adapter(error) => adapter(error),
+        Error::NoReply { asked, tries, echo_heard } => {
+            let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
+            Text::new(id).with_text("asked", self::asked(*asked)).with("tries", tries)
+        }
+        Error::Damaged { asked, tries, cause } => Text::new("biss.damaged")
+            .with_text("asked", self::asked(*asked))
+            .with("tries", tries)
+            .with_text("why", damage(cause)),
+        Error::NeverSilent => Text::new("biss.never_silent"),
+        Error::NoAcknowledge { tries, supply_off: false } => Text::new("biss.no_acknowledge").with("tries", tries),
+        Error::NoAcknowledge { tries, supply_off: true } => Text::new("biss.supply_off").with("tries", tries),
+        Error::StuckLow { tries } => Text::new("biss.stuck_low").with("tries", tries),
+        Error::StuckHigh { tries } => Text::new("biss.stuck_high").with("tries", tries),
+        Error::WrongWidths { frames, data_bits, crc_bits } => {
+            Text::new("biss.wrong_widths").with("frames", frames).with("data", data_bits).with("crc", crc_bits)
+        }
+        Error::NoSuchRegister { address } => Text::new("biss.no_such_register").with("address", address),
+        Error::Refused { address, value, reads } => {
+            let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
+            let reads = reads.map(byte).unwrap_or_default();
+            Text::new(id).with("address", address).with("value", byte(*value)).with("reads", reads)
+        }
+        Error::Unclear { address, value, cause } => Text::new("biss.unclear")
+            .with("address", address)
+            .with("value", byte(*value))
+            .with_text("cause", encoder(cause)),
+        Error::Cancelled => Text::new("encoder.cancelled"),
+        Error::OrderUnknown { answer } => Text::new("biss.order_unknown").with("answer", byte(*answer)),
+        Error::TooWide { word, multiturn, singleturn } => Text::new("biss.too_wide")
+            .with("word", format!("{word:X}h"))
+            .with("multiturn", multiturn)
+            .with("singleturn", singleturn),
+        Error::OutOfRange { start, count } => Text::new("biss.out_of_range").with("start", start).with("count", count),
+        Error::NoDescription(found) => Text::new("biss.no_description").with("found", found),
+        Error::NotIdentified => Text::new("biss.not_identified"),
+        Error::Moving { readings } => {
+            let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
+            Text::new("encoder.moving").with("readings", words.join(", "))
+        }
+        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+    }
+}
+
+/// What was asked of an encoder.
+pub fn asked(asked: Asked) -> Text {
+    match asked {
+        Asked::Read(address) => Text::new("biss.asked_read").with("address", address),
+        Asked::Write(address, value) => {
+            Text::new("biss.asked_write").with("address", address).with("value", byte(value))
+        }
+        Asked::Position => Text::new("biss.asked_position"),
+    }
+}
+
+/// An encoder that is not the one of the description that comes nearest.
+pub fn mismatch(mismatch: &Mismatch) -> Text {
+    Text::new("biss.mismatch")
+        .with("found", &mismatch.found)
+        .with("name", &mismatch.name)
+        .with("expected", &mismatch.expected)
+}
+
+/// What was said on the way, one text each.
+pub fn remark(remark: &Remark) -> Vec<Text> {
+    match remark {
+        Remark::CrcErrors(1) => vec![Text::new("biss.crc_error")],
+        Remark::CrcErrors(count) => vec![Text::new("biss.crc_errors").with("count", count)],
+        Remark::Descriptions(errors) => errors.iter().map(store).collect(),
+    }
+}
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::Register(address) => Text::new("biss.register").with("address", address),
+        Doing::Bank(bank) => Text::new("biss.bank").with("bank", format!("0x{bank:02X}")),
+    }
+}
+
+fn byte(byte: u8) -> String {
+    format!("{byte:02X}h")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::device::biss::Damage;
+    use crate::device::bridge::AdapterError;
+    use crate::link::{LinkError, LinkErrorKind};
+    use crate::protocol::biss::{Identity, ProfileId, RegisterAddress};
+
+    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
+    #[test]
+    fn every_error_says_what_happened_and_what_to_do() {
+        let address: RegisterAddress = "0x24:0x10".parse().unwrap();
+        let asked = Asked::Read(address);
+        let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
+        let cases = [
+            (Error::NoReply { asked, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),
+            (Error::NoReply { asked, tries: 5, echo_heard: true }, vec!["0x24:0x10", "5"]),
+            (Error::Damaged { asked, tries: 5, cause: Damage::Inconsistent }, vec!["0x24:0x10", "5"]),
+            (Error::NeverSilent, vec![]),
+            (Error::NoAcknowledge { tries: 5, supply_off: false }, vec!["MA", "SLO"]),
+            (Error::NoAcknowledge { tries: 5, supply_off: true }, vec!["voltage="]),
+            (Error::StuckLow { tries: 5 }, vec!["SLO"]),
+            (Error::StuckHigh { tries: 5 }, vec!["SLO"]),
+            (Error::WrongWidths { frames: 21, data_bits: 27, crc_bits: 6 }, vec!["21", "27+6"]),
+            (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
+            (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "07h"]),
+            (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "07h", "01h"]),
+            (Error::Unclear { address, value: 7, cause: Box::new(Error::NeverSilent) }, vec!["0x24:0x10", "07h"]),
+            (Error::OrderUnknown { answer: 3 }, vec!["03h", "order="]),
+            (Error::TooWide { word: 0x2_0000, multiturn: 0, singleturn: 17 }, vec!["20000h", "0+17"]),
+            (Error::OutOfRange { start: address, count: 70_000 }, vec!["0x24:0x10", "70000"]),
+            (Error::NoDescription(kind), vec!["6129h"]),
+            (Error::NotIdentified, vec![]),
+            (Error::Adapter(AdapterError::Silent), vec![]),
+            (Error::Adapter(AdapterError::Version { expected: 1, got: 2 }), vec!["1", "2"]),
+        ];
+        for (error, facts) in cases {
+            for language in [English, German] {
+                let words = encoder(&error).words(language);
+                assert!(facts.iter().all(|fact| words.contains(fact)), "{words}");
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
+                assert!(!words.contains('{') && words.ends_with('.'), "{words}");
+            }
+            assert_ne!(encoder(&error).words(English), encoder(&error).words(German));
+        }
+    }
+
+    #[test]
+    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+        let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        assert_eq!(loss(&JobError::Device(gone)).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+        assert_eq!(job(&JobError::Device(Error::NeverSilent)).len(), 1);
+    }
+}

@@ -1,0 +1,65 @@
+//! What an adapter does not do, in words.
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::device::bridge::AdapterError;
+use crate::protocol::bridge::{ErrorCode, Operation};
+
+/// An adapter that does not answer, or not with what was asked for.
+pub fn adapter(error: &AdapterError) -> Text {
+    match error {
+        AdapterError::Silent => Text::new("adapter.silent"),
+        AdapterError::Version { expected, got } => {
+            Text::new("adapter.version").with("got", got).with("expected", expected)
+        }
+        AdapterError::NoBiss { name } => Text::new("adapter.no_biss").with("name", name),
+        AdapterError::Refused { operation, code, text } => Text::new("adapter.refused")
+            .with("operation", number(*operation))
+            .with_text("why", reason(*code))
+            .with("text", text),
+        AdapterError::Reply { operation, cause } => {
+            Text::new("adapter.reply").with("operation", number(*operation)).with_text("why", plain(cause))
+        }
+        AdapterError::Other { asked, got } => {
+            Text::new("adapter.other").with("asked", number(*asked)).with("got", number(*got))
+        }
+    }
+}
+
+fn reason(code: ErrorCode) -> Text {
+    match code {
+        ErrorCode::NOT_SUPPORTED => Text::new("adapter.not_supported"),
+        ErrorCode::BAD_ARGUMENT => Text::new("adapter.bad_argument"),
+        ErrorCode::BUSY => Text::new("adapter.busy"),
+        ErrorCode::NO_ANSWER => Text::new("adapter.no_answer"),
+        ErrorCode::WRONG_ANSWER => Text::new("adapter.wrong_answer"),
+        ErrorCode::OVERRUN => Text::new("adapter.overrun"),
+        other => Text::new("adapter.unknown_code").with("code", other.byte()),
+    }
+}
+
+fn number(operation: Operation) -> String {
+    format!("{:02X}h", operation.byte())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+
+    #[test]
+    fn each_code_has_words_of_its_own() {
+        let words = |code: u8, language| {
+            let text = "streaming".to_owned();
+            let code = ErrorCode::new(code);
+            adapter(&AdapterError::Refused { operation: Operation::BissConfig, code, text }).words(language)
+        };
+        let mut said: Vec<String> = (0..=7).map(|code| words(code, English)).collect();
+        assert!(said.iter().all(|words| words.contains("20h") && words.contains("streaming")), "{said:?}");
+        assert!(said[0].contains('0') && said[7].contains('7'), "{said:?}");
+        said.extend((0..=7).map(|code| words(code, German)));
+        said.sort();
+        said.dedup();
+        assert_eq!(said.len(), 16);
+    }
+}
