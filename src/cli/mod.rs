@@ -4,11 +4,14 @@
 mod analyse;
 mod args;
 mod biss;
+mod consent;
 mod decode;
 mod hiperface;
 mod kind;
+mod number;
 mod output;
 mod ports;
+mod profiles;
 mod runner;
 mod simulate;
 
@@ -140,9 +143,8 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Decode(decode) => kind::of(decode.protocol).decode(&output, &decode.hex),
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
         Command::Simulate(simulate) => simulate::simulate(&simulate),
-        // The kind of device is in the file.
-        Command::Diff(diff) => hiperface::diff(common, &output, &diff),
-        Command::Verify(verify) => hiperface::verify(common, &output, &verify.file),
-        Command::Restore(restore) => hiperface::restore(common, &output, &restore),
+        Command::Diff(diff) => profiles::diff(common, &output, &diff),
+        Command::Verify(verify) => profiles::verify(common, &output, &verify.file),
+        Command::Restore(restore) => profiles::restore(common, &output, &restore),
     }
 }

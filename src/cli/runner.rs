@@ -11,33 +11,53 @@ use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
-use super::output::say;
 use super::{Failure, Result};
 use crate::app::Text;
 use crate::app::explain;
-use crate::device::hiperface::Error;
-use crate::link::{LinkError, write_entry, write_header};
-use crate::protocol::hiperface::StatusCode;
+use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
-use crate::units::CharacterFormat;
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, open};
-use crate::worker::{Event, OpenError, Session, Worker};
+use crate::worker::{Device, Event, OpenError, Session, Worker};
+
+/// What the command line has to know of a device that it runs jobs on.
+pub(super) trait Runs: Device<Doing: std::fmt::Display> {
+    /// What is kept of a session when its thread has it.
+    type Kept;
+
+    /// Opens a link.
+    ///
+    /// # Errors
+    /// See [`OpenError`]; nothing has been sent.
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError>
+    where
+        Self: Sized;
+
+    /// Makes a session ready, with the access codes of the command line.
+    fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> Self::Kept
+    where
+        Self: Sized;
+
+    /// Says at once what the device said on the way.
+    fn say(remark: &Self::Remark);
+
+    /// A job that ended early, in words.
+    fn failure(error: &Self::Error) -> Vec<Text>;
+}
 
 /// A session on its thread.
-pub(super) struct Runner {
-    worker: Worker<Hiperface>,
+pub(super) struct Runner<D: Runs> {
+    worker: Worker<D>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
-    /// Codes that the encoder announced on the way of the last job.
-    pub(super) codes_met: Vec<StatusCode>,
-    /// How the line is set: for `identify`.
-    pub(super) format: CharacterFormat,
+    /// What the device said on the way of the last job.
+    pub(super) remarks: Vec<D::Remark>,
+    /// What is known of the session.
+    pub(super) kept: D::Kept,
 }
 
 /// A job that ended early.
-pub(super) enum Ended {
+pub(super) enum Ended<D: Device> {
     /// With this error.
-    Job(Box<JobError>),
+    Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
     Interrupted,
     /// The wire was found gone between two jobs.
@@ -46,7 +66,7 @@ pub(super) enum Ended {
     Worker,
 }
 
-impl Runner {
+impl<D: Runs> Runner<D> {
     /// Opens the link of the command line.
     pub(super) fn open(common: &Common) -> Result<Self> {
         let Some(url) = &common.link else {
@@ -54,17 +74,14 @@ impl Runner {
         };
         let codes = codes(common)?;
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
-        let mut session = open(url, store).map_err(|error| match error {
+        let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
             error => failed(&explain::open(&error)),
         })?;
-        for Code { number, code } in codes {
-            session.codes_mut().set(number, code);
-        }
+        let kept = D::begin(&mut session, codes);
         if let Some(path) = &common.trace {
             record(&mut session, path)?;
         }
-        let format = session.station().format;
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
         let stopper = worker.stopper();
@@ -77,17 +94,17 @@ impl Runner {
             stopper.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
-        Ok(Runner { worker, interrupted, codes_met: Vec::new(), format })
+        Ok(Runner { worker, interrupted, remarks: Vec::new(), kept })
     }
 
     /// Runs a job to its end.
-    pub(super) fn run(&mut self, job: HiperfaceJob) -> Result<HiperfaceOutput> {
+    pub(super) fn run(&mut self, job: D::Job) -> Result<D::Output> {
         self.try_run(job).map_err(Ended::into_failure)
     }
 
     /// Runs a job to its end and lets the caller look at an error.
-    pub(super) fn try_run(&mut self, job: HiperfaceJob) -> std::result::Result<HiperfaceOutput, Ended> {
-        self.codes_met.clear();
+    pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, Ended<D>> {
+        self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| Ended::Worker)?;
         if self.is_interrupted() {
             // It came before the job, for which it is meant as well.
@@ -97,9 +114,9 @@ impl Runner {
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
                 Event::Progress(of, progress) if of == id => bar.show(progress.done, progress.total, &progress.what),
-                Event::Remark(Remark::Codes(codes)) => {
-                    name_codes(&codes);
-                    self.codes_met.extend(codes);
+                Event::Remark(remark) => {
+                    D::say(&remark);
+                    self.remarks.push(remark);
                 }
                 Event::Finished(of, output) if of == id => return Ok(*output),
                 Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => return Err(Ended::Job(error)),
@@ -118,9 +135,9 @@ impl Runner {
                 return Ok(());
             }
             match self.worker.events().recv_timeout(left.min(Duration::from_millis(50))) {
-                Ok(Event::Lost(error)) => return Err(Ended::Lost(error).into_failure()),
+                Ok(Event::Lost(error)) => return Err(Ended::<D>::Lost(error).into_failure()),
                 Ok(_) | Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Worker.into_failure()),
+                Err(RecvTimeoutError::Disconnected) => return Err(Ended::<D>::Worker.into_failure()),
             }
         }
     }
@@ -130,18 +147,16 @@ impl Runner {
         self.interrupted.load(Ordering::SeqCst)
     }
 
-    fn check_interrupt(&self) -> std::result::Result<(), Ended> {
+    fn check_interrupt(&self) -> std::result::Result<(), Ended<D>> {
         if self.is_interrupted() { Err(Ended::Interrupted) } else { Ok(()) }
     }
 }
 
-impl Ended {
+impl<D: Runs> Ended<D> {
     pub(super) fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => {
-                Failure::Failed(explain::hiperface::job(&error).iter().map(|text| text.terminal()).collect())
-            }
-            Ended::Interrupted => failed(&explain::hiperface::encoder(&Error::Cancelled)),
+            Ended::Job(error) => Failure::Failed(D::failure(&error).iter().map(Text::terminal).collect()),
+            Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
@@ -154,16 +169,8 @@ pub(super) fn failed(text: &Text) -> Failure {
 }
 
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.
-pub(super) fn unexpected(output: &HiperfaceOutput) -> Failure {
+pub(super) fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
-}
-
-/// Every code that an encoder announced, on a line of its own.
-pub(super) fn name_codes(codes: &[StatusCode]) {
-    for code in codes {
-        let kind = if code.is_warning() { "warning" } else { "error" };
-        say(&format!("encoder {kind}: {code}\n"));
-    }
 }
 
 /// Codes of the environment, then those of the command line.
@@ -180,7 +187,7 @@ pub(super) fn codes(common: &Common) -> Result<Vec<Code>> {
     Ok(codes)
 }
 
-fn record(session: &mut Session<Hiperface>, path: &Path) -> Result<()> {
+fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     let cannot = |error: std::io::Error| {
         Failure::Failed(vec![format!("{}: the trace cannot be recorded: {error}.", path.display())])
     };

@@ -8,6 +8,8 @@ use super::kind::Kind;
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
+use crate::profile::biss::{ProfileIdentity, compare};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::protocol::biss::KIND;
 use crate::protocol::ubicom;
 use crate::sim::{ConfigError, biss, bridge};
@@ -23,6 +25,19 @@ impl Kind for Biss {
 
     fn decode(&self, output: &Output, words: &[String]) -> Result {
         decode::decode(output, words)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        Ok(compare(&left.clone().into_biss()?, &right.clone().into_biss()?))
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        let (profile, device) = (&profile.biss()?.identity, &device.biss()?.identity);
+        let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
+        (who(profile) != who(device)).then(|| {
+            let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
+            format!("The profile is of {profile}, the encoder is {device}.")
+        })
     }
 
     fn simulated(&self, arguments: &Simulate) -> Result<Box<dyn Simulated>> {

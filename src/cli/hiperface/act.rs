@@ -3,17 +3,19 @@
 use serde_json::json;
 
 use super::inspect::codes_text;
-use super::write::{change_and_show, out_of_range, parse_number, settings};
+use super::write::{change_and_show, settings};
 use crate::app::explain::hiperface::{finding, step, verdict};
 use crate::cli::args::{Action, Common, Do, parse_code};
+use crate::cli::hiperface::run::Runner;
+use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::{Runner, unexpected};
+use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::check::{Line, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
-pub(in crate::cli) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {

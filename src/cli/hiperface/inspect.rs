@@ -7,9 +7,10 @@ use serde_json::{Value as Json, json};
 use crate::app::explain;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Find, Position};
+use crate::cli::hiperface::run::{Runner, codes_met};
 use crate::cli::hiperface::table::Table;
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::{Ended, Runner, unexpected};
+use crate::cli::runner::{Ended, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Identity, PositionReading};
@@ -103,8 +104,8 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
         "eeprom_bytes": identity.label.eeprom_bytes(),
         "free_bytes": free,
         "data_fields": fields,
-        "baud": runner.format.baud.bits_per_second(),
-        "parity": runner.format.parity.word(),
+        "baud": runner.kept.baud.bits_per_second(),
+        "parity": runner.kept.parity.word(),
         "stored_settings": identity.label.settings.byte(),
         "options": identity.label.options,
     });
@@ -126,7 +127,7 @@ fn identity_text(identity: &Identity, runner: &Runner) -> String {
         .add("serial number", &identity.serial.serial_number)
         .add("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
         .add("address", format!("{:02X}h", identity.address))
-        .add("talking at", runner.format)
+        .add("talking at", runner.kept)
         .add("stored settings", identity.label.settings)
         .add("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
         .add("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
@@ -170,7 +171,7 @@ fn code_list(codes: &[StatusCode]) -> Vec<Json> {
 }
 
 /// Codes one a line, or that there are none.
-pub(in crate::cli) fn codes_text(codes: &[StatusCode]) -> String {
+pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     if codes.is_empty() {
         return "no errors or warnings\n".to_owned();
     }
@@ -202,7 +203,7 @@ fn readings(
     table: Option<&Table>,
 ) -> Result {
     // A code that the encoder announced while it was identified is about this position too.
-    let mut codes_before = std::mem::take(&mut runner.codes_met);
+    let mut codes_before = codes_met(runner);
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
     // A table of no certain length is ended by Ctrl-C: then it is done.
@@ -230,7 +231,7 @@ fn readings(
             Err(Ended::Job(error)) if error.means_no_position() => match table {
                 Some(table) => {
                     output.remark(&no_position(&error));
-                    output.print(&table.row_without_position(&runner.codes_met))?;
+                    output.print(&table.row_without_position(&codes_met(runner)))?;
                 }
                 None => show_no_position(output, &error)?,
             },

@@ -4,17 +4,19 @@ mod act;
 mod decode;
 mod inspect;
 mod profiles;
+mod run;
 mod table;
 mod write;
 
-pub(super) use profiles::{diff, restore, verify};
-
-use super::args::{Common, Do, Find, Position, Save, Simulate, Write};
+use super::args::{Common, Do, Find, Position, Restore, Save, Simulate, Write};
 use super::kind::Kind;
 use super::output::Output;
+use super::runner::failed;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
-use crate::profile::hiperface::Item;
+use crate::app::explain;
+use crate::profile::hiperface::{Item, compare};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::protocol::hiperface::{KIND, LineSettings};
 use crate::sim::hiperface::{Bus, Config};
 use crate::units::{CharacterFormat, Moment};
@@ -61,6 +63,24 @@ impl Kind for Hiperface {
 
     fn decode(&self, output: &Output, words: &[String]) -> Result {
         decode::decode(output, words)
+    }
+
+    fn present(&self, common: &Common, output: &Output) -> Result<Body> {
+        profiles::present(common, output)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        let (left, right) = (left.clone().into_hiperface()?, right.clone().into_hiperface()?);
+        Ok(compare(&left.fields, &right.fields))
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        profiles::other_device(profile.hiperface()?, device.hiperface()?)
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let profile = profile.into_hiperface().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+        profiles::restore(common, output, restore, profile)
     }
 
     fn simulated(&self, arguments: &Simulate) -> Result<Box<dyn Simulated>> {

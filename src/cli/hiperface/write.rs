@@ -1,28 +1,31 @@
 //! `write`, and what every writing command shares: the plan in words, consent, carrying it out.
 
-use std::io::{IsTerminal, stderr, stdin};
-
 use serde_json::{Value as Json, json};
 
 use crate::app::explain;
 use crate::bits::{hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
-use crate::cli::output::{Lines, Output, say};
-use crate::cli::runner::{Runner, unexpected};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::consent::{agree, require_consent};
+use crate::cli::hiperface::run::Runner;
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::{Lines, Output};
+use crate::cli::profiles::{Spent, show_changed};
+use crate::cli::runner::unexpected;
+use crate::cli::{Failure, Result};
+use crate::device::hiperface::write::Written;
 use crate::profile::Consent;
 use crate::profile::hiperface::{HiperfacePlan, Item, Op};
 use crate::protocol::hiperface::{DataFieldStatus, DeviceAddress, LineSettings};
-use crate::worker::hiperface::{Change, Commit, Committed, HiperfaceJob, HiperfaceOutput, Prepared};
+use crate::worker::hiperface::{Change, Commit, HiperfaceJob, HiperfaceOutput, Prepared};
 
-pub(in crate::cli) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
     let change = change_of(item, &write.value)?;
     change_and_show(common, output, change, &write.consent, &item.to_string())
 }
 
 /// Prepares a change, asks, carries it out and prints what came of it.
-pub(in crate::cli) fn change_and_show(
+pub(super) fn change_and_show(
     common: &Common,
     output: &Output,
     change: Change,
@@ -37,30 +40,11 @@ pub(in crate::cli) fn change_and_show(
     };
     let operations = operations(&prepared.plan);
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
-    let committed = commit(&mut runner, output, prepared, consent)?;
-    let written = &committed.written;
-    let json = json!({
-        "item": item,
-        "operations": operations,
-        "written": written.written,
-        "verified": written.verified,
-        "write_cycles": written.write_cycles,
-        "backup": committed.backup,
-    });
-    let text = match &committed.backup {
-        None => "nothing to write: it is so already\n".to_owned(),
-        Some(backup) => {
-            let mut lines = Lines::default();
-            lines.add("written", written.written).add("verified", written.verified);
-            lines.add("write cycles", written.write_cycles).add("backup", backup.display());
-            lines.text()
-        }
-    };
+    let spent = commit(&mut runner, output, prepared, consent)?;
     if changes_code {
         output.remark("An access code cannot be read back; the encoder has acknowledged it.");
     }
-    output.show_written(&json, &text)?;
-    Ok(Done::Well)
+    show_changed(output, item, &operations, &spent)
 }
 
 fn change_of(item: Item, value: &str) -> Result<Change> {
@@ -96,7 +80,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
 }
 
 /// A settings byte without reserved values.
-pub(in crate::cli) fn settings(value: &str) -> Result<LineSettings> {
+pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
         return Ok(settings);
@@ -119,78 +103,27 @@ fn number(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// A value that is a number and lies beyond its limits.
-pub(in crate::cli) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
-    Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
-}
-
-/// Decimal, or hexadecimal with `0x`; a sign in front.
-pub(in crate::cli) fn parse_number(text: &str) -> Option<i64> {
-    let (sign, digits) = match text.strip_prefix('-') {
-        Some(digits) => (-1, digits),
-        None => (1, text),
-    };
-    let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
-        Some(hex) if hex.starts_with(|c: char| c.is_ascii_hexdigit()) => i64::from_str_radix(hex, 16),
-        None if digits.starts_with(|c: char| c.is_ascii_digit()) => digits.parse(),
-        _ => return None,
-    };
-    number.ok().map(|number| sign * number)
-}
-
-/// Without a terminal nobody can be asked: refused before anything is opened.
-pub(in crate::cli) fn require_consent(consent: &Consenting) -> Result<()> {
-    if consent.yes || can_ask() {
-        return Ok(());
-    }
-    Err(Failure::Usage(
-        "this writes to the device: give --yes, or run it on a terminal; nothing was touched".to_owned(),
-    ))
-}
-
-fn can_ask() -> bool {
-    stdin().is_terminal() && stderr().is_terminal()
-}
-
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
-pub(in crate::cli) fn commit(
-    runner: &mut Runner,
-    output: &Output,
-    prepared: Prepared,
-    consent: &Consenting,
-) -> Result<Committed> {
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
     if prepared.plan.is_empty() {
-        return Ok(Committed::default());
+        return Ok(Spent::default());
     }
-    if !consent.yes {
-        output.remark(plan_text(&prepared).trim_end());
-        ask()?;
-    }
+    agree(output, consent, &plan_text(&prepared))?;
     let granted = Consent::to(prepared.plan.id());
     let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
-    match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
-        HiperfaceOutput::Committed(committed) => {
-            if let Some(why) = &committed.logbook_warning {
-                output.remark(&explain::logbook(why).terminal());
-            }
-            Ok(committed)
-        }
-        other => Err(unexpected(&other)),
+    let committed = match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
+        HiperfaceOutput::Committed(committed) => committed,
+        other => return Err(unexpected(&other)),
+    };
+    if let Some(why) = &committed.logbook_warning {
+        output.remark(&explain::logbook(why).terminal());
     }
-}
-
-fn ask() -> Result<()> {
-    say("Write? [y/N] ");
-    let mut answer = String::new();
-    // A terminal that cannot be read from gives no consent.
-    if stdin().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "Y" | "yes") {
-        return Ok(());
-    }
-    Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))
+    let Written { written, verified, write_cycles, .. } = committed.written;
+    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
 }
 
 /// The plan for a person: each operation old → new, and what it costs.
-pub(in crate::cli) fn plan_text(prepared: &Prepared) -> String {
+pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     if plan.is_empty() {
         return "nothing to write: it is so already\n".to_owned();
@@ -209,7 +142,7 @@ pub(in crate::cli) fn plan_text(prepared: &Prepared) -> String {
 }
 
 /// The operations as JSON.
-pub(in crate::cli) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
+pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
     plan.ops
         .iter()
         .map(|op| {

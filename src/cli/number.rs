@@ -1,0 +1,22 @@
+//! Numbers of the command line.
+
+use super::Failure;
+
+/// Decimal, or hexadecimal with `0x`; a sign in front.
+pub(super) fn parse_number(text: &str) -> Option<i64> {
+    let (sign, digits) = match text.strip_prefix('-') {
+        Some(digits) => (-1, digits),
+        None => (1, text),
+    };
+    let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+        Some(hex) if hex.starts_with(|c: char| c.is_ascii_hexdigit()) => i64::from_str_radix(hex, 16),
+        None if digits.starts_with(|c: char| c.is_ascii_digit()) => digits.parse(),
+        _ => return None,
+    };
+    number.ok().map(|number| sign * number)
+}
+
+/// A value that is a number and lies beyond its limits.
+pub(super) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
+    Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
+}

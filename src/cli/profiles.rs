@@ -1,0 +1,179 @@
+//! Commands about profiles, whatever the kind of device: it stands in the file. `diff` and `verify` are here; what a save
+//! and a restore have in common, too.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use serde_json::{Value as Json, json};
+
+use super::args::{Common, Diff, Restore};
+use super::kind;
+use super::output::{Lines, Output};
+use super::runner::failed;
+use super::{Done, Failure, Result};
+use crate::app::explain;
+use crate::profile::{Body, Comparison, Document};
+use crate::store::{read_text, write_atomically};
+
+fn load(path: &Path) -> Result<Body> {
+    let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
+    let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
+    Ok(document.body)
+}
+
+/// Writes a profile that was read just now.
+pub(super) fn keep(path: &Path, body: Body) -> Result<()> {
+    let now = Timestamp::now();
+    let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
+    let document = Document::new(second.to_string(), body);
+    write_atomically(path, document.emit().as_bytes()).map_err(|error| failed(&explain::file(&error)))
+}
+
+pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
+    if diff.right.is_some() == common.link.is_some() {
+        return Err(Failure::Usage("diff takes a second file or --link URL, one of them".to_owned()));
+    }
+    let left = load(&diff.left)?;
+    let kind = kind::of_profile(&left);
+    let (right, name) = match &diff.right {
+        Some(path) => (load(path)?, path.as_path()),
+        None => (kind.present(common, output)?, Path::new("the device")),
+    };
+    let comparison = kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
+    let missing = comparison.missing();
+    show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
+}
+
+pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
+    let profile = load(file)?;
+    let kind = kind::of_profile(&profile);
+    let device = kind.present(common, output)?;
+    // What is compared may be of two devices: that is allowed, and has to be known.
+    if let Some(words) = kind.other_device(&profile, &device) {
+        output.remark(&words);
+    }
+    let comparison = kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
+    // What only the device has is not the profile's business.
+    let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
+    show_comparison(output, &comparison, equal)
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
+    let profile = load(&restore.file)?;
+    kind::of_profile(&profile).restore(common, output, restore, profile)
+}
+
+fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Result {
+    let differences: Vec<Json> = comparison
+        .differences
+        .iter()
+        .map(|difference| json!({"item": difference.item, "left": difference.left, "right": difference.right}))
+        .collect();
+    let missing = comparison.missing();
+    let json = json!({
+        "equal": equal,
+        "differences": differences,
+        "compared": comparison.compared,
+        "missing": missing,
+    });
+    let mut lines = Lines::default();
+    for difference in &comparison.differences {
+        lines.add(&difference.item, format!("{}  →  {}", difference.left, difference.right));
+    }
+    for item in &comparison.only_left {
+        lines.add(item, "only on the left");
+    }
+    for item in &comparison.only_right {
+        lines.add(item, "only on the right");
+    }
+    let compared = comparison.compared;
+    let verdict =
+        if equal { format!("equal ({compared} compared)\n") } else { format!("different ({compared} compared)\n") };
+    output.show(&json, &(lines.text() + &verdict))?;
+    Ok(if equal { Done::Well } else { Done::Differs })
+}
+
+/// A plan, for a person and for a script.
+pub(super) struct Shown {
+    pub(super) operations: Vec<Json>,
+    pub(super) text: String,
+    pub(super) write_cycles: u64,
+}
+
+/// What a write has done.
+#[derive(Default)]
+pub(super) struct Spent {
+    pub(super) written: u64,
+    pub(super) verified: u64,
+    pub(super) write_cycles: u64,
+    /// `None`: there was nothing to write.
+    pub(super) backup: Option<PathBuf>,
+}
+
+/// What a restore leaves as it is.
+pub(super) struct Left {
+    pub(super) unchanged: u64,
+    pub(super) missing: Vec<String>,
+}
+
+/// Prints what a restore would do.
+pub(super) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
+    let json = json!({
+        "dry_run": true,
+        "operations": plan.operations,
+        "written": 0,
+        "unchanged": left.unchanged,
+        "verified": 0,
+        "write_cycles": plan.write_cycles,
+        "backup": null,
+        "missing": left.missing,
+    });
+    output.show(&json, &plan.text)?;
+    Ok(Done::Well)
+}
+
+/// Prints what a restore has done.
+pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
+    let json = json!({
+        "written": spent.written,
+        "unchanged": left.unchanged,
+        "verified": spent.verified,
+        "write_cycles": spent.write_cycles,
+        "backup": spent.backup,
+        "missing": left.missing,
+    });
+    let mut lines = Lines::default();
+    lines
+        .add("written", spent.written)
+        .add("unchanged", left.unchanged)
+        .add("verified", spent.verified)
+        .add("write cycles", spent.write_cycles);
+    if let Some(backup) = &spent.backup {
+        lines.add("backup", backup.display());
+    }
+    output.show_written(&json, &lines.text())?;
+    Ok(Done::Well)
+}
+
+/// Prints what writing an item has done; `plan` is what was carried out.
+pub(super) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &Spent) -> Result {
+    let json = json!({
+        "item": item,
+        "operations": operations,
+        "written": spent.written,
+        "verified": spent.verified,
+        "write_cycles": spent.write_cycles,
+        "backup": spent.backup,
+    });
+    let text = match &spent.backup {
+        None => "nothing to write: it is so already\n".to_owned(),
+        Some(backup) => {
+            let mut lines = Lines::default();
+            lines.add("written", spent.written).add("verified", spent.verified);
+            lines.add("write cycles", spent.write_cycles).add("backup", backup.display());
+            lines.text()
+        }
+    };
+    output.show_written(&json, &text)?;
+    Ok(Done::Well)
+}
