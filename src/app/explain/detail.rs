@@ -26,6 +26,9 @@ const PHRASES: &[&str] = &[
     "phrase.auto_on_off",
     "phrase.time_out",
     "phrase.milliseconds",
+    "phrase.byte_order",
+    "phrase.clock",
+    "phrase.voltage",
     "phrase.periods",
     "phrase.turns",
     "phrase.with_periods",
@@ -203,6 +206,7 @@ mod tests {
     use std::time::Duration;
 
     use crate::app::Language::{English, German};
+    use crate::device::biss;
     use crate::device::hiperface::Station;
     use crate::link::{LinkUrl, Query, read_trace};
     use crate::profile::Document;
@@ -247,6 +251,11 @@ mod tests {
         for text in queries {
             let query: Query = text.parse().unwrap();
             let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
+            check(&url(&error), &error);
+        }
+        for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
+            let query: Query = text.parse().unwrap();
+            let error = biss::Station::from_query(&query, biss::Way::Adapter, Duration::ZERO).unwrap_err();
             check(&url(&error), &error);
         }
     }
