@@ -1,5 +1,9 @@
 //! The host's side of the open adapter, whatever bus is behind it (reference "bridge"): a request, the reply with the same
-//! sequence number, and the request once more where none comes. What streams bring in between is let go here.
+//! sequence number, and the request once more where none comes. What streams bring is taken by [`flow`]; between a request
+//! and its reply it is let go.
+
+pub(super) mod flow;
+mod tap;
 
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, LineError, LineState};
@@ -7,6 +11,12 @@ use crate::protocol::bridge::{
     BodyError, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
 use crate::units::Moment;
+
+pub use flow::Portion;
+pub use tap::{Streaming, Tap, TapError, Wanted};
+
+/// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
+pub(super) const BISS_TIME_OUT_US: u16 = 20;
 
 /// What is known about an adapter, from one job to the next.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +46,30 @@ pub enum AdapterError {
     NoBiss {
         /// What it calls itself.
         name: String,
+    },
+    /// It has not what this needs.
+    #[error("the adapter {name} cannot do SSI")]
+    NoSsi {
+        /// What it calls itself.
+        name: String,
+    },
+    /// It has not what this needs.
+    #[error("the adapter {name} cannot sample analogue signals")]
+    NoAnalog {
+        /// What it calls itself.
+        name: String,
+    },
+    /// A stream that ran brings nothing any more.
+    #[error("the adapter sends nothing any more")]
+    Mute,
+    /// The numbers of a stream's samples have begun anew.
+    #[error("the adapter has started anew")]
+    Restarted,
+    /// What it sends by itself is none of this version.
+    #[error("what the adapter sends cannot be read: {cause}")]
+    Data {
+        /// What is wrong with it.
+        cause: BodyError,
     },
     /// It refuses a request.
     #[error("the adapter refuses operation {:02X}h with code {}: {text}", operation.byte(), code.byte())]

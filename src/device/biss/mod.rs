@@ -8,6 +8,7 @@
 //! ```
 
 mod error;
+mod frames;
 mod identify;
 mod master;
 mod memory;
@@ -18,6 +19,7 @@ mod survey;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};
+pub use frames::{Frame, NoReading, frames};
 pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
 pub use master::Master;
 pub use memory::{Place, ensure_standstill, profile_of, read_area, read_range, save};

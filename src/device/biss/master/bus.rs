@@ -7,15 +7,13 @@ use super::{Attempt, Master, Taken, Trouble};
 use crate::device::biss::error::{Asked, Damage, Error};
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::station::{Bus, Supply};
-use crate::device::bridge::{Adapter, AdapterError, Answered, Failure};
+use crate::device::bridge::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::protocol::biss::{FrameError, RegisterAddress};
 use crate::protocol::bridge::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::units::Moment;
 
 /// The encoder's number on a line with no other.
 const SLAVE: u8 = 0;
-/// Longer than the 18 µs that an encoder needs to notice the end of a frame.
-const FRAME_TIME_OUT_US: u16 = 20;
 /// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): who answered within this has not restarted.
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Between two tries: the adapter says at once that nobody answers.
@@ -66,7 +64,7 @@ impl<'a> Master<'a> {
         if self.station.bus == Some(bus) {
             return Ok(());
         }
-        let timeout_us = FRAME_TIME_OUT_US;
+        let timeout_us = BISS_TIME_OUT_US;
         let request = Request::BissConfig { clock_hz: bus.clock_hz, data_bits, crc_bits, timeout_us };
         let answered = self.adapter().ask(&request)?;
         let Reply::BissConfig { clock_hz } = answered.reply else {

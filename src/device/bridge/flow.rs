@@ -1,0 +1,215 @@
+//! What an adapter sends by itself: the samples of one stream in their order, and how many are missing before them
+//! (reference "bridge", 3). What it samples when is told by its own clock; the first samples tell how that stands to ours.
+
+use std::time::Duration;
+
+use super::{Adapter, AdapterError, Failure, other};
+use crate::device::line::LineError;
+use crate::protocol::bridge::{Continuity, Data, Gap, Message, Packet, Reply, Request};
+use crate::signal::Time;
+use crate::units::Moment;
+
+/// What an adapter is to send by itself. What it clocks or samples how was said before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::device) enum Streamed {
+    /// Words of SSI, so many microseconds apart.
+    Ssi { period_us: u32 },
+    /// Frames of BiSS, so many microseconds apart.
+    Biss { period_us: u32 },
+    /// Sine and cosine, as far apart as they are sampled: nanoseconds.
+    Analog { period_ns: i64 },
+}
+
+/// Samples of a stream that follow each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Portion {
+    /// Number of the first, counted from the start of the stream; what is missing counts.
+    pub first: u64,
+    /// When it was taken, by our clock.
+    pub time: Time,
+    /// Nanoseconds from one to the next.
+    pub period_ns: i64,
+    /// Samples that are missing before it.
+    pub lost: u64,
+    /// The samples, one at least.
+    pub data: Data,
+}
+
+/// A stream that runs.
+#[derive(Clone, Debug)]
+pub(in crate::device) struct Flow {
+    streamed: Streamed,
+    period_ns: i64,
+    continuity: Continuity,
+    /// Number of the next sample.
+    next: u64,
+    /// Samples that are missing before the next.
+    missing: u64,
+    begun_at: Moment,
+    heard_at: Moment,
+    /// How far the adapter's clock is behind ours, in nanoseconds.
+    behind_ns: Option<i128>,
+}
+
+/// Who sends nothing for so long, and for so many samples, has ended.
+const SILENT: Duration = Duration::from_secs(2);
+const SILENT_SAMPLES: u32 = 256;
+
+impl Streamed {
+    fn start(self) -> Request {
+        match self {
+            Streamed::Ssi { period_us } => Request::SsiStream { period_us },
+            Streamed::Biss { period_us } => Request::BissStream { period_us },
+            Streamed::Analog { .. } => Request::AnalogStream { on: true },
+        }
+    }
+
+    fn stop(self) -> Request {
+        match self {
+            Streamed::Ssi { .. } => Request::SsiStream { period_us: 0 },
+            Streamed::Biss { .. } => Request::BissStream { period_us: 0 },
+            Streamed::Analog { .. } => Request::AnalogStream { on: false },
+        }
+    }
+
+    const fn brings(self, data: &Data) -> bool {
+        matches!(
+            (self, data),
+            (Streamed::Ssi { .. }, Data::Ssi(_))
+                | (Streamed::Biss { .. }, Data::Biss(_))
+                | (Streamed::Analog { .. }, Data::Analog(_))
+        )
+    }
+}
+
+impl Flow {
+    /// Starts a stream.
+    ///
+    /// # Errors
+    /// See [`AdapterError`]; one that is refused as busy runs already.
+    pub(in crate::device) fn begin(adapter: &mut Adapter<'_, '_>, streamed: Streamed) -> Result<Self, Failure> {
+        let request = streamed.start();
+        let begun_at = adapter.line.now();
+        let answered = match adapter.ask_once(&request)? {
+            Some(answered) => answered,
+            // It may run for all that: who asks twice would be told that it is busy.
+            None => {
+                adapter.ask(&streamed.stop())?;
+                adapter.ask(&request)?
+            }
+        };
+        let period_ns = match (streamed, &answered.reply) {
+            (Streamed::Ssi { .. }, Reply::SsiStream { period_us })
+            | (Streamed::Biss { .. }, Reply::BissStream { period_us }) => i64::from(*period_us) * 1000,
+            (Streamed::Analog { period_ns }, Reply::AnalogStream { on: true }) => period_ns,
+            _ => return Err(other(request.operation(), &answered.reply).into()),
+        };
+        Ok(Flow {
+            streamed,
+            period_ns: period_ns.max(1),
+            continuity: Continuity::at_start(),
+            next: 0,
+            missing: 0,
+            begun_at,
+            heard_at: adapter.line.now(),
+            behind_ns: None,
+        })
+    }
+
+    /// Nanoseconds from one sample to the next, as the adapter has set it.
+    pub(in crate::device) const fn period_ns(&self) -> i64 {
+        self.period_ns
+    }
+
+    /// The next samples; `None` where none have come by `until`.
+    ///
+    /// # Errors
+    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], the wire, or the user's wish.
+    pub(in crate::device) fn next(
+        &mut self,
+        adapter: &mut Adapter<'_, '_>,
+        until: Moment,
+    ) -> Result<Option<Portion>, Failure> {
+        let mut bytes = Vec::new();
+        loop {
+            adapter.line.check_cancel()?;
+            let broken = adapter.adapter.receiver.dropped();
+            let packet = adapter.adapter.receiver.next_packet();
+            adapter.state.damaged += adapter.adapter.receiver.dropped() - broken;
+            let now = adapter.line.now();
+            if let Some(packet) = packet {
+                if let Some(portion) = self.take(&packet, now)? {
+                    return Ok(Some(portion));
+                }
+                continue;
+            }
+            // Looks at least once, and before it says that nothing comes: we may have slept ourselves.
+            bytes.clear();
+            adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
+            if !bytes.is_empty() {
+                adapter.adapter.receiver.push(&bytes);
+            } else if adapter.line.now().since(self.heard_at) > self.patience() {
+                return Err(AdapterError::Mute.into());
+            } else if adapter.line.now() >= until {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Ends the stream at the adapter. What is still on the way is let go.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
+    pub(in crate::device) fn end(self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
+        adapter.ask(&self.streamed.stop()).map(drop)
+    }
+
+    fn patience(&self) -> Duration {
+        let period = Duration::from_nanos(self.period_ns.unsigned_abs());
+        SILENT + period.saturating_mul(SILENT_SAMPLES)
+    }
+
+    /// The samples of a packet, where it is one of this stream.
+    fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
+        let data = match Message::parse(packet) {
+            Ok(Message::Data(data)) if self.streamed.brings(&data) => data,
+            // A late reply, or the end of an earlier stream.
+            Ok(_) => return Ok(None),
+            Err(cause) => return Err(AdapterError::Data { cause }),
+        };
+        self.heard_at = now;
+        match self.continuity.follow(&data) {
+            Gap::None => {}
+            Gap::Missing(count) => self.missing += u64::from(count),
+            Gap::Backwards => return Err(AdapterError::Restarted),
+        }
+        let (_, count, _) = data.extent();
+        if count == 0 {
+            return Ok(None);
+        }
+        let lost = std::mem::take(&mut self.missing);
+        let first = self.next + lost;
+        // At most 255.
+        self.next = first + count as u64;
+        let time = self.time(&data, count, now);
+        Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
+    }
+
+    /// When the first sample was taken. The last cannot be later than now, nor the first before the stream began.
+    fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
+        let t0_us = match data {
+            Data::Ssi(data) => data.t0_us,
+            Data::Biss(data) => data.t0_us,
+            Data::Analog(data) => data.t0_us,
+        };
+        let own = i128::from(t0_us) * 1000;
+        let begun_at = nanoseconds(self.begun_at);
+        let lasts = i128::from(self.period_ns) * (count as i128 - 1);
+        let behind = *self.behind_ns.get_or_insert_with(|| (nanoseconds(now) - lasts).max(begun_at) - own);
+        Time::from_nanoseconds(i64::try_from(own + behind).unwrap_or(i64::MAX))
+    }
+}
+
+fn nanoseconds(moment: Moment) -> i128 {
+    i128::try_from(moment.since_start().as_nanos()).unwrap_or(i128::MAX)
+}

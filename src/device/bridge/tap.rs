@@ -1,0 +1,178 @@
+//! An adapter that is asked for nothing but a stream: who it is, whether it can, how it is set, and then what it sends.
+
+use std::time::Duration;
+
+use super::flow::{Flow, Portion, Streamed};
+use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, other};
+use crate::device::line::{Line, LineError, LineState};
+use crate::link::{Ctx, LinkError};
+use crate::protocol::bridge::{Capabilities, Hello, Reply, Request, SsiFlags};
+use crate::units::Moment;
+
+/// A stream and how its signals are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Words of SSI.
+    Ssi {
+        /// Bits of a word, 1…64.
+        clocks: u8,
+        /// Clock in hertz.
+        clock_hz: u32,
+        /// Pause between two words in microseconds.
+        pause_us: u16,
+        /// When the data line is looked at.
+        flags: SsiFlags,
+        /// Microseconds from one to the next.
+        period_us: u32,
+    },
+    /// Frames of BiSS.
+    Biss {
+        /// Clock in hertz.
+        clock_hz: u32,
+        /// Position, error and warning, without the CRC.
+        data_bits: u8,
+        /// Bits of the CRC.
+        crc_bits: u8,
+        /// Microseconds from one to the next.
+        period_us: u32,
+    },
+    /// Sine and cosine.
+    Analog {
+        /// Samples a second.
+        sample_hz: u32,
+    },
+}
+
+/// Who streams, and how in fact.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Streaming {
+    /// The adapter.
+    pub hello: Hello,
+    /// Nanoseconds from one sample to the next.
+    pub period_ns: i64,
+    /// Of sine and cosine: what a value of 32 767 stands for; else 0.
+    pub full_scale_microvolt: u32,
+}
+
+/// Why there is no stream, or none any more.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TapError {
+    /// The user wished it.
+    #[error("cancelled")]
+    Cancelled,
+    /// The wire.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The adapter.
+    #[error(transparent)]
+    Adapter(#[from] AdapterError),
+}
+
+/// The host's side of an adapter that streams.
+#[derive(Clone, Debug)]
+pub struct Tap {
+    line: LineState,
+    adapter: AdapterState,
+    flow: Option<Flow>,
+}
+
+impl From<Failure> for TapError {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Adapter(error) => TapError::Adapter(error),
+            Failure::Line(LineError::Cancelled) => TapError::Cancelled,
+            Failure::Line(LineError::Link(error)) => TapError::Link(error),
+            // Packets need no silence between them.
+            Failure::Line(LineError::NeverSilent) => TapError::Adapter(AdapterError::Silent),
+        }
+    }
+}
+
+impl Tap {
+    /// An adapter that nobody has asked; a reply may come so much later than the protocol says.
+    pub fn new(margin: Duration) -> Self {
+        Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
+    }
+
+    /// Asks who is there, sets it and starts the stream.
+    ///
+    /// # Errors
+    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss) or
+    /// [`NoAnalog`](AdapterError::NoAnalog), what it refuses, or the wire.
+    pub fn begin(&mut self, ctx: Ctx<'_>, wanted: Wanted) -> Result<Streaming, TapError> {
+        let mut line = Line::new(ctx);
+        let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
+        adapter.hello()?;
+        let Some(hello) = adapter.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
+        let name = || hello.name.clone();
+        let (capability, lacks): (_, fn(String) -> AdapterError) = match wanted {
+            Wanted::Ssi { .. } => (Capabilities::SSI, |name| AdapterError::NoSsi { name }),
+            Wanted::Biss { .. } => (Capabilities::BISS, |name| AdapterError::NoBiss { name }),
+            Wanted::Analog { .. } => (Capabilities::ANALOG, |name| AdapterError::NoAnalog { name }),
+        };
+        if !hello.capabilities.has(capability) {
+            return Err(lacks(name()).into());
+        }
+        let request = wanted.configure(&hello);
+        let answered = adapter.ask(&request)?;
+        let (streamed, full_scale_microvolt) = match (wanted, &answered.reply) {
+            (Wanted::Ssi { period_us, .. }, Reply::SsiConfig { .. }) => (Streamed::Ssi { period_us }, 0),
+            (Wanted::Biss { period_us, .. }, Reply::BissConfig { .. }) => (Streamed::Biss { period_us }, 0),
+            (Wanted::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
+                (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
+            }
+            _ => return Err(TapError::from(Failure::from(other(request.operation(), &answered.reply)))),
+        };
+        let flow = Flow::begin(&mut adapter, streamed)?;
+        let period_ns = flow.period_ns();
+        self.flow = Some(flow);
+        Ok(Streaming { hello, period_ns, full_scale_microvolt })
+    }
+
+    /// The next samples; `None` where none have come by `until`, or nothing streams.
+    ///
+    /// # Errors
+    /// When there will be no more.
+    pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
+        let Some(flow) = &mut self.flow else { return Ok(None) };
+        let mut line = Line::new(ctx);
+        let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
+        Ok(flow.next(&mut adapter, until)?)
+    }
+
+    /// Ends the stream at the adapter, also where an end is wished.
+    ///
+    /// # Errors
+    /// The adapter or the wire.
+    pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
+        let Some(flow) = self.flow.take() else { return Ok(()) };
+        let mut line = Line::new(ctx);
+        line.shield(true);
+        let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
+        Ok(flow.end(&mut adapter)?)
+    }
+}
+
+impl Wanted {
+    /// Never faster than the adapter can.
+    fn configure(self, hello: &Hello) -> Request {
+        match self {
+            Wanted::Ssi { clocks, clock_hz, pause_us, flags, .. } => {
+                Request::SsiConfig { clocks, clock_hz: clock_hz.min(hello.max_clock_hz), pause_us, flags }
+            }
+            Wanted::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
+                clock_hz: clock_hz.min(hello.max_clock_hz),
+                data_bits,
+                crc_bits,
+                timeout_us: BISS_TIME_OUT_US,
+            },
+            Wanted::Analog { sample_hz } => Request::AnalogConfig { sample_hz: sample_hz.min(hello.max_sample_hz) },
+        }
+    }
+}
+
+/// Rounded to whole nanoseconds.
+fn period_ns(sample_hz: u32) -> i64 {
+    let hz = i64::from(sample_hz.max(1));
+    (1_000_000_000 + hz / 2) / hz
+}
