@@ -4,6 +4,7 @@
 //! Nothing here knows where samples come from: a [`Producer`] does.
 
 mod analogue;
+mod bridge;
 #[cfg(test)]
 mod tests;
 
@@ -12,9 +13,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 pub use analogue::{Analogue, Forgotten};
+pub use bridge::{BissFrames, Bridge, BridgeError, Open, Pair, SineCosine, SsiWords, Stretch};
 
 use super::has_ended;
 use super::thread::Never;
@@ -66,6 +68,25 @@ pub trait Producer: Send + 'static {
     /// # Errors
     /// When there will be no more.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
+
+    /// Nobody wants any more, or there are no more: what sends by itself is told so.
+    fn end(&mut self, _clock: &dyn Clock) {}
+}
+
+/// The end of a stream, for whoever needs what it uses.
+#[derive(Clone, Debug)]
+pub struct End(Receiver<Never>);
+
+impl End {
+    /// Waits at most `patience`; true when the thread has ended and what it used is free.
+    pub fn wait(&self, patience: Duration) -> bool {
+        matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
+    }
+
+    /// The thread has ended and what it used is free.
+    pub fn has_come(&self) -> bool {
+        has_ended(&self.0)
+    }
 }
 
 /// A producer on its thread. Dropping it ends the thread, and does not wait for it.
@@ -111,7 +132,7 @@ impl<P: Producer> Stream<P> {
             stop: AtomicBool::new(false),
         });
         let (alive, ended) = bounded(0);
-        let (own, end) = (shared.clone(), End { alive: Some(alive), wake });
+        let (own, end) = (shared.clone(), Alive { alive: Some(alive), wake });
         std::thread::Builder::new().name("stream".to_owned()).spawn(move || work(producer, &own, &*clock, &end))?;
         Ok(Stream { shared, ended })
     }
@@ -149,6 +170,11 @@ impl<P: Producer> Stream<P> {
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }
+
+    /// Its end, also for when it was dropped.
+    pub fn end(&self) -> End {
+        End(self.ended.clone())
+    }
 }
 
 impl<P: Producer> Drop for Stream<P> {
@@ -177,6 +203,12 @@ impl<S: Counted> Ring<S> {
     }
 }
 
+impl<T: Send + 'static> Counted for Vec<T> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+}
+
 impl Counted for Wires {
     fn count(&self) -> usize {
         self.len()
@@ -184,19 +216,19 @@ impl Counted for Wires {
 }
 
 /// The end of a thread, however it comes: told when it is over.
-struct End {
+struct Alive {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
 
-impl Drop for End {
+impl Drop for Alive {
     fn drop(&mut self) {
         self.alive = None;
         (self.wake)();
     }
 }
 
-fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &End) {
+fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &Alive) {
     let (mut woken, mut unread) = (None, false);
     while !shared.stop.load(Ordering::SeqCst) {
         let wish = lock(&shared.wish).take();
@@ -221,6 +253,7 @@ fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end
             (woken, unread) = (Some(now), false);
         }
     }
+    producer.end(clock);
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -11,12 +11,6 @@ use crate::units::Moment;
 /// Longer than anything here takes.
 const HANGS: Duration = Duration::from_secs(20);
 
-impl Counted for Vec<u64> {
-    fn count(&self) -> usize {
-        self.len()
-    }
-}
-
 /// Numbers as fast as it can, a millisecond a batch on its clock; then nothing, or an error.
 struct Numbers {
     sizes: VecDeque<usize>,

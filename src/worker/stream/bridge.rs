@@ -1,0 +1,201 @@
+//! An adapter as a producer: it is opened, asked who it is and set on the stream's own thread, so that nobody waits for it;
+//! and its stream is ended there when nobody wants it any more. What came damaged or not at all is missing before the batch
+//! that follows.
+
+use std::convert::Infallible;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use super::{Batch, Counted, Producer};
+use crate::device::biss::{Frame, frames};
+use crate::device::bridge::{Portion, Streaming, Tap, TapError, Wanted};
+use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
+use crate::protocol::biss::Layout;
+use crate::protocol::bridge::{Data, SsiFlags};
+use crate::worker::OpenError;
+
+/// What an adapter is to stream, and what its samples are.
+pub trait Stretch: Send + 'static {
+    /// What a batch holds.
+    type Samples: Counted;
+
+    /// How the adapter is set.
+    fn wanted(&self) -> Wanted;
+
+    /// What a packet says; `None` where it is none of this stream.
+    fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
+}
+
+/// Sine and cosine.
+#[derive(Clone, Copy, Debug)]
+pub struct SineCosine {
+    /// Samples a second.
+    pub sample_hz: u32,
+}
+
+/// Both signals in volts, equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pair {
+    /// Sine.
+    pub sine_v: Vec<f64>,
+    /// Cosine.
+    pub cosine_v: Vec<f64>,
+}
+
+/// Position frames of BiSS, with their checksums looked at.
+#[derive(Clone, Debug)]
+pub struct BissFrames {
+    /// What the frames are.
+    pub layout: Layout,
+    /// Clock in hertz.
+    pub clock_hz: u32,
+    /// Microseconds from one to the next.
+    pub period_us: u32,
+}
+
+/// Words of SSI as they came: the first bit received is the highest.
+#[derive(Clone, Copy, Debug)]
+pub struct SsiWords {
+    /// Bits of a word, 1…64.
+    pub clocks: u8,
+    /// Clock in hertz.
+    pub clock_hz: u32,
+    /// Pause between two words in microseconds.
+    pub pause_us: u16,
+    /// Microseconds from one to the next.
+    pub period_us: u32,
+}
+
+/// Why an adapter streams no more, or not at all.
+#[derive(Debug, thiserror::Error)]
+pub enum BridgeError {
+    /// The link.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// The adapter or the wire to it.
+    #[error(transparent)]
+    Tap(#[from] TapError),
+}
+
+/// Opens the wire to an adapter.
+pub type Open = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
+
+/// An adapter that streams.
+pub struct Bridge<S> {
+    stretch: S,
+    open: Option<Open>,
+    wire: Option<Box<dyn ByteLink>>,
+    tap: Tap,
+    streaming: Arc<OnceLock<Streaming>>,
+}
+
+impl<S: Stretch> Bridge<S> {
+    /// An adapter at the wire that `open` opens; a reply may come by `margin` later than the protocol says.
+    pub fn new(stretch: S, margin: Duration, open: Open) -> Self {
+        Bridge { stretch, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
+    }
+
+    /// Who streams and how, as soon as it does.
+    pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
+        self.streaming.clone()
+    }
+
+    fn begin(&mut self, clock: &dyn Clock) -> Result<(), BridgeError> {
+        let Some(open) = self.open.take() else { return Ok(()) };
+        let wire = self.wire.insert(open()?);
+        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
+        let streaming = self.tap.begin(ctx, self.stretch.wanted())?;
+        // It begins once.
+        let _ = self.streaming.set(streaming);
+        Ok(())
+    }
+}
+
+impl<S: Stretch> Producer for Bridge<S> {
+    type Wish = Infallible;
+    type Samples = S::Samples;
+    type Error = BridgeError;
+
+    fn change(&mut self, wish: Infallible) {
+        match wish {}
+    }
+
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<S::Samples>>, BridgeError> {
+        self.begin(clock)?;
+        let (Some(wire), Some(streaming)) = (&mut self.wire, self.streaming.get()) else { return Ok(None) };
+        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
+        let Some(portion) = self.tap.next(ctx, clock.now() + patience)? else { return Ok(None) };
+        let Portion { first, time, period_ns, lost, data } = portion;
+        let samples = self.stretch.read(data, streaming);
+        Ok(samples.map(|samples| Batch { first, time, period_ns, lost, samples }))
+    }
+
+    fn end(&mut self, clock: &dyn Clock) {
+        let Some(wire) = &mut self.wire else { return };
+        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
+        if let Err(error) = self.tap.end(ctx) {
+            // Its next HELLO ends the stream.
+            tracing::warn!("the adapter's stream could not be ended: {error}");
+        }
+    }
+}
+
+impl Stretch for SineCosine {
+    type Samples = Pair;
+
+    fn wanted(&self) -> Wanted {
+        Wanted::Analog { sample_hz: self.sample_hz }
+    }
+
+    fn read(&self, data: Data, streaming: &Streaming) -> Option<Pair> {
+        let Data::Analog(data) = data else { return None };
+        let unit_v = f64::from(streaming.full_scale_microvolt) * 1e-6 / f64::from(i16::MAX);
+        let (sine_v, cosine_v) =
+            data.samples.iter().map(|(sine, cosine)| (f64::from(*sine) * unit_v, f64::from(*cosine) * unit_v)).unzip();
+        Some(Pair { sine_v, cosine_v })
+    }
+}
+
+impl Stretch for BissFrames {
+    type Samples = Vec<Frame>;
+
+    fn wanted(&self) -> Wanted {
+        Wanted::Biss {
+            clock_hz: self.clock_hz,
+            data_bits: self.layout.data_bits(),
+            crc_bits: self.layout.crc_bits(),
+            period_us: self.period_us,
+        }
+    }
+
+    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<Frame>> {
+        let Data::Biss(data) = data else { return None };
+        Some(frames(&self.layout, &data))
+    }
+}
+
+impl Stretch for SsiWords {
+    type Samples = Vec<u64>;
+
+    fn wanted(&self) -> Wanted {
+        let SsiWords { clocks, clock_hz, pause_us, period_us } = *self;
+        Wanted::Ssi { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE, period_us }
+    }
+
+    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<u64>> {
+        let Data::Ssi(data) = data else { return None };
+        Some(data.values)
+    }
+}
+
+impl Counted for Pair {
+    fn count(&self) -> usize {
+        self.sine_v.len()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,405 @@
+//! Streams of the virtual adapter and of one that follows a script, in virtual time: nothing is lost unseen.
+
+use std::sync::Mutex;
+
+use super::*;
+use crate::device::bridge::AdapterError;
+use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
+use crate::protocol::biss::Reading;
+use crate::protocol::bridge::{
+    AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
+};
+use crate::signal::Time;
+use crate::sim::ByteDevice;
+use crate::sim::bridge::{Adapter, Config};
+use crate::units::{CharacterFormat, Moment};
+use crate::worker::stream::{PATIENCE, Stream};
+
+const MARGIN: Duration = Duration::from_millis(20);
+
+/// A virtual adapter with its clock and the producer of its stream.
+struct Bench<S: Stretch> {
+    clock: Arc<VirtualClock>,
+    adapter: Arc<Mutex<dyn ByteDevice>>,
+    bridge: Bridge<S>,
+}
+
+fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
+    let clock = Arc::new(VirtualClock::default());
+    clock.sleep_until(Moment::after_start(Duration::from_secs(3)));
+    let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
+    let link = SimLink::connect(adapter.clone(), clock.clone());
+    let bridge = Bridge::new(stretch, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
+    Bench { clock, adapter, bridge }
+}
+
+fn virtual_adapter(query: &str) -> Adapter {
+    let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+    Adapter::new(&Config::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>()).unwrap())
+}
+
+/// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
+fn biss() -> BissFrames {
+    BissFrames { layout: Layout::default(), clock_hz: 2_000_000, period_us: 50 }
+}
+
+impl<S: Stretch> Bench<S> {
+    fn next(&mut self) -> Result<Option<Batch<S::Samples>>, BridgeError> {
+        self.bridge.next(&*self.clock, PATIENCE)
+    }
+
+    /// What comes within so much time.
+    fn take(&mut self, time: Duration) -> Vec<Batch<S::Samples>> {
+        let end = self.clock.now() + time;
+        let mut batches = Vec::new();
+        while self.clock.now() < end {
+            batches.extend(self.next().unwrap());
+        }
+        batches
+    }
+
+    /// How it ends, which is within a few seconds.
+    fn error(&mut self) -> BridgeError {
+        let end = self.clock.now() + Duration::from_secs(20);
+        while self.clock.now() < end {
+            if let Err(error) = self.next() {
+                return error;
+            }
+        }
+        panic!("it goes on")
+    }
+
+    /// Bytes that the adapter sends in a second without being asked, beside what is on its way.
+    fn sends_by_itself(&self) -> usize {
+        let mut device = self.adapter.lock().unwrap();
+        let mut bytes = |milliseconds| {
+            self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
+            device.poll(self.clock.now()).len()
+        };
+        bytes(10);
+        (0..1000).map(|_| bytes(1)).sum()
+    }
+}
+
+/// Every number is either there or counted as lost before the batch behind it; how many there are of both.
+fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
+    let (mut next, mut there, mut lost) = (0, 0, 0);
+    for batch in batches {
+        assert_eq!(batch.first, next + batch.lost, "{} lost", batch.lost);
+        next = batch.first + batch.samples.len() as u64;
+        there += batch.samples.len() as u64;
+        lost += batch.lost;
+    }
+    (there, lost)
+}
+
+#[test]
+fn twenty_thousand_frames_a_second_come_without_a_gap() {
+    let mut bench = bench(biss(), virtual_adapter("rpm=3000&position=0"));
+    let batches = bench.take(Duration::from_secs(5));
+    let (frames, lost) = count(&batches);
+    // What was sampled last may still be on its way, or the last wait was a little longer.
+    assert!((99_880..=100_500).contains(&frames) && lost == 0, "{frames} frames, {lost} lost");
+    let begin = batches[0].time;
+    assert!((0..10_000_000).contains(&begin.nanoseconds_since(Time::from_nanoseconds(3_000_000_000))), "{begin:?}");
+    let mut before = None;
+    for batch in &batches {
+        assert_eq!((batch.time, batch.period_ns), (begin.plus(batch.first as i64 * 50_000), 50_000));
+        for frame in &batch.samples {
+            let Reading { multiturn, singleturn, error, warning } = frame.unwrap();
+            let position = i64::from(multiturn) * 131_072 + i64::from(singleturn);
+            // 50 revolutions a second are 327.68 steps a frame.
+            assert!(before.is_none_or(|before| (327..=328).contains(&(position - before))) && !error && !warning);
+            before = Some(position);
+        }
+    }
+    let streaming = bench.bridge.streaming().get().cloned().unwrap();
+    assert_eq!((streaming.hello.name.as_str(), streaming.period_ns), ("virtual adapter", 50_000));
+    assert!(bench.sends_by_itself() > 100_000);
+    bench.bridge.end(&*bench.clock);
+    assert_eq!(bench.sends_by_itself(), 0, "the adapter was told to stop");
+}
+
+#[test]
+fn words_of_ssi_come_the_same_way() {
+    let words = SsiWords { clocks: 25, clock_hz: 1_000_000, pause_us: 30, period_us: 100 };
+    let mut bench = bench(words, virtual_adapter("rpm=60&position=0&ssi=binary"));
+    let batches = bench.take(Duration::from_secs(1));
+    let (there, lost) = count(&batches);
+    assert!((9_940..=10_300).contains(&there) && lost == 0, "{there} words, {lost} lost");
+    // A revolution a second is 8192 steps of 13 bits.
+    let words: Vec<u64> = batches.iter().flat_map(|batch| batch.samples.iter().copied()).collect();
+    let turned = words[9_000] - words[1_000];
+    assert!((6_553..=6_554).contains(&turned), "0.8 of a revolution: {turned}");
+}
+
+#[test]
+fn a_wrong_checksum_is_a_frame_without_a_reading() {
+    let mut bench = bench(biss(), virtual_adapter("noise=0.01&seed=4"));
+    let batches = bench.take(Duration::from_secs(2));
+    let (frames, lost) = count(&batches);
+    let bad = batches.iter().flat_map(|batch| &batch.samples).filter(|frame| frame.is_err()).count() as f64;
+    assert_eq!(lost, 0);
+    assert!((0.007..0.013).contains(&(bad / frames as f64)), "{bad} of {frames}");
+}
+
+#[test]
+fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
+    let mut bench = bench(biss(), virtual_adapter("fault=flip:0.00002&seed=1"));
+    let before = bench.take(Duration::from_secs(1));
+    // The machine slept: the adapter keeps a second.
+    let asleep = bench.clock.now() + Duration::from_secs(7);
+    bench.clock.sleep_until(asleep);
+    let batches = [before, bench.take(Duration::from_secs(1))].concat();
+    let (there, lost) = count(&batches);
+    assert!((179_800..=180_500).contains(&(there + lost)), "nine seconds: {there} and {lost}");
+    let slept = batches.iter().map(|batch| batch.lost).max().unwrap();
+    assert!((115_000..=125_000).contains(&slept), "six of the seven seconds: {slept}");
+    assert!(lost > slept + 100, "damaged packets too: {lost}");
+    // Times go on through the gap as the numbers do.
+    let begin = batches[0].time.plus(batches[0].first as i64 * -50_000);
+    for batch in &batches {
+        assert_eq!(batch.time, begin.plus(batch.first as i64 * 50_000), "{}", batch.first);
+    }
+}
+
+#[test]
+fn a_consumer_that_stops_reading_loses_nothing_unseen() {
+    let Bench { clock, bridge, .. } = bench(biss(), virtual_adapter("rpm=60"));
+    let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
+    // Virtual time runs as fast as the thread does.
+    let begun = std::time::Instant::now();
+    while stream.lost() < 100_000 {
+        assert!(begun.elapsed() < Duration::from_secs(20));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    stream.stop();
+    assert!(stream.end().wait(Duration::from_secs(20)));
+    let batches = stream.take();
+    let (there, lost) = count(&batches);
+    assert!(there <= 4_000 && there > 3_800 && lost == stream.lost() && batches[0].lost == lost, "{there}, {lost}");
+    assert!(stream.take_error().is_none());
+}
+
+/// An adapter that answers as it is told, and sends what it is told when a stream begins.
+struct Puppet {
+    capabilities: Capabilities,
+    /// Operations that are refused, with their code.
+    refused: Vec<(Operation, ErrorCode)>,
+    /// Replies that get lost, by their operation, once each.
+    swallowed: Vec<Operation>,
+    /// What comes when a stream begins.
+    data: Vec<Message>,
+    heard: Arc<Mutex<Vec<Request>>>,
+    receiver: Receiver,
+    out: Vec<u8>,
+}
+
+fn puppet(data: Vec<Message>) -> Puppet {
+    let capabilities = Capabilities::BISS.and(Capabilities::ANALOG);
+    Puppet {
+        capabilities,
+        refused: Vec::new(),
+        swallowed: Vec::new(),
+        data,
+        heard: Arc::default(),
+        receiver: Receiver::default(),
+        out: Vec::new(),
+    }
+}
+
+impl Puppet {
+    fn answer(&mut self, request: &Request) -> Message {
+        if let Some((_, code)) = self.refused.iter().find(|(operation, _)| *operation == request.operation()) {
+            return Message::Error { op: request.operation().byte(), code: *code, text: "no".to_owned() };
+        }
+        Message::Reply(match *request {
+            Request::Hello => Reply::Hello(Hello {
+                capabilities: self.capabilities,
+                max_clock_hz: 1_000_000,
+                max_sample_hz: 50_000,
+                name: "Puppet".to_owned(),
+                serial: String::new(),
+                firmware: String::new(),
+            }),
+            Request::AnalogConfig { sample_hz } => {
+                Reply::AnalogConfig { sample_hz, full_scale_microvolt: 1_250_000, bits: 12 }
+            }
+            Request::AnalogStream { on } => Reply::AnalogStream { on },
+            Request::BissConfig { clock_hz, .. } => Reply::BissConfig { clock_hz },
+            Request::BissStream { period_us } => Reply::BissStream { period_us },
+            _ => panic!("{request:?}"),
+        })
+    }
+}
+
+impl ByteDevice for Puppet {
+    fn on_bytes(&mut self, _: Moment, bytes: &[u8]) {
+        self.receiver.push(bytes);
+        while let Some(packet) = self.receiver.next_packet() {
+            let request = Request::parse(&packet).unwrap();
+            let operation = request.operation();
+            let message = self.answer(&request);
+            let begins = matches!(request, Request::AnalogStream { on: true })
+                || matches!(request, Request::BissStream { period_us } if period_us > 0);
+            self.heard.lock().unwrap().push(request);
+            if let Some(at) = self.swallowed.iter().position(|own| *own == operation) {
+                self.swallowed.remove(at);
+                continue;
+            }
+            self.out.extend(message.emit(packet.seq).emit());
+            if begins {
+                self.out.extend(self.data.iter().flat_map(|data| data.emit(0).emit()));
+            }
+        }
+    }
+
+    fn poll(&mut self, _: Moment) -> Vec<u8> {
+        std::mem::take(&mut self.out)
+    }
+
+    fn poll_at(&self) -> Option<Moment> {
+        None
+    }
+
+    fn set_host_format(&mut self, _: Moment, _: CharacterFormat) {}
+
+    fn connect(&mut self, _: Moment) {}
+}
+
+fn analog(first_index: u32, lost: u16, samples: Vec<(i16, i16)>) -> Message {
+    Message::Data(Data::Analog(AnalogData { first_index, t0_us: 1_000 + u64::from(first_index) * 20, lost, samples }))
+}
+
+const SINE_COSINE: SineCosine = SineCosine { sample_hz: 100_000 };
+
+#[test]
+fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
+    let device = puppet(vec![
+        analog(0, 0, vec![(32_767, 0), (-32_768, 16_384)]),
+        analog(2, 0, vec![]),
+        analog(12, 3, vec![(0, -32_767)]),
+    ]);
+    let heard = device.heard.clone();
+    let mut bench = bench(SINE_COSINE, device);
+    let batches = bench.take(Duration::from_millis(100));
+    let [first, second] = batches.as_slice() else { panic!("{batches:?}") };
+    let near = |volts: f64, expected: f64| (volts - expected).abs() < 1e-9;
+    // 1.25 V · 32768/32767 and 1.25 V · 16384/32767.
+    let expected = [1.25, -1.250_038_148_137_455_5, 0.0, 0.625_019_074_068_727_7];
+    let volts = [&first.samples.sine_v[..], &first.samples.cosine_v[..]].concat();
+    assert!(volts.iter().zip(expected).all(|(volts, expected)| near(*volts, expected)), "{volts:?}");
+    // 50 kHz, which is as fast as it can: 20 µs.
+    assert_eq!((first.first, first.lost, first.period_ns), (0, 0, 20_000));
+    assert_eq!((second.first, second.lost), (12, 10));
+    assert_eq!(second.time.nanoseconds_since(first.time), 240_000);
+    bench.bridge.end(&*bench.clock);
+    let expected = [
+        Request::Hello,
+        Request::AnalogConfig { sample_hz: 50_000 },
+        Request::AnalogStream { on: true },
+        Request::AnalogStream { on: false },
+    ];
+    assert_eq!(*heard.lock().unwrap(), expected);
+}
+
+#[test]
+fn a_stream_whose_start_was_not_answered_is_ended_and_begun_again() {
+    let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
+    device.swallowed = vec![Operation::AnalogStream];
+    let heard = device.heard.clone();
+    let mut bench = bench(SINE_COSINE, device);
+    assert_eq!(bench.take(Duration::from_secs(1)).len(), 1);
+    let on: Vec<Request> = heard.lock().unwrap().iter().skip(2).cloned().collect();
+    assert_eq!(on, [true, false, true].map(|on| Request::AnalogStream { on }));
+}
+
+fn adapter_error(error: BridgeError) -> AdapterError {
+    match error {
+        BridgeError::Tap(TapError::Adapter(error)) => error,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn what_an_adapter_cannot_do_is_told() {
+    let mut lame = puppet(Vec::new());
+    lame.capabilities = Capabilities::SSI;
+    let error = adapter_error(bench(SINE_COSINE, lame).error());
+    assert_eq!(error, AdapterError::NoAnalog { name: "Puppet".to_owned() });
+    let mut lame = puppet(Vec::new());
+    lame.capabilities = Capabilities::ANALOG;
+    assert_eq!(adapter_error(bench(biss(), lame).error()), AdapterError::NoBiss { name: "Puppet".to_owned() });
+    let words = SsiWords { clocks: 25, clock_hz: 1_000_000, pause_us: 30, period_us: 100 };
+    let error = adapter_error(bench(words, puppet(Vec::new())).error());
+    assert_eq!(error, AdapterError::NoSsi { name: "Puppet".to_owned() });
+    let error = adapter_error(bench(SINE_COSINE, virtual_adapter("version=2")).error());
+    assert_eq!(error, AdapterError::Version { expected: 1, got: 2 });
+    let error = adapter_error(bench(SINE_COSINE, virtual_adapter("fault=silent-after:0")).error());
+    assert_eq!(error, AdapterError::Silent);
+    let mut busy = puppet(Vec::new());
+    busy.refused = vec![(Operation::AnalogStream, ErrorCode::BUSY)];
+    let error = adapter_error(bench(SINE_COSINE, busy).error());
+    assert!(matches!(error, AdapterError::Refused { code: ErrorCode::BUSY, .. }), "{error}");
+}
+
+#[test]
+fn a_stream_that_ends_or_begins_anew_by_itself_is_told() {
+    let mut quiet = bench(SINE_COSINE, puppet(vec![analog(0, 0, vec![(1, 1)])]));
+    assert_eq!(adapter_error(quiet.error()), AdapterError::Mute);
+    assert!(quiet.clock.now().since_start() < Duration::from_secs(6), "three seconds before it began");
+    let data = vec![analog(0, 0, vec![(1, 1); 9]), analog(0, 0, vec![(1, 1)])];
+    assert_eq!(adapter_error(bench(SINE_COSINE, puppet(data)).error()), AdapterError::Restarted);
+    let biss = Message::Data(Data::Biss(BissData {
+        first_index: 0,
+        t0_us: 0,
+        period_us: 50,
+        lost: 0,
+        width: 6,
+        values: vec![(BissStatus::OK, 0x024_6980_00CF)],
+    }));
+    let mut other = bench(SINE_COSINE, puppet(vec![biss, analog(0, 0, vec![(1, 1)])]));
+    assert_eq!(other.take(Duration::from_millis(100)).len(), 1, "what another stream has left is let go");
+}
+
+/// A wire that is unplugged after so many portions.
+struct Unplugged(SimLink, u32);
+
+impl ByteLink for Unplugged {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        self.0.send(bytes)
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        self.1 = self.1.checked_sub(1).ok_or(LinkError::new("wire", LinkErrorKind::Lost))?;
+        self.0.receive(until, into)
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        self.0.set_format(format)
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_wire_that_is_gone_or_was_never_there_is_told() {
+    for portions in [0, 1, 2, 3, 10] {
+        let clock = Arc::new(VirtualClock::default());
+        let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());
+        let open: Open = Box::new(move || Ok(Box::new(Unplugged(link, portions))));
+        let stream = Stream::spawn(Bridge::new(SINE_COSINE, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
+        assert!(stream.end().wait(Duration::from_secs(20)));
+        let error = stream.take_error();
+        assert!(matches!(error, Some(BridgeError::Tap(TapError::Link(error))) if error.is_lost()), "{portions}");
+    }
+    let lost = LinkError::new("/dev/nowhere", LinkErrorKind::NotFound);
+    let open: Open = Box::new(move || Err(lost.into()));
+    let stream =
+        Stream::spawn(Bridge::new(SINE_COSINE, MARGIN, open), 1, Arc::new(VirtualClock::default()), Arc::new(|| ()));
+    let stream = stream.unwrap();
+    assert!(stream.end().wait(Duration::from_secs(20)));
+    assert_eq!(stream.take_error().unwrap().to_string(), "/dev/nowhere: does not exist");
+}
