@@ -2,18 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
+use super::biss;
 use super::connect;
 use super::hiperface;
 use super::keep::SettingsRead;
 use super::recorder::{self, Exported};
 use super::session::{DraftDone, Kind, Listed};
 use super::signals;
-use super::studio::{SessionId, Tab};
+use super::studio::SessionId;
+use super::tab::Tab;
 use super::{Language, Picture, Text, Theme};
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
+use crate::protocol::biss::Descriptions;
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{DeviceKey, FileError, StoreError};
+use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
 use crate::worker::{OpenError, Worker};
 
@@ -45,6 +49,8 @@ pub enum Action {
     Dismiss,
     /// The connection dialog.
     Connect(connect::Action),
+    /// Connect the virtual device of the open tab.
+    OpenVirtual,
     /// Ask for a file to open: a capture in the Signals tab, else a profile.
     AskOpen,
     /// Open a capture (`.csv`), or else a profile.
@@ -75,6 +81,8 @@ pub enum Action {
     Review(SessionId, ReviewAction),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
     Hiperface(SessionId, hiperface::Action),
+    /// Something in the BiSS tab, about one session.
+    Biss(SessionId, biss::Action),
     /// Something in the Signals tab.
     Signals(signals::Action),
     /// A task has come back.
@@ -109,6 +117,8 @@ pub enum Done {
     },
     /// A link to a HIPERFACE encoder was opened, or not.
     OpenedHiperface(Attempt<Hiperface>),
+    /// A link to a BiSS encoder was opened, or not.
+    OpenedBiss(Attempt<Biss>),
     /// A link was opened for a search.
     OpenedForSearch {
         /// For which.
@@ -126,8 +136,8 @@ pub enum Done {
         key: String,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
-        /// The table of encoder types.
-        types: Result<EncoderTypes, StoreError>,
+        /// What is known of encoders.
+        known: Known,
     },
     /// A file was written.
     Written {
@@ -189,6 +199,8 @@ pub struct Attempt<D: Kind> {
 pub struct Opened<D: Kind> {
     /// The session.
     pub(super) worker: Worker<D>,
+    /// What is kept of it beside its thread.
+    pub(super) aside: D::Aside,
     /// Where it talks.
     pub(super) url: crate::link::LinkUrl,
     /// Its trace.
@@ -221,6 +233,14 @@ pub enum OpenFailed {
     Thread(String),
     /// Whoever held the wire does not let go of it.
     Held,
+}
+
+/// What a profile is read with: the tables of encoders, the built-in ones and the user's own.
+pub struct Known {
+    /// HIPERFACE encoder types; or why the user's own cannot be read.
+    pub hiperface: Result<EncoderTypes, StoreError>,
+    /// Descriptions of BiSS encoders.
+    pub biss: Descriptions,
 }
 
 /// Why a profile cannot be read.

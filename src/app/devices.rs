@@ -1,28 +1,35 @@
 //! The devices on the desk, of whatever kind: what the studio asks of each of them.
 
-use std::collections::BTreeMap;
+mod shown;
+mod wish;
+
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::Text;
-use super::action::{Action, ReadError, ReviewAction};
+pub(super) use shown::Shown;
+pub use wish::Wish;
+
+use super::action::{Known, ReadError, ReviewAction};
+use super::biss;
 use super::hiperface;
 use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
 use super::services::{JobEnd, Services};
 use super::session::{DraftDone, Listed, Opening, Phase, Source};
-use super::studio::{SessionId, Tab};
+use super::studio::SessionId;
+use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document};
-use crate::protocol::hiperface::EncoderTypes;
-use crate::store::{DeviceKey, FileError};
+use crate::store::{Backup, DeviceKey, Entry, FileError};
 
 /// A device on the desk, or a profile of one.
 pub enum AnyDevice {
     /// A HIPERFACE encoder.
     Hiperface(Box<hiperface::Encoder>),
+    /// A BiSS encoder.
+    Biss(Box<biss::Encoder>),
 }
 
 /// The same for every kind.
@@ -30,25 +37,9 @@ macro_rules! each {
     ($device:expr, $own:ident => $do:expr) => {
         match $device {
             AnyDevice::Hiperface($own) => $do,
+            AnyDevice::Biss($own) => $do,
         }
     };
-}
-
-/// What can be wished of every device.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
-    /// Open the link again.
-    Reconnect,
-    /// Read everything again.
-    Read,
-    /// Ask where to save a profile.
-    AskSave,
-    /// Show what writing the edits would do.
-    Review,
-    /// Read the position all the time, or no more.
-    Poll(Option<Duration>),
-    /// Read the position once.
-    ReadPosition,
 }
 
 impl AnyDevice {
@@ -56,6 +47,7 @@ impl AnyDevice {
     pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl) -> Option<Self> {
         match tab {
             Tab::Hiperface => Some(AnyDevice::Hiperface(Box::new(hiperface::Encoder::at_link(id, url)))),
+            Tab::Biss => Some(AnyDevice::Biss(Box::new(biss::Encoder::at_link(id, url)))),
             Tab::Signals => None,
         }
     }
@@ -65,30 +57,16 @@ impl AnyDevice {
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
-        types: &EncoderTypes,
-        services: &Services,
+        known: Known,
+        services: &mut Services,
     ) -> Self {
         match &document.body {
-            Body::Hiperface(_) | Body::Biss(_) => {
-                AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, types, services)))
+            Body::Hiperface(_) => {
+                let types = services.encoder_types(known.hiperface);
+                AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
             }
-        }
-    }
-
-    /// What is to be asked of the studio for a wish.
-    pub fn wish(&self, wish: Wish) -> Action {
-        match self {
-            AnyDevice::Hiperface(own) => {
-                use hiperface::Action as Own;
-                let action = match wish {
-                    Wish::Reconnect => Own::Reconnect,
-                    Wish::Read => Own::Read,
-                    Wish::AskSave => Own::AskSave,
-                    Wish::Review => Own::Review,
-                    Wish::Poll(interval) => Own::Poll(interval),
-                    Wish::ReadPosition => Own::ReadPosition,
-                };
-                Action::Hiperface(own.session.id, action)
+            Body::Biss(_) => {
+                AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
         }
     }
@@ -102,6 +80,7 @@ impl AnyDevice {
     pub fn tab(&self) -> Tab {
         match self {
             AnyDevice::Hiperface(_) => Tab::Hiperface,
+            AnyDevice::Biss(_) => Tab::Biss,
         }
     }
 
@@ -212,6 +191,31 @@ impl AnyDevice {
         each!(self, own => own.is_dirty())
     }
 
+    /// Edits that are not written.
+    pub fn edits(&self) -> usize {
+        each!(self, own => own.edits())
+    }
+
+    /// There is an edit to take back.
+    pub fn can_undo(&self) -> bool {
+        each!(self, own => own.can_undo())
+    }
+
+    /// There is an edit to do again.
+    pub fn can_redo(&self) -> bool {
+        each!(self, own => own.can_redo())
+    }
+
+    /// Backups, or why there are none; `None`: not asked for yet.
+    pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
+        each!(self, own => own.session.backups.as_ref())
+    }
+
+    /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
+    pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
+        each!(self, own => own.session.writes.as_ref())
+    }
+
     /// Its edits come back after it was closed.
     pub fn keeps_edits(&self) -> bool {
         each!(self, own => own.keeps_edits())
@@ -224,25 +228,25 @@ impl AnyDevice {
 
     /// A review of a write is open.
     pub fn is_reviewing(&self) -> bool {
-        each!(self, own => own.review.is_some())
+        self.hiperface().is_some_and(|own| own.review.is_some())
     }
 
     /// The review of a write, where one is on its way.
     pub fn sheet(&self) -> Option<Sheet> {
-        each!(self, own => {
-            let running = own.session.line().and_then(|line| line.running());
-            let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-            own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
-        })
+        let own = self.hiperface()?;
+        let running = own.session.line().and_then(|line| line.running());
+        let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
+        own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
     }
 
     pub(super) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
-        each!(self, own => match action {
+        let Some(own) = self.hiperface_mut() else { return };
+        match action {
             ReviewAction::Write(plan) => own.write(plan, services),
             ReviewAction::Toggle(at) => own.plan_with(at, services),
             ReviewAction::ForceWear(force) => own.force_wear(force),
             ReviewAction::Close => own.close_review(),
-        })
+        }
     }
 
     /// What was recorded of it.
@@ -264,7 +268,9 @@ impl AnyDevice {
     }
 
     pub(super) fn close_review(&mut self) {
-        each!(self, own => own.close_review())
+        if let Some(own) = self.hiperface_mut() {
+            own.close_review()
+        }
     }
 
     pub(super) fn pump(&mut self, services: &mut Services) {
@@ -338,51 +344,19 @@ impl AnyDevice {
 
     /// As a HIPERFACE encoder.
     pub fn hiperface(&self) -> Option<&hiperface::Encoder> {
-        let AnyDevice::Hiperface(own) = self;
-        Some(own)
+        if let AnyDevice::Hiperface(own) = self { Some(own) } else { None }
     }
 
     pub(super) fn hiperface_mut(&mut self) -> Option<&mut hiperface::Encoder> {
-        let AnyDevice::Hiperface(own) = self;
-        Some(own)
-    }
-}
-
-/// Which device each tab shows.
-#[derive(Debug, Default)]
-pub(super) struct Shown {
-    by_tab: BTreeMap<Tab, SessionId>,
-    last: Option<SessionId>,
-}
-
-impl Shown {
-    /// The device that a tab shows.
-    pub(super) fn of(&self, tab: Tab) -> Option<SessionId> {
-        self.by_tab.get(&tab).copied()
+        if let AnyDevice::Hiperface(own) = self { Some(own) } else { None }
     }
 
-    /// The device that was shown last, in whichever tab.
-    pub(super) fn last(&self) -> Option<SessionId> {
-        self.last
+    /// As a BiSS encoder.
+    pub fn biss(&self) -> Option<&biss::Encoder> {
+        if let AnyDevice::Biss(own) = self { Some(own) } else { None }
     }
 
-    pub(super) fn set(&mut self, tab: Tab, id: SessionId) {
-        self.by_tab.insert(tab, id);
-        self.last = Some(id);
-    }
-
-    /// A device is gone; `left` are the others. Its tab shows the one that came last.
-    pub(super) fn remove(&mut self, left: &[AnyDevice], id: SessionId) {
-        for (tab, shown) in &mut self.by_tab {
-            if *shown == id
-                && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)
-            {
-                *shown = other.id();
-            }
-        }
-        self.by_tab.retain(|_, shown| *shown != id);
-        if self.last == Some(id) {
-            self.last = self.by_tab.values().next_back().copied();
-        }
+    pub(super) fn biss_mut(&mut self) -> Option<&mut biss::Encoder> {
+        if let AnyDevice::Biss(own) = self { Some(own) } else { None }
     }
 }

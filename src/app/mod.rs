@@ -2,9 +2,11 @@
 //! for a person, the look as data.
 
 mod action;
+pub mod biss;
 mod closing;
 pub mod connect;
 mod devices;
+mod documents;
 mod edits;
 pub mod explain;
 mod files;
@@ -24,6 +26,7 @@ pub mod session;
 mod settings;
 pub mod signals;
 mod studio;
+mod tab;
 mod tasks;
 mod texts;
 mod trace;
@@ -40,7 +43,8 @@ pub use number::number;
 pub use picture::Picture;
 pub use services::{JobEnd, JobRecord, Opener, Services, World};
 pub use settings::{Settings, Theme};
-pub use studio::{SessionId, Studio, Tab};
+pub use studio::{SessionId, Studio};
+pub use tab::Tab;
 pub use tasks::{Mailbox, Tasks, Wake};
 pub use texts::{Language, Text, Texts, decimal};
 pub use trace::{TraceLine, TraceLog};

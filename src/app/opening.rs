@@ -6,10 +6,12 @@ use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::leaving::{Leaver, same_wire};
 use super::services::{JobEnd, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
-use super::studio::{SessionId, Studio, Tab};
+use super::studio::{SessionId, Studio};
+use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text, explain};
 use crate::link::{LinkUrl, TraceEntry};
+use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
 use crate::worker::{Ring, Session, Worker};
 
@@ -75,6 +77,7 @@ impl Studio {
                 };
                 self.open_task(url, earlier, prepare, opened(id, attempt))
             }
+            Tab::Biss => self.open_task(url, earlier, |_: &mut Session<Biss>| (), opened(id, attempt)),
             // No device is shown there.
             Tab::Signals => return,
         };
@@ -121,7 +124,7 @@ impl Studio {
         match result {
             Ok(opened) => {
                 if let Source::Link(url) = device.source() {
-                    self.settings.use_link(&without_codes(url));
+                    self.settings.use_link(device.tab(), &without_codes(url));
                 }
                 take(self, session, *opened);
             }
@@ -153,7 +156,7 @@ fn open<D: Kind>(
     let began = (world.now)();
     let mut session = D::opener(world)(url, world.store.clone()).map_err(|error| Box::new(OpenFailed::Link(error)))?;
     prepare(&mut session);
-    let is_virtual = session.is_virtual();
+    let (is_virtual, aside) = (session.is_virtual(), D::aside(&session));
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);
     let (ring, last) = (trace.clone(), WakeAtTheEnd(wake.clone()));
     session.watch(move |entry| {
@@ -161,7 +164,7 @@ fn open<D: Kind>(
         ring.push(entry.clone());
     });
     match Worker::spawn(session, wake) {
-        Ok(worker) => Ok(Box::new(Opened { worker, trace, is_virtual, began, url: url.clone(), turn })),
+        Ok(worker) => Ok(Box::new(Opened { worker, aside, trace, is_virtual, began, url: url.clone(), turn })),
         Err(error) => Err(Box::new(OpenFailed::Thread(error.to_string()))),
     }
 }

@@ -14,6 +14,7 @@ use super::{Text, explain};
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
 use crate::store::{Store, StoreError};
+use crate::worker::biss::{self, Biss};
 use crate::worker::hiperface::{self, Hiperface};
 use crate::worker::{JobId, OpenError, Session};
 
@@ -27,6 +28,8 @@ pub struct World {
     pub store: Store,
     /// Opens links to HIPERFACE encoders.
     pub open_hiperface: Opener<Hiperface>,
+    /// Opens links to BiSS encoders.
+    pub open_biss: Opener<Biss>,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -43,6 +46,7 @@ impl World {
         World {
             store,
             open_hiperface: Arc::new(hiperface::open),
+            open_biss: Arc::new(biss::open),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),

@@ -1,10 +1,12 @@
 //! What the studio remembers from one start to the next: looks, language, links, the arrangement of its panels. A text
 //! that cannot be read costs the memory of a few clicks, and the defaults hold. Files are opened elsewhere.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::Language;
-use super::studio::Tab;
+use super::tab::Tab;
 
 /// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,8 +26,8 @@ pub struct Settings {
     pub theme: Theme,
     /// Language of the window.
     pub language: Language,
-    /// Links used, the latest first; never with access codes, which are no part of a link.
-    links: Vec<String>,
+    /// Links used, the latest first, by the tab of the device; never with access codes, which are no part of a link.
+    links: BTreeMap<Tab, Vec<String>>,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
     /// The open tab.
@@ -39,7 +41,7 @@ impl Default for Settings {
         Settings {
             theme: Theme::Dark,
             language: Language::English,
-            links: Vec::new(),
+            links: BTreeMap::new(),
             layout: None,
             tab: Tab::Hiperface,
             size: None,
@@ -72,7 +74,14 @@ impl Settings {
         Settings {
             theme: entry!(theme: Theme, usual.theme),
             language: entry!(language: Language, usual.language),
-            links: entry!(links: Vec<String>, usual.links),
+            links: entry!(
+                links: BTreeMap<Tab, Vec<String>>,
+                // As it was while there was one kind of device.
+                entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(BTreeMap::new(), |mut links, link| {
+                    links.entry(Tab::Hiperface).or_insert_with(Vec::new).insert(0, link);
+                    links
+                })
+            ),
             layout: entry!(layout: Option<String>, usual.layout),
             tab: entry!(tab: Tab, usual.tab),
             size: entry!(size: Option<(u32, u32)>, usual.size),
@@ -87,8 +96,8 @@ impl Settings {
             ($($name:ident),*) => { $(if since.$name != usual.$name { self.$name = since.$name; })* };
         }
         keep!(theme, language, layout, tab, size);
-        for link in since.links.iter().rev() {
-            self.use_link(link);
+        for (tab, links) in &since.links {
+            links.iter().rev().for_each(|link| self.use_link(*tab, link));
         }
     }
 
@@ -97,16 +106,17 @@ impl Settings {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }
 
-    /// Links used, the latest first.
-    pub fn links(&self) -> &[String] {
-        &self.links
+    /// Links to the devices of a tab that were used, the latest first.
+    pub fn links(&self, tab: Tab) -> &[String] {
+        self.links.get(&tab).map_or(&[], Vec::as_slice)
     }
 
     /// Notes that a link was used.
-    pub fn use_link(&mut self, link: &str) {
-        self.links.retain(|known| known != link);
-        self.links.insert(0, link.to_owned());
-        self.links.truncate(Self::LINKS);
+    pub fn use_link(&mut self, tab: Tab, link: &str) {
+        let links = self.links.entry(tab).or_default();
+        links.retain(|known| known != link);
+        links.insert(0, link.to_owned());
+        links.truncate(Self::LINKS);
     }
 }
 
@@ -117,7 +127,7 @@ mod tests {
     #[test]
     fn settings_come_back_and_unknown_ones_do_not_hurt() {
         let mut settings = Settings { theme: Theme::Light, language: Language::German, ..Settings::default() };
-        settings.use_link("serial:/dev/ttyUSB0");
+        settings.use_link(Tab::Hiperface, "serial:/dev/ttyUSB0");
         settings.layout = Some("(tiles: {})".to_owned());
         assert_eq!(Settings::parse(&settings.emit()), Some(settings));
         assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(Theme::Light));
@@ -128,36 +138,37 @@ mod tests {
     #[test]
     fn what_can_be_read_of_broken_settings_is_kept() {
         let mut settings = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
-        settings.use_link("serial:/dev/ttyUSB0");
+        settings.use_link(Tab::Hiperface, "serial:/dev/ttyUSB0");
         let broken = settings.emit().replace("tab: Hiperface", "tab: Gearbox");
         assert_eq!(Settings::parse(&broken), None);
         assert_eq!(Settings::salvage(&broken), settings);
         assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, Theme::Light);
-        assert_eq!(Settings::salvage("no settings"), Settings::default());
+        assert_eq!(Settings::salvage("(links: [\"sim:\"])").links(Tab::Hiperface), ["sim:"], "from before");
+        assert!(Settings::salvage("no settings").links(Tab::Hiperface).is_empty());
     }
 
     #[test]
     fn what_was_set_since_the_start_stays() {
         let mut found = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
-        found.use_link("tcp:host:1");
+        found.use_link(Tab::Hiperface, "tcp:host:1");
         let mut settings = Settings { language: Language::German, ..Settings::default() };
-        settings.use_link("sim:");
+        settings.use_link(Tab::Hiperface, "sim:");
         settings.stand_on(found);
         assert_eq!(
             (settings.theme, settings.language, settings.size),
             (Theme::Light, Language::German, Some((1500, 900)))
         );
-        assert_eq!(settings.links(), ["sim:", "tcp:host:1"]);
+        assert_eq!(settings.links(Tab::Hiperface), ["sim:", "tcp:host:1"]);
     }
 
     #[test]
     fn the_latest_link_comes_first_and_stands_once() {
         let mut settings = Settings::default();
         for at in 0..20 {
-            settings.use_link(&format!("tcp:host:{at}"));
+            settings.use_link(Tab::Hiperface, &format!("tcp:host:{at}"));
         }
-        settings.use_link("tcp:host:15");
-        assert_eq!(settings.links().len(), 12);
-        assert_eq!(settings.links()[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
+        settings.use_link(Tab::Hiperface, "tcp:host:15");
+        assert_eq!(settings.links(Tab::Hiperface).len(), 12);
+        assert_eq!(settings.links(Tab::Hiperface)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
     }
 }

@@ -1,35 +1,25 @@
 //! All that the window knows, and what it can do. It is complete without a window: a test sends actions and reads state.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::action::{Action, Done, FileQuestion, Question, ReadError, Then, Waited};
+use super::action::{Action, Done, FileQuestion, Question, Then, Waited};
+use super::biss;
 use super::connect::{self, Connect};
 use super::devices::{AnyDevice, Shown};
+use super::documents::{is_capture, read_document};
 use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
 use super::services::{Services, World};
-use super::session::{DraftDone, Source, file_key};
+use super::session::DraftDone;
 use super::signals::{self, Signals};
+use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
-use crate::link::LinkUrl;
-use crate::profile::Document;
-use crate::protocol::hiperface::EncoderTypes;
-use crate::store::{Store, StoreError, read_file};
+use crate::link::{LinkUrl, Scheme};
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(super) u32);
-
-/// A tab of the window: a kind of device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub enum Tab {
-    /// HIPERFACE motor-feedback encoders.
-    #[default]
-    Hiperface,
-    /// Captures of sine and cosine, whatever encoder they are from.
-    Signals,
-}
 
 /// All state of the window.
 pub struct Studio {
@@ -75,9 +65,15 @@ impl Studio {
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
-        let link = link.or_else(|| profile.is_none().then(LinkUrl::sim));
+        // A link says nothing about the device, unless only one kind is reached by it: then it is the one that was shown.
+        let tab = match (&link, self.settings.tab) {
+            (Some(link), _) if link.scheme == Scheme::Bridge => Tab::Biss,
+            (_, Tab::Signals) => Tab::Hiperface,
+            (_, tab) => tab,
+        };
+        let link = link.or_else(|| profile.is_none().then(|| tab.virtual_link()));
         if let Some(link) = link {
-            self.open_link(Tab::Hiperface, link);
+            self.open_link(tab, link);
         }
         if let Some(profile) = profile {
             self.act(Action::Open(profile));
@@ -104,10 +100,14 @@ impl Studio {
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.act_connect(action),
+            Action::OpenVirtual => {
+                let tab = self.settings.tab;
+                self.open_link(tab, tab.virtual_link());
+            }
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
                     Tab::Signals => FileQuestion::OpenCapture,
-                    Tab::Hiperface => FileQuestion::Open,
+                    Tab::Hiperface | Tab::Biss => FileQuestion::Open,
                 });
             }
             Action::Open(path) if is_capture(&path) => {
@@ -129,6 +129,7 @@ impl Studio {
             Action::AskPicture(picture) => self.ask_picture(picture),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
+            Action::Biss(id, action) => self.act_biss(id, action),
             Action::Signals(action) => self.signals.act(action, &mut self.services),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -210,6 +211,11 @@ impl Studio {
         self.device(self.shown.of(Tab::Hiperface)?)?.hiperface()
     }
 
+    /// The encoder that the BiSS tab shows.
+    pub fn biss(&self) -> Option<&biss::Encoder> {
+        self.device(self.shown.of(Tab::Biss)?)?.biss()
+    }
+
     /// Shows a device in its tab.
     pub(super) fn show(&mut self, tab: Tab, id: SessionId) {
         self.settings.tab = tab;
@@ -264,6 +270,27 @@ impl Studio {
         }
     }
 
+    fn act_biss(&mut self, id: SessionId, action: biss::Action) {
+        match action {
+            biss::Action::Reconnect => self.reconnect(id),
+            biss::Action::WriteInto(target) => {
+                let profile = self.device(id).and_then(AnyDevice::biss).and_then(biss::Encoder::wanted_profile);
+                let Some(profile) = profile else { return };
+                self.show(Tab::Biss, target);
+                self.with_biss(target, |encoder, services| encoder.plan_restore(profile, services));
+            }
+            action => self.with_biss(id, |encoder, services| encoder.act(action, services)),
+        }
+    }
+
+    fn with_biss(&mut self, id: SessionId, act: impl FnOnce(&mut biss::Encoder, &mut Services)) {
+        self.with_device(id, |device, services| {
+            if let Some(encoder) = device.biss_mut() {
+                act(encoder, services);
+            }
+        });
+    }
+
     fn with_hiperface(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
             if let Some(encoder) = device.hiperface_mut() {
@@ -274,6 +301,9 @@ impl Studio {
 
     fn done(&mut self, done: Done) {
         match done {
+            Done::OpenedBiss(attempt) => self.opened(attempt, |studio, id, opened| {
+                studio.with_biss(id, |encoder, services| encoder.connect(opened, services));
+            }),
             Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {
                 studio.with_hiperface(id, |encoder, services| encoder.connect(opened, services));
             }),
@@ -291,7 +321,7 @@ impl Studio {
                     connect.ports = Some(ports.map_err(|error| explain::link(&error)));
                 }
             }
-            Done::Read { path, key, result, types } => self.read(path, key, result, types),
+            Done::Read { path, key, result, known } => self.read(path, key, result, known),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
@@ -336,37 +366,6 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    fn read(
-        &mut self,
-        path: PathBuf,
-        key: String,
-        result: Result<Box<Document>, ReadError>,
-        types: Result<EncoderTypes, StoreError>,
-    ) {
-        let opening = &mut self.services.opening_files;
-        if let Some(at) = opening.iter().position(|own| *own == path) {
-            opening.remove(at);
-        }
-        match result {
-            Ok(document) => {
-                let own = |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == key);
-                let known = self.devices.iter().find(own).map(AnyDevice::id);
-                let id = known.unwrap_or_else(|| self.new_id());
-                if known.is_some() {
-                    self.with_device(id, |device, _| device.take_document(path, key, *document));
-                } else {
-                    let types = self.services.encoder_types(types);
-                    let device = AnyDevice::in_file(id, (path, key), *document, &types, &self.services);
-                    self.devices.push(device);
-                }
-                if let Some(tab) = self.device(id).map(AnyDevice::tab) {
-                    self.show(tab, id);
-                }
-            }
-            Err(error) => self.services.tell(Severity::Error, vec![read_error(&path, &error)], None),
-        }
-    }
-
     pub(super) fn stop(&mut self) {
         for device in &mut self.devices {
             device.stop(&mut self.services);
@@ -394,39 +393,5 @@ impl Studio {
             return;
         }
         self.stop();
-    }
-}
-
-/// A table, and no profile.
-fn is_capture(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
-}
-
-/// Reads a profile, as a task.
-pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
-    let result = read_profile(&path).and_then(shown).map(Box::new);
-    let key = file_key(&path);
-    // Where there is no profile, nobody waits for the table.
-    let types = if result.is_ok() { store.encoder_types() } else { Ok(EncoderTypes::built_in()) };
-    Action::Done(Done::Read { path, key, result, types })
-}
-
-/// The window shows profiles of HIPERFACE encoders.
-fn shown(document: Document) -> Result<Document, ReadError> {
-    match document.body.hiperface() {
-        Some(_) => Ok(document),
-        None => Err(ReadError::Profile(document.body.is_not(crate::protocol::hiperface::KIND))),
-    }
-}
-
-pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
-    let text = read_file(path).map_err(ReadError::File)?;
-    Document::parse(&text).map_err(ReadError::Profile)
-}
-
-pub(super) fn read_error(path: &Path, error: &ReadError) -> Text {
-    match error {
-        ReadError::File(error) => explain::file(error),
-        ReadError::Profile(error) => explain::profile(path, error),
     }
 }

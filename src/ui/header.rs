@@ -120,10 +120,19 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
     name(menu.response, true, &skin.say("shell.sessions"));
 }
 
-/// A name that leaves room for the rest of the header.
+/// A name that leaves room for the rest of the header. Of a device the serial number stays: it tells two of a kind apart.
 fn shortened(name: &str) -> String {
     const MOST: usize = 28;
-    if name.chars().count() <= MOST { name.to_owned() } else { name.chars().take(MOST - 1).chain(['…']).collect() }
+    let cut = |text: &str, most: usize| match text.chars().count() {
+        count if count <= most => text.to_owned(),
+        _ => text.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
+    };
+    match name.rsplit_once(" · ") {
+        Some((kind, serial)) if serial.chars().count() + 8 < MOST => {
+            format!("{} · {serial}", cut(kind, MOST - 3 - serial.chars().count()))
+        }
+        _ => cut(name, MOST),
+    }
 }
 
 fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {

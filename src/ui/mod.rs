@@ -1,9 +1,12 @@
 //! The window: drawing only. A view reads the state, keeps nothing but its own text buffers and selection, and pushes
 //! actions; it never does I/O, decodes, sorts or blocks.
 
+mod backups;
+mod biss;
 mod controls;
 mod dialogs;
 mod docks;
+mod foot;
 mod header;
 mod hiperface;
 pub mod icons;
@@ -25,6 +28,7 @@ pub use window::{Views, Window};
 pub fn pages(tab: crate::app::Tab) -> Vec<&'static str> {
     match tab {
         crate::app::Tab::Hiperface => hiperface::Page::ALL.into_iter().map(hiperface::Page::word).collect(),
+        crate::app::Tab::Biss => biss::Page::ALL.into_iter().map(biss::Page::word).collect(),
         crate::app::Tab::Signals => signals::Page::ALL.into_iter().map(signals::Page::word).collect(),
     }
 }

@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
-use super::{Skin, header, icons, review, signals};
+use super::{Skin, biss, header, icons, review, signals};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -18,6 +18,8 @@ use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish
 pub struct Views {
     /// The HIPERFACE tab, for each session.
     hiperface: BTreeMap<SessionId, hiperface::View>,
+    /// The BiSS tab, for each session.
+    biss: BTreeMap<SessionId, biss::View>,
     pub(super) signals: signals::View,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
@@ -35,6 +37,13 @@ impl Views {
     /// The HIPERFACE tab of a session.
     pub(super) fn hiperface(&mut self, encoder: &Encoder) -> &mut hiperface::View {
         let view = self.hiperface.entry(encoder.session.id).or_default();
+        view.follow(encoder);
+        view
+    }
+
+    /// The BiSS tab of a session.
+    pub(super) fn biss(&mut self, encoder: &crate::app::biss::Encoder) -> &mut biss::View {
+        let view = self.biss.entry(encoder.session.id).or_default();
         view.follow(encoder);
         view
     }
@@ -144,6 +153,10 @@ impl Window {
                     self.studio.hiperface().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
                 (page.word(), page.help())
             }
+            Tab::Biss => {
+                let page = self.studio.biss().map(|encoder| self.views.biss(encoder).page).unwrap_or_default();
+                (page.word(), page.help())
+            }
             Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
         };
         if self.views.help && dialogs::help_ui(ctx, skin, page) {
@@ -194,6 +207,7 @@ impl Window {
         let mut keys = vec![
             (Modifiers::COMMAND, Key::O, Action::AskOpen),
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
+            (Modifiers::COMMAND, Key::Num2, Action::ShowTab(Tab::Biss)),
             (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
@@ -244,6 +258,7 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.views.hiperface.retain(|id, _| self.studio.device(*id).is_some());
+        self.views.biss.retain(|id, _| self.studio.device(*id).is_some());
         if self.studio.is_live() {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
@@ -275,7 +290,8 @@ fn navigation(
     actions: &mut Vec<Action>,
 ) {
     ui.spacing_mut().item_spacing.y = skin.space.inside;
-    for (tab, word) in [(Tab::Hiperface, "HIPERFACE".to_owned()), (Tab::Signals, skin.say("tab.signals"))] {
+    for tab in Tab::DEVICES.into_iter().chain([Tab::Signals]) {
+        let word = tab.bus().map_or_else(|| skin.say("tab.signals"), str::to_owned);
         let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
         if entry(ui, false, text, &word).clicked() {
             views.plot.make_small();
@@ -284,6 +300,7 @@ fn navigation(
         match tab {
             _ if tab != studio.settings.tab => {}
             Tab::Hiperface => hiperface_pages(ui, skin, studio, views),
+            Tab::Biss => biss_pages(ui, skin, studio, views),
             Tab::Signals => signals_pages(ui, skin, views),
         }
     }
@@ -309,6 +326,22 @@ fn hiperface_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views)
         if entry(ui, shown == page, text, &word).clicked() {
             views.plot.make_small();
             views.hiperface(encoder).page = page;
+        }
+    }
+}
+
+fn biss_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
+    let Some(encoder) = studio.biss() else { return };
+    let shown = views.biss(encoder).page;
+    for page in biss::Page::ALL {
+        let word = skin.say(page.word());
+        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
+        if page == biss::Page::Data && encoder.is_dirty() {
+            text = text.color(skin.palette.staged);
+        }
+        if entry(ui, shown == page, text, &word).clicked() {
+            views.plot.make_small();
+            views.biss(encoder).page = page;
         }
     }
 }

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::panels::plot_ui;
-use super::{Skin, Views, hiperface, icons, signals};
+use super::{Skin, Views, biss, hiperface, icons, signals};
 use crate::app::connect;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
@@ -20,6 +20,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
     }
     match studio.settings.tab {
         Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
+        Tab::Biss => biss_ui(ui, skin, studio, views, actions),
         Tab::Signals => {
             signals::page_ui(ui, skin, &studio.signals, studio.hiperface(), &mut views.signals, actions);
         }
@@ -28,19 +29,35 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
 
 fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let (Some(encoder), Some(device)) = (studio.hiperface(), studio.shown()) else {
-        if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
-            actions.push(Action::Connect(connect::Action::Open));
-        }
-        ui.vertical_centered(|ui| {
-            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
-                actions.push(Action::AskOpen);
-            }
-        });
-        return;
+        return nothing(ui, skin, actions);
     };
     running(ui, skin, device, actions);
     lost(ui, skin, device, actions);
-    hiperface::page_ui(ui, skin, studio, encoder, views.hiperface(encoder), actions);
+    hiperface::page_ui(ui, skin, (studio, device), encoder, views.hiperface(encoder), actions);
+}
+
+fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    let (Some(encoder), Some(device)) = (studio.biss(), studio.shown()) else {
+        return nothing(ui, skin, actions);
+    };
+    running(ui, skin, device, actions);
+    lost(ui, skin, device, actions);
+    biss::page_ui(ui, skin, (studio, device), encoder, views.biss(encoder), actions);
+}
+
+/// No device is on the desk: the ways to one.
+fn nothing(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+    if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
+        actions.push(Action::Connect(connect::Action::Open));
+    }
+    ui.vertical_centered(|ui| {
+        if button(ui, icons::PLAY, &skin.say("shell.virtual_device")).clicked() {
+            actions.push(Action::OpenVirtual);
+        }
+        if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+            actions.push(Action::AskOpen);
+        }
+    });
 }
 
 /// What runs, how far it is, and a way to end it.

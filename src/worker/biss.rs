@@ -117,6 +117,13 @@ impl Device for Biss {
             }
             BissJob::ReadDirect => self.read_all(desk, None)?,
             BissJob::ReadBank(bank) => self.read_all(desk, Some(bank))?,
+            BissJob::ReadArea(area) => {
+                self.know(desk)?;
+                let first = area.first;
+                let total = area.banks().count() as u64;
+                let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, Doing::Bank(bank));
+                BissOutput::Area(device::read_area_surely(&mut self.master(desk), &area, told)?)
+            }
             BissJob::Save => {
                 let progress = &mut |done, total, place| steps(done, total, doing(place));
                 BissOutput::Saved(Box::new(device::save(&mut self.master(desk), &types, progress)?))

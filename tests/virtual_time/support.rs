@@ -270,8 +270,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
 
 /// The profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
-    let profile = Document::parse(&read_text(path).unwrap()).unwrap().body.into_hiperface().unwrap();
-    profile
+    Document::parse(&read_text(path).unwrap()).unwrap().body.into_hiperface().unwrap()
 }
 
 /// Bytes that repeat themselves late and differ for different seeds.

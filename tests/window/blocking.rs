@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::connect::{Action as Connect, LinkForm};
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity, Theme};
+use encoder_studio::app::{Action, Severity, Tab, Theme};
 use encoder_studio::device::hiperface::find::FindOptions;
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
@@ -35,7 +35,7 @@ fn a_link_that_hangs_holds_nobody_up() {
     desk.act(Action::CloseSession(hanging));
     assert!(desk.studio.question.is_none(), "nothing would be lost");
     assert_eq!(desk.studio.devices().len(), 1);
-    assert_eq!(desk.studio.settings.links(), [format!("serial:{PORT}")]);
+    assert_eq!(desk.studio.settings.links(Tab::Hiperface), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.may_close());
 }

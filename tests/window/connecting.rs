@@ -107,7 +107,7 @@ fn all_that_answer_are_found_and_one_is_chosen() {
     assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
     let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
     assert_eq!(desk.encoder().session.source, Source::Link(link.parse().unwrap()));
-    assert_eq!(desk.studio.settings.links(), [link]);
+    assert_eq!(desk.studio.settings.links(encoder_studio::app::Tab::Hiperface), [link]);
 }
 
 #[test]

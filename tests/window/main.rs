@@ -2,6 +2,7 @@
 //! accessible labels. One module a behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss;
 mod blocking;
 mod closing;
 mod commutation;

@@ -23,7 +23,7 @@ fn own(desk: &Desk) -> Of {
 }
 
 fn recorder(desk: &Desk) -> &Recorder {
-    &desk.encoder().record.recorder()
+    desk.encoder().record.recorder()
 }
 
 fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Line {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use encoder_studio::app::{Action, Language, Settings, Severity, Theme};
+use encoder_studio::app::{Action, Language, Settings, Severity, Tab, Theme};
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
@@ -32,7 +32,10 @@ fn looks_language_layout_and_links_survive() {
     let settings = desk.studio.settings.clone();
     let desk = desk.crash();
     assert_eq!(desk.studio.settings, settings);
-    assert_eq!(settings.links(), [format!("serial:{OTHER_PORT}"), format!("serial:{PORT}"), "sim:".to_owned()]);
+    assert_eq!(
+        settings.links(Tab::Hiperface),
+        [format!("serial:{OTHER_PORT}"), format!("serial:{PORT}"), "sim:".to_owned()]
+    );
     assert_eq!((settings.theme, settings.language, settings.size), (Theme::Light, Language::German, Some((1500, 900))));
     assert_eq!(settings.layout.as_deref(), Some("(a layout)"));
 }
@@ -43,7 +46,7 @@ fn a_link_that_did_not_open_is_not_remembered() {
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     assert_eq!(desk.told(Severity::Error), ["link.not_found"]);
-    assert!(desk.studio.settings.links().is_empty());
+    assert!(desk.studio.settings.links(Tab::Hiperface).is_empty());
 }
 
 #[test]
@@ -91,7 +94,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     let path = desk.outside.store().settings_path();
     let mut settings = Settings::default();
     (settings.theme, settings.size) = (Theme::Light, Some((1500, 900)));
-    settings.use_link("tcp:host:1");
+    settings.use_link(Tab::Hiperface, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
     let mut desk = desk.crash();
@@ -113,7 +116,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
     let mut desk = Desk::fresh("codes=0:9D");
     desk.open("sim:?codes=0:9D&margin=21");
     desk.until_read();
-    assert_eq!(desk.studio.settings.links(), ["sim:?margin=21"]);
+    assert_eq!(desk.studio.settings.links(Tab::Hiperface), ["sim:?margin=21"]);
     kept(&mut desk);
     let log = crate::support::log(&desk.studio);
     assert!(!log.contains("9D"), "{log}");

@@ -26,7 +26,7 @@ fn recorded() -> Screen {
 }
 
 fn recorder(screen: &Screen) -> &Recorder {
-    &screen.encoder().record.recorder()
+    screen.encoder().record.recorder()
 }
 
 fn chart(screen: &Screen) -> Rect {

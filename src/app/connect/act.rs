@@ -2,12 +2,13 @@
 
 use crossbeam_channel::Receiver;
 
-use super::{Action, Connect, LinkForm, Search, list_ports};
+use super::{Action, BissForm, Connect, LinkForm, Search, list_ports};
 use crate::app::action::Done;
 use crate::app::leaving::{Leaver, same_wire};
 use crate::app::services::JobEnd;
 use crate::app::session::{Phase, Source};
-use crate::app::studio::{SessionId, Studio, Tab};
+use crate::app::studio::{SessionId, Studio};
+use crate::app::tab::Tab;
 use crate::app::{AnyDevice, Severity, Text, explain};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
@@ -17,30 +18,44 @@ impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
         match action {
             Action::Open => {
+                let device = match self.settings.tab {
+                    Tab::Signals => self.shown().map_or(Tab::Hiperface, AnyDevice::tab),
+                    tab => tab,
+                };
                 // What was used before comes first.
-                let last = self.settings.links().first().and_then(|link| link.parse().ok());
-                self.connect = Some(Connect::new(LinkForm::from_url(&last.unwrap_or_else(LinkUrl::sim))));
-                list_ports(&self.services, self.settings.links());
+                let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
+                self.connect = Some(Connect::new(device, last));
+                self.list_ports();
             }
             Action::Close => self.close_dialog(),
             Action::ListPorts => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = None;
-                    list_ports(&self.services, self.settings.links());
+                    self.list_ports();
                 }
             }
-            Action::Edit(form) => self.edit(*form),
+            Action::Device(device) => {
+                self.end_search();
+                self.edit(|connect| (connect.device, connect.search) = (device, None));
+                self.list_ports();
+            }
+            Action::Edit(form) => self.edit(|connect| connect.form = *form),
+            Action::EditBiss(form) => self.edit(|connect| connect.biss = *form),
             Action::Use(link) => match link.parse::<LinkUrl>() {
-                Ok(url) => self.edit(LinkForm::from_url(&url)),
+                Ok(url) => self.edit(|connect| match connect.device {
+                    Tab::Biss => connect.biss = BissForm::from_url(&url),
+                    Tab::Hiperface | Tab::Signals => connect.form = LinkForm::from_url(&url),
+                }),
                 Err(error) => self.refuse(Text::new("link.url").with_text("why", explain::url(&error))),
             },
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };
-                match connect.form.url() {
+                let device = connect.device;
+                match connect.url() {
                     Ok(url) => {
                         // A search may still hold the wire.
                         self.close_dialog();
-                        self.open_link(Tab::Hiperface, url);
+                        self.open_link(device, url);
                     }
                     Err(problem) => self.refuse(problem),
                 }
@@ -55,10 +70,17 @@ impl Studio {
         }
     }
 
-    fn edit(&mut self, form: LinkForm) {
+    fn edit(&mut self, edit: impl FnOnce(&mut Connect)) {
         if let Some(connect) = &mut self.connect {
-            connect.form = form;
+            edit(connect);
             connect.problem = None;
+        }
+    }
+
+    /// Looks for the serial ports; those used before for this kind of device come first.
+    fn list_ports(&self) {
+        if let Some(connect) = &self.connect {
+            list_ports(&self.services, self.settings.links(connect.device));
         }
     }
 

@@ -1,10 +1,9 @@
 //! What a person fills in to connect, and the link it stands for. Nothing is opened here, and what a value may be is
 //! asked of those who use it: the station and the virtual encoder.
 
-use std::net::Ipv6Addr;
-use std::num::NonZeroU16;
 use std::time::Duration;
 
+use super::target::{assemble, entered, filled, host_and_port};
 use crate::app::{Text, explain};
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
@@ -25,8 +24,6 @@ pub enum LinkKind {
     Tcp,
     /// A recorded trace.
     Replay,
-    /// What has no entries: the link as it is written.
-    Written,
 }
 
 /// The entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry
@@ -43,8 +40,6 @@ pub struct LinkForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// A link that has no entries.
-    pub written: Option<LinkUrl>,
     /// Speed.
     pub baud: Baud,
     /// Parity.
@@ -82,7 +77,6 @@ impl Default for LinkForm {
             host: String::new(),
             tcp_port: String::new(),
             file: String::new(),
-            written: None,
             baud: CharacterFormat::FACTORY.baud,
             parity: CharacterFormat::FACTORY.parity,
             address: address_words(DeviceAddress::FACTORY.byte()),
@@ -113,7 +107,8 @@ impl LinkForm {
             Scheme::Sim => form.kind = LinkKind::Virtual,
             Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
-            Scheme::Bridge => (form.kind, form.written) = (LinkKind::Written, Some(url.clone())),
+            // Leads to no HIPERFACE encoder.
+            Scheme::Bridge => {}
             Scheme::Tcp => {
                 let (host, port) = target.rsplit_once(':').unwrap_or((&target, ""));
                 (form.kind, form.host, form.tcp_port) = (LinkKind::Tcp, host.to_owned(), port.to_owned());
@@ -161,23 +156,8 @@ impl LinkForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        if let (LinkKind::Written, Some(url)) = (self.kind, &self.written) {
-            return Ok(url.clone());
-        }
         let (scheme, target) = self.target()?;
-        let parameters = self.parameters()?;
-        let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
-        let unfit = unfit(&target, &['?']).or_else(|| {
-            parameters.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&'])))
-        });
-        if let Some(value) = unfit {
-            return Err(Text::new("form.characters").with("value", value));
-        }
-        let words: Vec<String> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        let question = if words.is_empty() { "" } else { "?" };
-        let url: LinkUrl = format!("{}:{target}{question}{}", scheme.word(), words.join("&"))
-            .parse()
-            .map_err(|error| self.refused(error))?;
+        let url = assemble(scheme, &target, &self.parameters()?)?.map_err(|error| self.refused(error))?;
         Station::from_query(&url.query, Duration::ZERO).map_err(|error| self.refused(error))?;
         if self.kind == LinkKind::Virtual {
             let own = url.query.without(&line_only());
@@ -187,31 +167,11 @@ impl LinkForm {
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
-        let entered = |entry: &str, missing: &'static str| {
-            let entry = entry.trim();
-            if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
-        };
         match self.kind {
             LinkKind::Virtual => Ok((Scheme::Sim, String::new())),
             LinkKind::Serial => Ok((Scheme::Serial, entered(&self.port, "form.port_missing")?)),
             LinkKind::Replay => Ok((Scheme::Replay, entered(&self.file, "form.file_missing")?)),
-            // With a link it does not come here.
-            LinkKind::Written => Err(Text::new("form.port_missing")),
-            LinkKind::Tcp => {
-                let host = entered(&self.host, "form.host_missing")?;
-                let host = match host.parse::<Ipv6Addr>() {
-                    Ok(_) => format!("[{host}]"),
-                    Err(_) if host.contains(':') && !host.starts_with('[') => {
-                        return Err(Text::new("form.host").with("value", host));
-                    }
-                    Err(_) => host,
-                };
-                let port = entered(&self.tcp_port, "form.tcp_port_missing")?;
-                match port.parse::<NonZeroU16>() {
-                    Ok(port) => Ok((Scheme::Tcp, format!("{host}:{port}"))),
-                    Err(_) => Err(Text::new("form.tcp_port").with("value", port)),
-                }
-            }
+            LinkKind::Tcp => Ok((Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?)),
         }
     }
 
@@ -219,7 +179,6 @@ impl LinkForm {
         let usual = LinkForm::default();
         let mut parameters = Vec::new();
         let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
-        let filled = |entry: &str| Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty());
         if self.kind == LinkKind::Virtual {
             filled(&self.model).filter(|model| *model != usual.model).iter().for_each(|model| add("model", model));
             // A German keyboard has a comma where the point should be.

@@ -2,14 +2,18 @@
 //! remembers.
 
 mod act;
+mod biss_form;
 mod form;
 mod ports;
+mod target;
 
+pub use biss_form::{BissForm, BissWay};
 pub use form::{LinkForm, LinkKind};
 pub use ports::{Offer, offered_ports};
 
 use super::line::Line;
 use super::services::Services;
+use super::tab::Tab;
 use super::{Text, explain};
 use crate::app::action::{Done, OpenFailed, Opened};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
@@ -25,8 +29,12 @@ pub enum Action {
     Close,
     /// Look for serial ports again.
     ListPorts,
-    /// The form was edited.
+    /// Another kind of device.
+    Device(Tab),
+    /// The form for a HIPERFACE encoder was edited.
     Edit(Box<LinkForm>),
+    /// The form for a BiSS encoder was edited.
+    EditBiss(Box<BissForm>),
     /// Fill the form in from a link.
     Use(String),
     /// Connect as the form says.
@@ -41,8 +49,12 @@ pub enum Action {
 
 /// The dialog.
 pub struct Connect {
-    /// The link as a form.
+    /// The kind of device.
+    pub device: Tab,
+    /// The link to a HIPERFACE encoder as a form.
     pub form: LinkForm,
+    /// The link to a BiSS encoder as a form.
+    pub biss: BissForm,
     /// The ports of this machine; `None` while they are being looked for.
     pub ports: Option<Result<Vec<Offer>, Text>>,
     /// Why the form cannot be used.
@@ -68,8 +80,22 @@ pub struct Search {
 }
 
 impl Connect {
-    pub(super) fn new(form: LinkForm) -> Self {
-        Connect { form, ports: None, problem: None, search: None }
+    /// For a kind of device; `last` gives the link that was used last for one.
+    pub(super) fn new(device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
+        let form = LinkForm::from_url(&last(Tab::Hiperface).unwrap_or_else(LinkUrl::sim));
+        let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
+        Connect { device, form, biss, ports: None, problem: None, search: None }
+    }
+
+    /// The link that the form stands for.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        match self.device {
+            Tab::Biss => self.biss.url(),
+            Tab::Hiperface | Tab::Signals => self.form.url(),
+        }
     }
 }
 

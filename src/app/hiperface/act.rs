@@ -288,7 +288,7 @@ impl Encoder {
         match result.and_then(|document| document.body.into_hiperface().map_err(ReadError::Profile)) {
             Ok(profile) => self.plan_restore(profile, services),
             Err(error) => {
-                let text = crate::app::studio::read_error(path, &error);
+                let text = crate::app::documents::read_error(path, &error);
                 services.tell(Severity::Error, vec![text], Some(&self.session.name()));
             }
         }

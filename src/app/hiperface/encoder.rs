@@ -127,6 +127,19 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
+    /// Bytes that are edited.
+    pub(in crate::app) fn edits(&self) -> usize {
+        self.staged.edits().count()
+    }
+
+    pub(in crate::app) fn can_undo(&self) -> bool {
+        self.staged.can_undo()
+    }
+
+    pub(in crate::app) fn can_redo(&self) -> bool {
+        self.staged.can_redo()
+    }
+
     /// One of its data fields, as the encoder has it.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)

@@ -15,9 +15,13 @@ use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
 use crate::worker::hiperface::{
     Committed, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
-use crate::worker::{Event, JobId};
+use crate::worker::{Event, JobId, Session};
 
 impl Kind for Hiperface {
+    type Aside = ();
+
+    fn aside(_session: &Session<Self>) {}
+
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_hiperface
     }

@@ -3,10 +3,16 @@
 use crate::app::action::{Attempt, Done};
 use crate::app::services::{JobEnd, Opener, World};
 use crate::app::{Severity, Text};
-use crate::worker::{Device, Event, JobId};
+use crate::worker::{Device, Event, JobId, Session};
 
 /// A kind of device on the desk.
 pub trait Kind: Device + Sized {
+    /// What is kept of a session beside its thread.
+    type Aside: Send;
+
+    /// Takes that before the session goes to its thread.
+    fn aside(session: &Session<Self>) -> Self::Aside;
+
     /// Opens links to such devices.
     fn opener(world: &World) -> &Opener<Self>;
 

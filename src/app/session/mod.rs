@@ -298,7 +298,7 @@ impl<D: Kind> Session<D> {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
         let (path, store) = (path.clone(), services.world.store.clone());
-        services.tasks.run("read", move || super::studio::read_document(path, &store));
+        services.tasks.run("read", move || super::documents::read_document(path, &store));
         true
     }
 
@@ -355,7 +355,7 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
         let session = self.id;
         services.tasks.run("backup", move || {
-            let result = super::studio::read_profile(&path).map(Box::new);
+            let result = super::documents::read_profile(&path).map(Box::new);
             super::Action::Done(super::action::Done::Backup { session, of, path, result })
         });
     }

@@ -84,6 +84,15 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8))
     Ok(banks)
 }
 
+/// Reads an area of data for itself.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn read_area_surely(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+    ensure_standstill(master)?;
+    certainly(master, |master| read_area(master, area, told))
+}
+
 /// Reads everything that can be restored, and what identifies the encoder.
 ///
 /// # Errors

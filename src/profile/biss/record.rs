@@ -157,6 +157,24 @@ impl BissProfile {
         self.data.iter().find_map(|image| image.bank(number))
     }
 
+    /// Makes a register of plain data another byte. False where the profile says nothing about its bank.
+    pub fn put(&mut self, address: RegisterAddress, byte: u8) -> bool {
+        let Some(number) = address.bank() else { return false };
+        let image = self.data.iter_mut().find_map(|image| Some((image.bank(number)?, image)));
+        let Some((mut bank, image)) = image else { return false };
+        if let Some(own) = bank.bytes.get_mut(usize::from(address.address())) {
+            *own = byte;
+        }
+        match image.listed.iter_mut().find(|listed| listed.bank.number == number) {
+            Some(listed) => listed.bank = bank,
+            None => {
+                let at = image.listed.partition_point(|listed| listed.bank.number < number);
+                image.listed.insert(at, bank.into());
+            }
+        }
+        true
+    }
+
     /// Every bank that the profile says something about, in the order of the file.
     pub fn banks(&self) -> impl Iterator<Item = Bank> {
         self.data.iter().flat_map(DataImage::all)

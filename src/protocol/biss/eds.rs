@@ -244,6 +244,14 @@ impl Eds {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
+    /// The last bank that a user may fill; `None` where there is none, and in the encoder's bank, which does not tell.
+    pub fn last_user_bank(&self) -> Option<u8> {
+        match (self.bank, self.byte(0x03)) {
+            (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
+            (EdsBank::Common, last) => Some(last),
+        }
+    }
+
     fn number(&self, offset: u8) -> u32 {
         let field = self.bank.fields().iter().find(|field| field.offset == offset);
         field.map_or(0, |field| field.raw(&self.bytes))

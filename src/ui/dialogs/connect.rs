@@ -1,15 +1,18 @@
 //! Connecting: a link as a form, what was used before, the ports of this machine, and the search for an encoder whose
 //! settings nobody remembers.
 
+mod biss;
+
 use std::time::Duration;
 
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
 use crate::app::explain::hiperface as words;
-use crate::app::{Action, Studio, Text};
+use crate::app::{Action, Studio, Tab, Text};
 use crate::device::hiperface::Echo;
 use crate::device::hiperface::find::FindOptions;
+use crate::link::LinkUrl;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
     LABELS, button, choice, enabled_button, entry, fill, icon_button, modal, name, paragraph, primary, spinner,
@@ -42,31 +45,17 @@ pub(in crate::ui) fn connect_ui(
 ) {
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 190.0).min(560.0);
-    let mut form = dialog.form.clone();
+    let (mut form, mut biss) = (dialog.form.clone(), dialog.biss.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.label(skin.heading(skin.say("connect.title")));
         ui.add_space(skin.space.inside);
         // Always as high: nothing jumps away under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-            used_before(ui, skin, studio, actions);
-            kinds(ui, skin, &mut form);
-            ui.add_space(skin.space.between);
-            match form.kind {
-                LinkKind::Virtual => simulated(ui, skin, &mut form),
-                LinkKind::Serial => serial(ui, skin, dialog, &mut form, actions),
-                LinkKind::Tcp => network(ui, skin, &mut form),
-                LinkKind::Replay => recording(ui, skin, &mut form),
-                // Its text stands below.
-                LinkKind::Written => {}
-            }
-            if !matches!(form.kind, LinkKind::Replay | LinkKind::Written) {
-                line(ui, skin, &mut form);
-                more(ui, skin, &mut form, &mut view.more);
-            }
-            link_text(ui, skin, &form);
-            if matches!(form.kind, LinkKind::Serial | LinkKind::Tcp | LinkKind::Virtual) {
-                ui.add_space(skin.space.between);
-                search(ui, skin, dialog, view, actions);
+            devices(ui, skin, dialog.device, actions);
+            used_before(ui, skin, studio.settings.links(dialog.device), actions);
+            match dialog.device {
+                Tab::Biss => biss::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
+                Tab::Hiperface | Tab::Signals => hiperface(ui, skin, dialog, &mut form, view, actions),
             }
         });
         if let Some(problem) = &dialog.problem {
@@ -84,14 +73,58 @@ pub(in crate::ui) fn connect_ui(
             }
         });
     });
+    // Before whatever else was clicked: that is to see it.
     if form != dialog.form {
-        // Before whatever else was clicked: that is to see it.
         actions.insert(0, Action::Connect(Connect::Edit(Box::new(form))));
+    }
+    if biss != dialog.biss {
+        actions.insert(0, Action::Connect(Connect::EditBiss(Box::new(biss))));
     }
 }
 
-fn used_before(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let links = studio.settings.links();
+/// The kinds of devices.
+fn devices(ui: &mut Ui, skin: &Skin, device: Tab, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        for own in Tab::DEVICES {
+            let word = own.bus().unwrap_or_default();
+            let response =
+                ui.add(egui::Button::selectable(device == own, RichText::new(word).font(skin.strong(skin.sizes.body))));
+            if name(response, true, word).clicked() && own != device {
+                actions.push(Action::Connect(Connect::Device(own)));
+            }
+        }
+    });
+    ui.add_space(skin.space.between);
+}
+
+fn hiperface(
+    ui: &mut Ui,
+    skin: &Skin,
+    dialog: &Dialog,
+    form: &mut LinkForm,
+    view: &mut ConnectView,
+    actions: &mut Vec<Action>,
+) {
+    kinds(ui, skin, form);
+    ui.add_space(skin.space.between);
+    match form.kind {
+        LinkKind::Virtual => simulated(ui, skin, form),
+        LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
+        LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
+        LinkKind::Replay => recording(ui, skin, &mut form.file),
+    }
+    if form.kind != LinkKind::Replay {
+        line(ui, skin, form);
+        more(ui, skin, form, &mut view.more);
+    }
+    link_text(ui, skin, form.url());
+    if form.kind != LinkKind::Replay {
+        ui.add_space(skin.space.between);
+        search(ui, skin, dialog, view, actions);
+    }
+}
+
+fn used_before(ui: &mut Ui, skin: &Skin, links: &[String], actions: &mut Vec<Action>) {
     if links.is_empty() {
         return;
     }
@@ -139,9 +172,9 @@ fn simulated(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
     });
 }
 
-fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, form: &mut LinkForm, actions: &mut Vec<Action>) {
+fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, port: &mut String, actions: &mut Vec<Action>) {
     entry(ui, skin, &skin.say("connect.port"), |ui| {
-        text_entry(ui, &mut form.port, 300.0, &skin.say("connect.port"), "/dev/ttyUSB0");
+        text_entry(ui, port, 300.0, &skin.say("connect.port"), "/dev/ttyUSB0");
         if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &skin.say("connect.list_ports")).clicked() {
             actions.push(Action::Connect(Connect::ListPorts));
         }
@@ -160,9 +193,9 @@ fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, form: &mut LinkForm, action
             for offer in offers {
                 ui.horizontal(|ui| {
                     ui.add_space(LABELS);
-                    let button = egui::Button::selectable(form.port == offer.path, skin.mono(&offer.path));
+                    let button = egui::Button::selectable(*port == offer.path, skin.mono(&offer.path));
                     if ui.add(button).clicked() {
-                        form.port.clone_from(&offer.path);
+                        port.clone_from(&offer.path);
                     }
                     ui.label(skin.label(&offer.description));
                     if !offer.listed {
@@ -174,17 +207,17 @@ fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, form: &mut LinkForm, action
     }
 }
 
-fn network(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+fn network(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String) {
     entry(ui, skin, &skin.say("connect.host"), |ui| {
-        text_entry(ui, &mut form.host, 220.0, &skin.say("connect.host"), "192.168.0.7");
-        text_entry(ui, &mut form.tcp_port, 72.0, &skin.say("connect.tcp_port"), "4001");
+        text_entry(ui, host, 220.0, &skin.say("connect.host"), "192.168.0.7");
+        text_entry(ui, port, 72.0, &skin.say("connect.tcp_port"), "4001");
     });
     ui.label(skin.caption(skin.say("connect.tcp_words")));
 }
 
-fn recording(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+fn recording(ui: &mut Ui, skin: &Skin, file: &mut String) {
     entry(ui, skin, &skin.say("connect.file"), |ui| {
-        text_entry(ui, &mut form.file, 360.0, &skin.say("connect.file"), "capture.trace");
+        text_entry(ui, file, 360.0, &skin.say("connect.file"), "capture.trace");
     });
 }
 
@@ -204,30 +237,16 @@ fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
 
 /// What is rarely needed.
 fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
-    let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
-    let word = skin.say("connect.more");
-    let response = ui.add(egui::Button::new(format!("{icon}  {word}")).frame(false));
-    if name(response, true, &word).clicked() {
-        *open = !*open;
-    }
-    if !*open {
+    if !unfolded(ui, skin, open) {
         return;
     }
-    entry(ui, skin, &skin.say("connect.echo"), |ui| {
-        let echoes =
-            [(Echo::Unknown, "connect.echo_auto"), (Echo::On, "connect.echo_on"), (Echo::Off, "connect.echo_off")];
-        let echoes = echoes.map(|(echo, id)| (echo, skin.say(id)));
-        choice(ui, &skin.say("connect.echo"), &mut form.echo, echoes);
-    });
+    echo(ui, skin, &mut form.echo);
     entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {
         let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
         let times = times.map(|(long, id)| (long, skin.say(id)));
         choice(ui, &skin.say("settings_card.timeout"), &mut form.long_timeout, times);
     });
-    entry(ui, skin, &skin.say("connect.margin"), |ui| {
-        text_entry(ui, &mut form.margin, 72.0, &skin.say("connect.margin"), "50");
-        ui.label(skin.label("ms"));
-    });
+    margin(ui, skin, &mut form.margin);
     entry(ui, skin, &skin.say("connect.periods"), |ui| {
         text_entry(ui, &mut form.periods, 72.0, &skin.say("connect.periods"), "128");
         ui.label(skin.label(skin.say("connect.turns")));
@@ -235,9 +254,36 @@ fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
     });
 }
 
+/// The heading over what is rarely needed; whether it is unfolded.
+fn unfolded(ui: &mut Ui, skin: &Skin, open: &mut bool) -> bool {
+    let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
+    let word = skin.say("connect.more");
+    let response = ui.add(egui::Button::new(format!("{icon}  {word}")).frame(false));
+    if name(response, true, &word).clicked() {
+        *open = !*open;
+    }
+    *open
+}
+
+fn echo(ui: &mut Ui, skin: &Skin, echo: &mut Echo) {
+    entry(ui, skin, &skin.say("connect.echo"), |ui| {
+        let echoes =
+            [(Echo::Unknown, "connect.echo_auto"), (Echo::On, "connect.echo_on"), (Echo::Off, "connect.echo_off")];
+        let echoes = echoes.map(|(echo, id)| (echo, skin.say(id)));
+        choice(ui, &skin.say("connect.echo"), echo, echoes);
+    });
+}
+
+fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
+    entry(ui, skin, &skin.say("connect.margin"), |ui| {
+        text_entry(ui, margin, 72.0, &skin.say("connect.margin"), "50");
+        ui.label(skin.label("ms"));
+    });
+}
+
 /// The link as the command line takes it.
-fn link_text(ui: &mut Ui, skin: &Skin, form: &LinkForm) {
-    let Ok(url) = form.url() else { return };
+fn link_text(ui: &mut Ui, skin: &Skin, url: Result<LinkUrl, Text>) {
+    let Ok(url) = url else { return };
     let link = url.to_string();
     entry(ui, skin, &skin.say("connect.link"), |ui| {
         if icon_button(ui, true, icons::COPY, &skin.say("shell.copy_link")).clicked() {

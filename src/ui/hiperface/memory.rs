@@ -5,15 +5,15 @@ use egui::{RichText, Ui};
 
 use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, Staged, forms, rules};
-use crate::app::session::{Phase, Source};
+use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Text};
 use crate::profile::hiperface::{FieldImage, FieldRange};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
-use crate::ui::controls::{allowed_button, choice, empty, enabled_button, icon_button, name, paragraph, primary};
+use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, typed_view,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Skin, foot, icons};
 use crate::worker::hiperface::Change;
 
 /// Selection and text buffers of the page.
@@ -43,7 +43,7 @@ impl Default for View {
 pub(super) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
-    studio: &Studio,
+    (studio, device): (&Studio, &AnyDevice),
     encoder: &Encoder,
     view: &mut View,
     actions: &mut Vec<Action>,
@@ -58,7 +58,7 @@ pub(super) fn page_ui(
         return;
     }
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        foot(ui, skin, studio, encoder, actions);
+        foot::foot_ui(ui, skin, studio, device, actions);
     });
     map(ui, skin, encoder, &wanted, memory, view, actions);
     ui.add_space(skin.space.between);
@@ -320,76 +320,5 @@ fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view:
             let change = Change::CreateField { number: memory.fields, status };
             actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
         }
-    });
-}
-
-/// How many edits there are, taking them back, and writing them.
-fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &mut Vec<Action>) {
-    ui.add_space(skin.space.between);
-    let dirty = encoder.staged.is_dirty();
-    ui.horizontal(|ui| {
-        if icon_button(ui, encoder.staged.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Undo));
-        }
-        if icon_button(ui, encoder.staged.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Redo));
-        }
-        if enabled_button(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::RevertAll));
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if encoder.session.phase == Phase::Offline {
-                if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                    actions.push(Action::Hiperface(encoder.session.id, Hiperface::AskSave));
-                }
-                write_into(ui, skin, studio, encoder, actions);
-            } else if primary(
-                ui,
-                skin,
-                dirty && encoder.session.is_ready(),
-                icons::DOWNLOAD_SIMPLE,
-                &skin.say("memory.review"),
-            )
-            .on_hover_text(skin.say("memory.review_hint"))
-            .clicked()
-            {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Review));
-            }
-            if dirty {
-                let count = encoder.staged.edits().count();
-                let text = Text::new(match (&encoder.session.source, count) {
-                    (Source::Link(_), 1) => "memory.edited_one",
-                    (Source::Link(_), _) => "memory.edited",
-                    (Source::File { .. }, 1) => "memory.unsaved_one",
-                    (Source::File { .. }, _) => "memory.unsaved",
-                })
-                .with("count", count);
-                let words = RichText::new(skin.words(&text)).color(skin.palette.staged);
-                ui.add(egui::Label::new(words).truncate());
-            }
-        });
-    });
-}
-
-/// A profile goes into a connected encoder: which one is chosen here.
-fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Source::File { .. } = &encoder.session.source else { return };
-    let targets: Vec<&Encoder> = studio
-        .devices()
-        .iter()
-        .filter_map(AnyDevice::hiperface)
-        .filter(|own| own.session.phase == Phase::Connected)
-        .collect();
-    let word = skin.say("memory.write_into");
-    ui.add_enabled_ui(!targets.is_empty(), |ui| {
-        let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
-            for target in &targets {
-                if ui.add_enabled(target.session.is_ready(), egui::Button::new(target.session.name())).clicked() {
-                    actions.push(Action::Hiperface(encoder.session.id, Hiperface::WriteInto(target.session.id)));
-                    ui.close();
-                }
-            }
-        });
-        name(menu.response, true, &word).on_disabled_hover_text(skin.say("memory.no_target"));
     });
 }

@@ -1,6 +1,5 @@
 //! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
 
-mod backups;
 mod commutation;
 mod encoder;
 mod memory;
@@ -10,9 +9,9 @@ mod wiring;
 
 use egui::{ScrollArea, Ui};
 
-use super::{Skin, icons};
+use super::{Skin, backups, icons};
 use crate::app::hiperface::Encoder;
-use crate::app::{Action, Studio};
+use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -99,7 +98,7 @@ impl View {
 pub(super) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
-    studio: &Studio,
+    (studio, device): (&Studio, &AnyDevice),
     encoder: &Encoder,
     view: &mut View,
     actions: &mut Vec<Action>,
@@ -111,7 +110,7 @@ pub(super) fn page_ui(
         // The editor scrolls by itself; its buttons stay where they are.
         egui::Frame::NONE
             .inner_margin(margin)
-            .show(ui, |ui| memory::page_ui(ui, skin, studio, encoder, &mut view.memory, actions));
+            .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
         return;
     }
     ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
@@ -120,7 +119,7 @@ pub(super) fn page_ui(
             Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
             Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
-            Page::Backups => backups::page_ui(ui, skin, encoder, actions),
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
             Page::Memory => {}
         });
     });

@@ -1,5 +1,7 @@
 //! The position, large, and the plot of what was recorded.
 
+mod biss;
+
 use std::time::Duration;
 
 use egui::{RichText, Ui};
@@ -27,6 +29,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     };
     match device {
         AnyDevice::Hiperface(encoder) => value(ui, skin, encoder),
+        AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder),
     }
     ui.add_space(skin.space.inside);
     controls(ui, skin, device, views, actions);
@@ -141,6 +144,7 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
         }
         match device {
             AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
+            AnyDevice::Biss(encoder) => biss::watch_menu(ui, skin, encoder, actions),
         }
         let rates = RATES.map(|(milliseconds, id)| (milliseconds, skin.say(id)));
         if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling {

@@ -5,8 +5,8 @@ use std::fmt;
 use super::Identity;
 use crate::bits::hex_compact;
 use crate::device::biss::{Error, PositionReading, Status, Survey};
-use crate::profile::biss::{BissProfile, RegisterRange};
-use crate::protocol::biss::{KIND, RegisterAddress};
+use crate::profile::biss::{Bank, BissProfile, RegisterRange};
+use crate::protocol::biss::{Area, KIND, RegisterAddress};
 use crate::store::{DeviceKey, StoreError};
 
 /// What a session with a BiSS encoder does.
@@ -26,6 +26,8 @@ pub enum BissJob {
     ReadDirect,
     /// All registers of a bank.
     ReadBank(u8),
+    /// All registers of an area of data; at standstill.
+    ReadArea(Area),
     /// Everything that can be restored; at standstill.
     Save,
 }
@@ -75,6 +77,7 @@ pub enum BissOutput {
     Status(Box<Status>),
     Position(PositionReading),
     Registers(ReadRegisters),
+    Area(Vec<Bank>),
     Saved(Box<BissProfile>),
 }
 

@@ -13,6 +13,11 @@ pub fn adapter(error: &AdapterError) -> Text {
             Text::new("adapter.version").with("got", got).with("expected", expected)
         }
         AdapterError::NoBiss { name } => Text::new("adapter.no_biss").with("name", name),
+        AdapterError::NoSsi { name } => Text::new("adapter.no_ssi").with("name", name),
+        AdapterError::NoAnalog { name } => Text::new("adapter.no_analog").with("name", name),
+        AdapterError::Mute => Text::new("adapter.mute"),
+        AdapterError::Restarted => Text::new("adapter.restarted"),
+        AdapterError::Data { cause } => Text::new("adapter.data").with_text("why", plain(cause)),
         AdapterError::Refused { operation, code, text } => Text::new("adapter.refused")
             .with("operation", number(*operation))
             .with_text("why", reason(*code))

@@ -1,33 +1,33 @@
-//! Profiles, backups, and what was written into this encoder.
+//! Profiles, backups, and what was written into a device, whatever its kind.
 
 use egui::{RichText, Ui};
 use jiff::tz::TimeZone;
 
-use crate::app::Action;
-use crate::app::hiperface::{Action as Hiperface, Encoder};
+use super::controls::{button, card, empty, enabled_button, paragraph};
+use super::{Skin, icons};
 use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, Wish};
 use crate::store::{Entry, Outcome};
-use crate::ui::controls::{button, card, empty, enabled_button, paragraph};
-use crate::ui::{Skin, icons};
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    profile(ui, skin, encoder, actions);
-    if encoder.session.phase == Phase::Offline {
+/// Draws the page.
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+    profile(ui, skin, device, actions);
+    if *device.phase() == Phase::Offline {
         return;
     }
     ui.add_space(skin.space.groups);
-    backups(ui, skin, encoder, actions);
+    backups(ui, skin, device, actions);
     ui.add_space(skin.space.groups);
-    writes(ui, skin, encoder);
+    writes(ui, skin, device);
 }
 
-fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let savable = encoder.session.is_savable();
+fn profile(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+    let savable = device.is_savable();
     card(ui, skin, "profile_card.title", |ui| {
         paragraph(ui, skin.label(skin.say("profile_card.words")));
         ui.horizontal(|ui| {
             if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::AskSave));
+                actions.push(device.wish(Wish::AskSave));
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
@@ -36,8 +36,8 @@ fn profile(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     });
 }
 
-fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, "backups_card.title", |ui| match &encoder.session.backups {
+fn backups(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+    card(ui, skin, "backups_card.title", |ui| match device.backups() {
         None => {
             empty(ui, skin, &skin.say("backups_card.none"), None);
         }
@@ -55,12 +55,12 @@ fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
                     ui.label(skin.mono(taken.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
                     let restore = enabled_button(
                         ui,
-                        encoder.session.is_ready(),
+                        device.is_ready(),
                         icons::CLOCK_COUNTER_CLOCKWISE,
                         &skin.say("backups_card.restore"),
                     );
                     if restore.clicked() {
-                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::Restore(backup.path.clone())));
+                        actions.push(device.wish(Wish::Restore(backup.path.clone())));
                     }
                     if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));
@@ -73,8 +73,8 @@ fn backups(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     });
 }
 
-fn writes(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, "writes_card.title", |ui| match &encoder.session.writes {
+fn writes(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
+    card(ui, skin, "writes_card.title", |ui| match device.writes() {
         None => {
             ui.label(skin.label(skin.say("writes_card.none")));
         }

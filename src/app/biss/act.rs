@@ -1,0 +1,227 @@
+//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use jiff::Timestamp;
+
+use super::action::Action;
+use super::encoder::Encoder;
+use super::words;
+use crate::app::action::{FileQuestion, ReadError};
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::{Phase, Source};
+use crate::app::{Severity, Text};
+use crate::profile::biss::{BissProfile, RegisterRange};
+use crate::profile::{Body, Document};
+use crate::protocol::biss::{Area, Register, RegisterAddress};
+use crate::worker::biss::BissJob;
+
+use super::table::Group;
+
+/// How often a watched register is read: what is watched changes slowly, and the position has to wait for it.
+const WATCHED_EVERY: Duration = Duration::from_millis(500);
+
+impl Encoder {
+    /// Does what is asked.
+    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Review => self.review_edits(services),
+            Action::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(BissJob::Survey, services);
+                }
+            }
+            Action::ReadStatus => self.submit(BissJob::Status, services),
+            Action::ReadPosition => self.submit(BissJob::Position, services),
+            Action::Poll(interval) => {
+                if let Some(line) = &mut self.session.line {
+                    let begins = line.polling().is_none();
+                    line.poll(interval);
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::Watch(register, on) => self.watch(*register, on),
+            Action::ReadBank(bank) => self.read_bank(bank, services),
+            Action::SeeBank(bank) => {
+                // Only when nothing else is to be done, and only once.
+                if self.session.is_ready() && self.seen.insert(bank) {
+                    self.read_bank(bank, services);
+                }
+            }
+            Action::ReadArea(first) => self.read_area(first, services),
+            Action::Put { start, bytes } => self.put(start, &bytes, services),
+            Action::Undo => self.memory.undo(),
+            Action::Redo => self.memory.redo(),
+            Action::RevertAll => self.memory.revert(),
+            Action::Revert { start, count } => self.memory.revert_range(start, count),
+            Action::Turn(rpm) => {
+                if let Some(motor) = &self.motor {
+                    motor.set_rpm(rpm);
+                }
+            }
+            Action::AskSave => {
+                let suggested = self.session.suggested_file();
+                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
+            }
+            Action::Save(path) => self.save(path, services),
+            Action::Restore(path) => match self.key() {
+                Some(of) => self.session.read_backup(of, path, services),
+                None => self.refuse(Text::new("session.not_connected"), services),
+            },
+        }
+    }
+
+    fn refuse(&self, text: Text, services: &mut Services) {
+        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+    }
+
+    /// Starts a job, or says why not.
+    pub(super) fn submit(&mut self, job: BissJob, services: &mut Services) {
+        self.try_submit(job, services);
+    }
+
+    /// Starts a job, or says why not and gives false.
+    pub(super) fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
+        let what = words::job(&job);
+        self.session.submit(job, what, false, services)
+    }
+
+    /// Watches a register beside the position, or no more.
+    fn watch(&mut self, register: Register, on: bool) {
+        let mut watched = self.record.watched();
+        watched.retain(|own| own.address != register.address);
+        if on {
+            watched.push(register);
+        }
+        self.record.watch(&watched);
+        self.wish_watched();
+    }
+
+    /// Tells the session what is watched.
+    pub(super) fn wish_watched(&mut self) {
+        let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
+        if let Some(line) = &self.session.line {
+            line.watch(ranges.map(|range| (range, WATCHED_EVERY)).collect());
+        }
+    }
+
+    fn read_bank(&mut self, bank: Option<u8>, services: &mut Services) {
+        let job = match bank {
+            None => BissJob::ReadDirect,
+            Some(bank) => BissJob::ReadBank(bank),
+        };
+        self.submit(job, services);
+    }
+
+    fn read_area(&mut self, first: u8, services: &mut Services) {
+        let area = self.description.iter().flat_map(|own| own.areas()).find(|own| own.first == first).cloned();
+        if let Some(area) = area {
+            self.submit(BissJob::ReadArea(area), services);
+        }
+    }
+
+    /// A bank is worth being read when it comes in sight: it was not, nothing runs, and it was not tried in vain.
+    pub fn wants(&self, group: &Group) -> bool {
+        self.session.is_ready() && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
+    }
+
+    /// Why an area cannot be edited now; `None`: it can.
+    pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
+        if !area.access.writes() {
+            return Some(Text::new("data.read_only"));
+        }
+        // A profile is a text: what it says about access does not protect it.
+        (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
+    }
+
+    fn put(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
+        if self.session.is_writing() {
+            return self.refuse(Text::new("session.busy"), services);
+        }
+        let Some(description) = self.description.clone() else { return };
+        if let Err(error) = self.memory.put(&description, start, bytes) {
+            self.refuse(words::not_edited(error), services);
+        }
+    }
+
+    /// A connected encoder is read again for it; a profile is written as it is edited.
+    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        match &self.session.source {
+            Source::Link(_) => {
+                if self.try_submit(BissJob::Save, services) {
+                    self.session.save_to = Some(path);
+                }
+            }
+            Source::File { document, .. } => {
+                let mut document = (**document).clone();
+                if let Some(profile) = self.wanted_profile() {
+                    document.body = Body::Biss(profile);
+                }
+                self.session.write_document(path, document, Vec::new(), services);
+            }
+        }
+    }
+
+    /// A profile was read for a file.
+    pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
+        let Some(path) = self.session.save_to.take() else { return };
+        let mut remarks = Vec::new();
+        // The profile holds what the encoder has.
+        let edits = self.memory.edits().len();
+        if edits > 0 {
+            remarks.push(Text::new("session.saved_without").with("count", edits));
+        }
+        self.session.write_document(path, document_of(profile), remarks, services);
+    }
+
+    /// A backup was read, or not.
+    pub(in crate::app) fn take_backup(
+        &mut self,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        match result.and_then(|document| document.body.into_biss().map_err(ReadError::Profile)) {
+            Ok(profile) => self.plan_restore(profile, services),
+            Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
+        }
+    }
+
+    pub(in crate::app) fn plan_restore(&mut self, _profile: BissProfile, services: &mut Services) {
+        self.refuse(Text::new("biss.read_only"), services);
+    }
+
+    fn review_edits(&mut self, services: &mut Services) {
+        self.refuse(Text::new("biss.read_only"), services);
+    }
+
+    /// The connection is gone; what is known and edited stays.
+    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+        // What passed at last says most about why it was the last.
+        self.take_samples_and_frames();
+        self.forget_asked();
+        self.session.lose(why, services);
+    }
+
+    /// Lets its thread go; what runs ends as `end` says.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.forget_asked();
+        self.motor = None;
+        self.session.let_go(end, services);
+    }
+
+    /// What was asked for on the line does not come any more.
+    fn forget_asked(&mut self) {
+        self.seen.clear();
+    }
+}
+
+/// A profile of now.
+pub(super) fn document_of(profile: BissProfile) -> Document {
+    let now = Timestamp::now();
+    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
+    Document::new(seconds.to_string(), Body::Biss(profile))
+}

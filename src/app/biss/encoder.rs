@@ -1,0 +1,245 @@
+//! A BiSS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::drafts::Edits;
+use super::meaning::Meaning;
+use super::memory::Memory;
+use super::record::Record;
+use super::table::Table;
+use crate::app::services::Services;
+use crate::app::session::{Drafting, Phase, Session, Source};
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text};
+use crate::device::biss::{Identity, Status, Survey};
+use crate::link::LinkUrl;
+use crate::profile::biss::{BissProfile, ProfileIdentity};
+use crate::profile::{Body, Document};
+use crate::protocol::biss::{Description, Descriptions, Eds};
+use crate::sim::biss::Motor;
+use crate::store::{DeviceKey, FileError};
+use crate::worker::biss::{Biss, device_key};
+
+/// A BiSS encoder, or a profile of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Biss>,
+    /// Everything there is to see of it, as it was found.
+    pub survey: Option<Survey>,
+    /// How it is, as it was last read.
+    pub status: Option<Status>,
+    /// What its registers are.
+    pub description: Option<Arc<Description>>,
+    /// Its registers and the edits beside them.
+    pub memory: Memory,
+    /// Its registers as a table.
+    pub table: Table,
+    /// What was recorded while it was polled.
+    pub record: Record,
+    /// What turns the virtual encoder's shaft.
+    pub motor: Option<Motor>,
+    pub(super) meaning: Meaning,
+    pub(in crate::app) drafting: Drafting<Edits>,
+    /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
+    pub(super) seen: BTreeSet<Option<u8>>,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Encoder::with(Session::at_link(id, url))
+    }
+
+    fn with(session: Session<Biss>) -> Self {
+        Encoder {
+            drafting: Drafting::new(session.id),
+            session,
+            survey: None,
+            status: None,
+            description: None,
+            memory: Memory::default(),
+            table: Table::default(),
+            record: Record::default(),
+            motor: None,
+            meaning: Meaning::default(),
+            seen: BTreeSet::new(),
+        }
+    }
+
+    /// A profile of an encoder.
+    pub(in crate::app) fn in_file(
+        id: SessionId,
+        (path, key): (PathBuf, String),
+        document: Document,
+        types: &Descriptions,
+        services: &Services,
+    ) -> Self {
+        let mut encoder = Encoder::with(Session::in_file(id, (path, key), document.clone()));
+        if let Body::Biss(profile) = &document.body {
+            let described = types.named(&profile.identity.description).or_else(|| types.iter().last()).cloned();
+            encoder.describe(described.map(Arc::new));
+            encoder.take_profile(profile);
+        }
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// What its registers are, from now on.
+    fn describe(&mut self, description: Option<Arc<Description>>) {
+        let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
+        let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
+        self.table = description.as_ref().map(|own| Table::of(own, last)).unwrap_or_default();
+        self.description = description;
+    }
+
+    /// The registers that a profile holds.
+    fn take_profile(&mut self, profile: &BissProfile) {
+        let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
+        for bank in profile.banks().chain(sheets) {
+            bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
+        }
+    }
+
+    /// The profile, where this is one.
+    pub fn profile(&self) -> Option<&BissProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        document.body.biss()
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(in crate::app) fn wanted_profile(&self) -> Option<BissProfile> {
+        let mut profile = self.profile()?.clone();
+        for (at, byte) in self.memory.wishes() {
+            profile.put(at, byte);
+        }
+        Some(profile)
+    }
+
+    /// Who it is, as far as that is known.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Who it was, where this is a profile.
+    pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
+        self.profile().map(|profile| &profile.identity)
+    }
+
+    /// Its serial number; empty where it does not tell, `None` where nothing has been read.
+    pub fn serial_number(&self) -> Option<&str> {
+        let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
+        self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
+    }
+
+    /// Bytes that are edited.
+    pub(in crate::app) fn edits(&self) -> usize {
+        self.memory.edits().len()
+    }
+
+    pub(in crate::app) fn can_undo(&self) -> bool {
+        self.memory.can_undo()
+    }
+
+    pub(in crate::app) fn can_redo(&self) -> bool {
+        self.memory.can_redo()
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.memory.is_dirty()
+    }
+
+    /// A profile was read again from its file; edits stay.
+    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        if let Body::Biss(profile) = &document.body {
+            self.take_profile(profile);
+        }
+        self.session.take_document(path, key, document);
+    }
+
+    /// A profile was written, or not.
+    pub(in crate::app) fn written(
+        &mut self,
+        (path, key): (PathBuf, String),
+        document: Document,
+        remarks: Vec<Text>,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) {
+        if self.session.tell_of_profile(&path, remarks, result, services) && self.session.phase == Phase::Offline {
+            let moved = self.forget_draft_unless(&key, services);
+            self.take_document(path, key, document);
+            if moved {
+                self.begin_draft(services);
+            }
+        }
+    }
+
+    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        self.session.just_connected = false;
+        if self.is_another(&survey.identity) {
+            if self.memory.is_dirty() {
+                let kept = self.serial_number().is_some_and(|serial| !serial.is_empty());
+                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
+                let text = text.with("serial", &survey.identity.serial_number);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            self.forget_encoder(services);
+        }
+        let first = self.survey.is_none();
+        let Survey { identity, status, registers, .. } = &survey;
+        self.session.title = Some(title(identity));
+        self.status = Some(status.clone());
+        if let Some(position) = status.position {
+            self.record.add_position(position);
+        }
+        for (at, byte) in registers.iter() {
+            self.memory.take(at, &[byte]);
+        }
+        let description = identity.description.clone();
+        self.survey = Some(survey);
+        self.describe(Some(description));
+        if first {
+            self.load_draft(services);
+        }
+        self.list_backups(services);
+    }
+
+    /// Another encoder than the one that was read before.
+    fn is_another(&self, identity: &Identity) -> bool {
+        let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
+        self.identity().is_some_and(|known| who(known) != who(identity))
+    }
+
+    fn forget_encoder(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        self.survey = None;
+        self.status = None;
+        self.session.title = None;
+        self.memory.clear();
+        self.record.forget();
+        self.session.backups = None;
+        self.session.writes = None;
+        self.seen.clear();
+    }
+
+    /// Reads the list of backups and writes again, on a thread.
+    pub(super) fn list_backups(&mut self, services: &Services) {
+        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
+        self.session.list_backups(key, services);
+    }
+
+    /// How the logbook knows it.
+    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+}
+
+/// The name by which the log and the jobs call an encoder.
+fn title(identity: &Identity) -> String {
+    let name = identity.description.name();
+    if identity.serial_number.is_empty() { name.to_owned() } else { format!("{name} · {}", identity.serial_number) }
+}

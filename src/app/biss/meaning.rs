@@ -1,0 +1,103 @@
+//! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
+//! was selected.
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::link::{Direction, TraceEntry};
+use crate::protocol::biss::{ByteOrder, RegisterAddress};
+use crate::protocol::bridge::{self, Message, Packet};
+use crate::protocol::ubicom::{Frame, Reply, Request, SYNC, Written};
+
+/// Reads frames in the order in which they went over the line.
+#[derive(Debug, Default)]
+pub(super) struct Meaning {
+    /// Which byte of a register's number comes first, once it is known.
+    pub(super) order: Option<ByteOrder>,
+    asked: Option<Request>,
+    bank: Option<u8>,
+}
+
+impl Meaning {
+    /// What a frame says, and nothing for bytes that are no frame.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Vec<Text> {
+        let Some(bytes) = entry.bytes.to_bytes() else { return Vec::new() };
+        let ubicom = bytes.first() == Some(&SYNC);
+        let said = match entry.direction {
+            Direction::Sent if ubicom => self.request(&bytes),
+            Direction::Received if ubicom => self.reply(&bytes),
+            _ => self.packet(&bytes),
+        };
+        said.into_iter().collect()
+    }
+
+    fn request(&mut self, bytes: &[u8]) -> Option<Text> {
+        let frame = Frame::parse(bytes).ok()?;
+        self.asked = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
+        let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
+        Some(match self.asked? {
+            Request::Read { register } => Text::new("trace.read").with("address", place(register)),
+            Request::Write { register, value } => written("trace.write", place(register), value),
+            Request::Position { .. } => Text::new("trace.position"),
+        })
+    }
+
+    fn reply(&mut self, bytes: &[u8]) -> Option<Text> {
+        let asked = self.asked.take()?;
+        let frame = Frame::parse(bytes).ok()?;
+        Some(match Reply::parse(&frame, asked.command()).ok()? {
+            Reply::Value(value) => plain(format!("{value:02X}h")),
+            Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
+            Reply::Written(Written::Refused) => Text::new("trace.refused"),
+            Reply::Written(Written::Unknown(code)) => plain(format!("{code:02X}h")),
+            Reply::Position(word) => plain(format!("{:X}h", word.word())),
+        })
+    }
+
+    fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
+        let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
+        let packet = Packet::parse(stuffed).ok()?;
+        if let Ok(request) = bridge::Request::parse(&packet) {
+            return Some(self.asked_of_adapter(&request));
+        }
+        Some(match Message::parse(&packet).ok()? {
+            Message::Reply(bridge::Reply::BissRead { raw, .. }) => plain(format!("{raw:X}h")),
+            Message::Reply(bridge::Reply::BissRegisterRead { value } | bridge::Reply::BissRegisterWrite { value }) => {
+                plain(format!("{value:02X}h"))
+            }
+            Message::Reply(bridge::Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
+            Message::Reply(_) => Text::new("trace.taken"),
+            Message::Error { text, .. } => Text::new("trace.adapter_refuses").with("why", text),
+            Message::Data(_) => Text::new("trace.stream"),
+        })
+    }
+
+    fn asked_of_adapter(&mut self, request: &bridge::Request) -> Text {
+        let place = |address| {
+            let at = if address < RegisterAddress::BANK_SIZE {
+                self.bank.and_then(|bank| RegisterAddress::banked(bank, address))
+            } else {
+                RegisterAddress::direct(address)
+            };
+            at.map_or_else(|| format!("0x{address:02X}"), |at| at.to_string())
+        };
+        match *request {
+            bridge::Request::BissRegisterRead { address, .. } => {
+                Text::new("trace.read").with("address", place(address))
+            }
+            bridge::Request::BissRegisterWrite { address, value, .. } => {
+                let said = written("trace.write", place(address), value);
+                if address == RegisterAddress::BANK_SELECT.address() {
+                    self.bank = Some(value);
+                }
+                said
+            }
+            bridge::Request::BissRead => Text::new("trace.position"),
+            bridge::Request::Hello => Text::new("trace.hello"),
+            _ => Text::new("trace.set_up"),
+        }
+    }
+}
+
+fn written(id: &'static str, address: String, value: u8) -> Text {
+    Text::new(id).with("address", address).with("value", format!("{value:02X}h"))
+}

@@ -1,0 +1,153 @@
+//! What is recorded of a BiSS encoder while it is polled: its positions, and registers that are watched.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::device::biss::{Error, PositionReading, Sample, WatchedReading};
+use crate::protocol::biss::{Decoded, Decoding, Register};
+use crate::signal::history::Value;
+use crate::units::Moment;
+
+/// The recorder of an encoder, and what it said last.
+#[derive(Debug, Default)]
+pub struct Record {
+    track: Track<Register>,
+    last: Option<PositionReading>,
+    crc_errors: u64,
+}
+
+impl Record {
+    /// Position, speed and acceleration as lines, and what is watched.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(in crate::app) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    /// A session has begun; what was recorded before stays.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        (self.last, self.crc_errors) = (None, 0);
+        self.track.begin(began);
+    }
+
+    /// Positions are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+    }
+
+    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.track.lose(dropped);
+        for sample in samples {
+            match sample {
+                Sample::Position(reading) => self.add_position(reading),
+                Sample::Missed { at, crc_errors } => self.add_missed(at, crc_errors),
+                Sample::Watched(reading) => self.add_watched(&reading),
+            }
+        }
+    }
+
+    /// Records a position.
+    pub(super) fn add_position(&mut self, reading: PositionReading) {
+        self.add_crc_errors(reading.crc_errors);
+        let sighting = Sighting {
+            at: reading.at,
+            position: i64::try_from(reading.position()).ok(),
+            is_bad: !reading.is_valid(),
+            is_warned: reading.warning == Some(true),
+        };
+        self.track.add(sighting, &meaning(&reading));
+        self.last = Some(reading);
+    }
+
+    /// Frames came, and none with a right checksum.
+    fn add_missed(&mut self, at: Moment, crc_errors: u32) {
+        self.add_crc_errors(crc_errors);
+        let meaning = self.last.as_ref().map_or_else(|| Meaning::of_steps(None), meaning);
+        self.track.add(Sighting { at, position: None, is_bad: true, is_warned: false }, &meaning);
+    }
+
+    /// Frames with a wrong checksum came.
+    pub(super) fn add_crc_errors(&mut self, count: u32) {
+        self.crc_errors += u64::from(count);
+    }
+
+    fn add_watched(&mut self, reading: &WatchedReading) {
+        let watched = self.track.watched().into_iter().find(|own| own.address == reading.what.start());
+        let Some(register) = watched else { return };
+        let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
+        let is_absent = matches!(reading.value, Err(Error::NoSuchRegister { .. }));
+        let watching = Watching { at: reading.at, value, is_warned: false, is_absent };
+        self.track.add_watched(&register, &watching);
+    }
+
+    /// Records these registers too, and no others beside the position.
+    pub(super) fn watch(&mut self, wished: &[Register]) {
+        self.track.watch(wished);
+    }
+
+    /// The registers that are recorded beside the position.
+    pub fn watched(&self) -> Vec<Register> {
+        self.track.watched()
+    }
+
+    /// The last position.
+    pub fn last(&self) -> Option<&PositionReading> {
+        self.last.as_ref()
+    }
+
+    /// Frames with a wrong CRC since the link was opened.
+    pub fn crc_errors(&self) -> u64 {
+        self.crc_errors
+    }
+
+    /// Samples that came too fast to be recorded.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    /// Positions that are recorded.
+    pub fn positions(&self) -> u64 {
+        self.track.positions()
+    }
+
+    /// Another encoder: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        self.track.forget();
+        (self.last, self.crc_errors) = (None, 0);
+    }
+}
+
+/// What the positions of such a reading are.
+fn meaning(reading: &PositionReading) -> Meaning {
+    let bits = u32::from(reading.multiturn_bits) + u32::from(reading.singleturn_bits);
+    let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
+    Meaning::of_turns(range, 1 << reading.singleturn_bits.min(63))
+}
+
+fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
+    match register.decode(bytes)? {
+        Decoded::Scaled(value) => Some(Value::Real(value)),
+        _ => register.number(bytes).and_then(|number| i64::try_from(number).ok()).map(Value::Whole),
+    }
+}
+
+impl Watchable for Register {
+    fn is_whole(&self) -> bool {
+        !matches!(self.decoding, Decoding::Scaled { .. })
+    }
+
+    fn line(&self, group: GroupId) -> Line {
+        let name = if self.name.is_empty() { self.address.to_string() } else { self.name.clone() };
+        let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
+        let decimals = if self.is_whole() { 0 } else { 1 };
+        let heading = format!("{} {name}", self.address);
+        Line::of(group, 0, plain(&name), heading, vec![Scale { unit, factor: 1.0, decimals }])
+    }
+}

@@ -1,0 +1,78 @@
+//! What a BiSS encoder says, and what is done with it, in words.
+
+use super::memory::MemoryError;
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::protocol::biss::{EDS_TICK, EdsError, EdsValue, Feedback, Filter};
+use crate::worker::biss::BissJob;
+
+/// A job.
+pub(super) fn job(job: &BissJob) -> Text {
+    match job {
+        BissJob::Survey | BissJob::Identify => Text::new("job.survey"),
+        BissJob::Status => Text::new("job.biss_status"),
+        BissJob::Position => Text::new("job.position"),
+        BissJob::Read(range) => Text::new("job.read").with("item", range),
+        BissJob::ReadDirect => Text::new("job.read_direct"),
+        BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("{bank:02X}h")),
+        BissJob::ReadArea(area) => Text::new("job.read").with("item", &area.name),
+        BissJob::Save => Text::new("job.save"),
+    }
+}
+
+/// Why an edit was not taken.
+pub(super) fn not_edited(error: MemoryError) -> Text {
+    match error {
+        MemoryError::NotRead(at) => Text::new("registers.unread").with("address", at),
+        MemoryError::NoData(at) => Text::new("registers.no_data").with("address", at),
+    }
+}
+
+/// A filter of the position.
+pub fn filter(filter: Filter) -> Text {
+    match filter {
+        Filter::Balanced => Text::new("biss_status.balanced"),
+        Filter::Dynamic => Text::new("biss_status.dynamic"),
+        Filter::Unknown(code) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
+    }
+}
+
+/// Why a bank of the data sheet cannot be relied upon.
+pub fn sheet(error: &EdsError) -> Text {
+    match error {
+        EdsError::Checksum { expected, got, .. } => Text::new("sheet_card.bad_sum")
+            .with("expected", format!("{expected:02X}h"))
+            .with("got", format!("{got:02X}h")),
+        other => plain(other),
+    }
+}
+
+/// What a field of the data sheet says.
+pub fn eds(value: EdsValue) -> Text {
+    let text = |id| Text::new(id);
+    match value {
+        EdsValue::Number(number, "") => plain(number),
+        EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
+        EdsValue::Bank(bank) => plain(format!("{bank:02X}h")),
+        EdsValue::NotAvailable => text("eds.none"),
+        EdsValue::Ticks(ticks) => {
+            let nanoseconds = value.duration(EDS_TICK).map_or(0, |own| own.as_nanos());
+            Text::new("eds.ticks")
+                .with("ticks", ticks)
+                .with("time", format!("{}.{:02}", nanoseconds / 1000, nanoseconds % 1000 / 10))
+        }
+        EdsValue::Adaptive => text("eds.adaptive"),
+        EdsValue::NoLimit => text("eds.no_limit"),
+        EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
+        EdsValue::Polynomial(0) => text("eds.no_crc"),
+        EdsValue::Polynomial(polynomial) => plain(format!("{polynomial:X}h")),
+        EdsValue::Profile(profile) => plain(profile),
+        EdsValue::Feedback(Feedback::None) => text("eds.no_bit"),
+        EdsValue::Feedback(Feedback::Error) => text("eds.error_bit"),
+        EdsValue::Feedback(Feedback::Warning) => text("eds.warning_bit"),
+        EdsValue::Feedback(Feedback::Unknown(code)) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
+        EdsValue::EncoderType(0) => text("eds.rotary"),
+        EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
+        EdsValue::Code(code) => plain(format!("{code:X}h")),
+    }
+}

@@ -1,0 +1,271 @@
+//! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
+
+use std::time::Duration;
+
+use super::target::{assemble, entered, filled, host_and_port};
+use crate::app::{Text, explain};
+use crate::device::biss::{Echo, Station, Way};
+use crate::link::{LinkUrl, Scheme};
+use crate::protocol::biss::ByteOrder;
+
+/// How the encoder is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BissWay {
+    /// The virtual encoder in this program.
+    #[default]
+    Virtual,
+    /// Its configuration pin, over a serial line.
+    Pin,
+    /// Its bus, over an adapter.
+    Bus,
+    /// A recorded trace.
+    Replay,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BissForm {
+    /// How the encoder is reached.
+    pub way: BissWay,
+    /// The virtual encoder stands behind a virtual adapter.
+    pub behind_adapter: bool,
+    /// Over a network, and not a serial port of this machine.
+    pub network: bool,
+    /// Serial port.
+    pub port: String,
+    /// Name or address of a device server.
+    pub host: String,
+    /// Its TCP port.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Which byte of a register's number comes first on the configuration pin; `None`: find out.
+    pub order: Option<ByteOrder>,
+    /// Whether the line gives our own bytes back; unknown: find out.
+    pub echo: Echo,
+    /// The clock on the bus in hertz.
+    pub clock: String,
+    /// Milliseconds that a reply may come later than usual.
+    pub margin: String,
+    /// The virtual encoder's speed in revolutions a minute.
+    pub rpm: String,
+    /// What goes wrong with it on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+/// The parameter that puts the virtual adapter in front of the virtual encoder.
+const BRIDGE: (&str, &str) = ("bridge", "on");
+/// Begins the target of a link to an adapter in the network.
+const TCP: &str = "tcp:";
+
+impl Default for BissForm {
+    fn default() -> Self {
+        let none = String::new;
+        BissForm {
+            way: BissWay::default(),
+            behind_adapter: true,
+            network: false,
+            port: none(),
+            host: none(),
+            tcp_port: none(),
+            file: none(),
+            order: None,
+            echo: Echo::Unknown,
+            clock: none(),
+            margin: none(),
+            rpm: none(),
+            fault: none(),
+            rest: Vec::new(),
+        }
+    }
+}
+
+impl BissForm {
+    /// The virtual encoder as the window begins with it: behind an adapter, so that everything can be seen.
+    pub fn usual() -> LinkUrl {
+        let mut url = LinkUrl::sim();
+        url.query.set(BRIDGE.0, BRIDGE.1);
+        url
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let mut form = BissForm { behind_adapter: false, ..BissForm::default() };
+        let target = url.target.as_str();
+        let network = match url.scheme {
+            Scheme::Tcp => Some(target),
+            Scheme::Bridge => target.strip_prefix(TCP),
+            _ => None,
+        };
+        form.way = match url.scheme {
+            Scheme::Sim => BissWay::Virtual,
+            Scheme::Serial | Scheme::Tcp => BissWay::Pin,
+            Scheme::Bridge => BissWay::Bus,
+            Scheme::Replay => BissWay::Replay,
+        };
+        if let Some(network) = network {
+            let (host, port) = network.rsplit_once(':').unwrap_or((network, ""));
+            (form.network, form.host, form.tcp_port) = (true, host.to_owned(), port.to_owned());
+        } else if form.way == BissWay::Replay {
+            form.file = target.to_owned();
+        } else {
+            form.port = target.to_owned();
+        }
+        for (name, value) in url.query.pairs() {
+            if !form.take(name, value) {
+                form.rest.push((name.clone(), value.clone()));
+            }
+        }
+        form
+    }
+
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
+        let is_virtual = self.way == BissWay::Virtual;
+        let entry = match name {
+            "margin" => &mut self.margin,
+            "clock" => &mut self.clock,
+            "rpm" if is_virtual => &mut self.rpm,
+            "fault" if is_virtual => &mut self.fault,
+            "bridge" if is_virtual => {
+                self.behind_adapter = value == BRIDGE.1;
+                return self.behind_adapter;
+            }
+            "order" => {
+                self.order = match value {
+                    "low-first" => Some(ByteOrder::LowFirst),
+                    "high-first" => Some(ByteOrder::HighFirst),
+                    _ => return false,
+                };
+                return true;
+            }
+            "echo" => {
+                self.echo = match value {
+                    "on" => Echo::On,
+                    "off" => Echo::Off,
+                    _ => return false,
+                };
+                return true;
+            }
+            _ => return false,
+        };
+        value.clone_into(entry);
+        true
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        let (scheme, target) = self.target()?;
+        let refused = |error| Text::new("form.other").with_text("why", explain::url(&error));
+        let url = assemble(scheme, &target, &self.parameters())?.map_err(refused)?;
+        let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
+        Station::from_query(&url.query, way, Duration::ZERO).map_err(refused)?;
+        Ok(url)
+    }
+
+    /// The encoder is reached over its bus.
+    pub fn is_on_the_bus(&self) -> bool {
+        self.way == BissWay::Bus || (self.way == BissWay::Virtual && self.behind_adapter)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        let place = || {
+            if self.network {
+                host_and_port(&self.host, &self.tcp_port)
+            } else {
+                entered(&self.port, "form.port_missing")
+            }
+        };
+        Ok(match self.way {
+            BissWay::Virtual => (Scheme::Sim, String::new()),
+            BissWay::Pin if self.network => (Scheme::Tcp, place()?),
+            BissWay::Pin => (Scheme::Serial, place()?),
+            BissWay::Bus if self.network => (Scheme::Bridge, format!("{TCP}{}", place()?)),
+            BissWay::Bus => (Scheme::Bridge, place()?),
+            BissWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Vec<(String, String)> {
+        let mut parameters = Vec::new();
+        let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
+        if self.way == BissWay::Virtual {
+            if self.behind_adapter {
+                add(BRIDGE.0, BRIDGE.1);
+            }
+            // A German keyboard has a comma where the point should be.
+            filled(&self.rpm).iter().for_each(|rpm| add("rpm", &rpm.replace(',', ".")));
+            filled(&self.fault).iter().for_each(|fault| add("fault", fault));
+        }
+        if self.is_on_the_bus() {
+            filled(&self.clock).iter().for_each(|clock| add("clock", clock));
+        } else {
+            match self.order {
+                None => {}
+                Some(ByteOrder::LowFirst) => add("order", "low-first"),
+                Some(ByteOrder::HighFirst) => add("order", "high-first"),
+            }
+            match self.echo {
+                Echo::Unknown => {}
+                Echo::On => add("echo", "on"),
+                Echo::Off => add("echo", "off"),
+            }
+        }
+        filled(&self.margin).iter().for_each(|margin| add("margin", margin));
+        for (name, value) in &self.rest {
+            if parameters.iter().all(|(own, _)| own != name) {
+                parameters.push((name.clone(), value.clone()));
+            }
+        }
+        parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        for link in [
+            "sim:",
+            "sim:?bridge=on",
+            "sim:?bridge=on&rpm=-500&fault=drop:0.01",
+            "sim:?rpm=500&order=high-first&echo=on",
+            "serial:/dev/ttyUSB0",
+            "serial:COM3?order=low-first&echo=off&margin=200",
+            "tcp:192.168.0.7:4001",
+            "tcp:[::1]:4001",
+            "bridge:/dev/ttyACM0?clock=2000000",
+            "bridge:tcp:adapter:5000",
+            "replay:monday.trace",
+            "sim:?bridge=on&noise=0.1&temperature=80",
+        ] {
+            let url: LinkUrl = link.parse().unwrap();
+            assert_eq!(BissForm::from_url(&url).url().unwrap().to_string(), link);
+        }
+        assert_eq!(BissForm::usual().to_string(), "sim:?bridge=on");
+        assert_eq!(BissForm::default().url().unwrap(), BissForm::usual());
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut BissForm)| {
+            let mut form = BissForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = BissWay::Pin), "form.port_missing");
+        assert_eq!(refused(|form| form.way = BissWay::Bus), "form.port_missing");
+        assert_eq!(refused(|form| (form.way, form.network) = (BissWay::Bus, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.way = BissWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.other");
+        assert_eq!(refused(|form| (form.way, form.port) = (BissWay::Pin, "a?b".to_owned())), "form.characters");
+    }
+}

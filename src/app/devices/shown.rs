@@ -1,0 +1,46 @@
+//! Which device each tab shows.
+
+use std::collections::BTreeMap;
+
+use super::AnyDevice;
+use crate::app::studio::SessionId;
+use crate::app::tab::Tab;
+
+/// Which device each tab shows.
+#[derive(Debug, Default)]
+pub(in crate::app) struct Shown {
+    by_tab: BTreeMap<Tab, SessionId>,
+    last: Option<SessionId>,
+}
+
+impl Shown {
+    /// The device that a tab shows.
+    pub(in crate::app) fn of(&self, tab: Tab) -> Option<SessionId> {
+        self.by_tab.get(&tab).copied()
+    }
+
+    /// The device that was shown last, in whichever tab.
+    pub(in crate::app) fn last(&self) -> Option<SessionId> {
+        self.last
+    }
+
+    pub(in crate::app) fn set(&mut self, tab: Tab, id: SessionId) {
+        self.by_tab.insert(tab, id);
+        self.last = Some(id);
+    }
+
+    /// A device is gone; `left` are the others. Its tab shows the one that came last.
+    pub(in crate::app) fn remove(&mut self, left: &[AnyDevice], id: SessionId) {
+        for (tab, shown) in &mut self.by_tab {
+            if *shown == id
+                && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)
+            {
+                *shown = other.id();
+            }
+        }
+        self.by_tab.retain(|_, shown| *shown != id);
+        if self.last == Some(id) {
+            self.last = self.by_tab.values().next_back().copied();
+        }
+    }
+}

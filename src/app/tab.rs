@@ -1,0 +1,40 @@
+//! The tabs of the window.
+
+use super::connect::BissForm;
+use crate::link::LinkUrl;
+
+/// A tab of the window: a kind of device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub enum Tab {
+    /// HIPERFACE motor-feedback encoders.
+    #[default]
+    Hiperface,
+    /// BiSS C encoders.
+    Biss,
+    /// Captures of sine and cosine, whatever encoder they are from.
+    Signals,
+}
+
+impl Tab {
+    /// The tabs that show devices.
+    pub const DEVICES: [Tab; 2] = [Tab::Hiperface, Tab::Biss];
+
+    /// The name of its bus, the same in every language; `None` for a tab that shows no device.
+    pub fn bus(self) -> Option<&'static str> {
+        match self {
+            Tab::Hiperface => Some("HIPERFACE"),
+            Tab::Biss => Some("BiSS"),
+            Tab::Signals => None,
+        }
+    }
+}
+
+impl Tab {
+    /// The virtual device of its kind.
+    pub(super) fn virtual_link(self) -> LinkUrl {
+        match self {
+            Tab::Biss => BissForm::usual(),
+            Tab::Hiperface | Tab::Signals => LinkUrl::sim(),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Who the encoder is, how it is, its frame, its data sheet, the wiring.
+
+use egui::{RichText, Ui};
+
+use super::{frame, sheet, wiring};
+use crate::app::biss::{Action as Biss, Encoder, words};
+use crate::app::{Action, Text, explain};
+use crate::device::biss::{Bits, FrameSource, Identity};
+use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::{Skin, icons};
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    if encoder.identity().is_some() {
+        frame::card_ui(ui, skin, encoder, actions);
+        ui.add_space(skin.space.groups);
+    }
+    two_columns(
+        ui,
+        skin,
+        actions,
+        |ui, actions| {
+            identity(ui, skin, encoder, actions);
+            ui.add_space(skin.space.groups);
+            status(ui, skin, encoder, actions);
+            motor(ui, skin, encoder, actions);
+        },
+        |ui, _| {
+            sheet::cards_ui(ui, skin, encoder);
+            wiring::card_ui(ui, skin);
+        },
+    );
+}
+
+fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let ready = encoder.session.is_readable();
+    let read = |ui: &mut Ui| {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::Read));
+        }
+    };
+    card_with(ui, skin, "encoder_card.title", read, |ui| {
+        if let Some(identity) = encoder.identity() {
+            ui.label(skin.value(identity.description.name()));
+            ui.add_space(skin.space.inside);
+            facts(ui, skin, identity);
+        } else if let Some(identity) = encoder.profile_identity() {
+            ui.label(skin.value(&identity.description));
+            ui.add_space(skin.space.inside);
+            row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(&identity.serial_number));
+            row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.profile_id.to_string()));
+            row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
+        } else {
+            empty(ui, skin, &skin.say("encoder_card.nothing"), None);
+        }
+    });
+}
+
+fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
+    let or_none = |text: String| if text.is_empty() { skin.say("encoder_card.not_told") } else { text };
+    let serial = format!("{}  {}", identity.serial_number, crate::bits::hex(&identity.serial_bytes));
+    row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(serial.trim().to_owned())));
+    let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
+    row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
+    row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.kind.profile.to_string()));
+    row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.kind.device_id)));
+    let manufacturer = identity.kind.manufacturer;
+    let letters = manufacturer.escape_ascii().to_string();
+    let words = format!("{}  {letters}", crate::bits::hex(&manufacturer));
+    row(ui, skin, &skin.say("biss_card.manufacturer"), skin.mono(words));
+    let layout = &identity.layout;
+    let widths = Text::new("biss_card.widths")
+        .with("multiturn", layout.multiturn_bits())
+        .with("singleturn", layout.singleturn_bits())
+        .with("bits", layout.bits());
+    row(ui, skin, &skin.say("biss_card.frame"), skin.words(&widths));
+    let source = match identity.source {
+        FrameSource::DataSheet => "biss_card.from_sheet",
+        FrameSource::Description => "biss_card.from_description",
+        FrameSource::Assumed => "biss_card.assumed",
+    };
+    ui.label(skin.caption(skin.say(source)));
+    if let Some(adapter) = &identity.adapter {
+        let words = format!("{} {} · {}", adapter.name, adapter.firmware, adapter.serial);
+        row(ui, skin, &skin.say("biss_card.adapter"), words);
+    }
+    if let Some(mismatch) = &identity.mismatch {
+        let text = explain::biss::mismatch(mismatch);
+        paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+    }
+}
+
+fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let read = |ui: &mut Ui| {
+        let ready = encoder.session.is_ready();
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::ReadStatus));
+        }
+    };
+    card_with(ui, skin, "status_card.title", read, |ui| {
+        let Some(status) = &encoder.status else {
+            ui.label(skin.label(skin.say("biss_status.nothing")));
+            return;
+        };
+        let palette = skin.palette;
+        let none = [&status.errors, &status.warnings].into_iter().flatten().all(|bits| bits.set.is_empty());
+        if none && (status.errors.is_some() || status.warnings.is_some()) {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
+                ui.label(skin.say("biss_status.good"));
+            });
+        }
+        bits(ui, skin, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
+        bits(ui, skin, status.warnings.as_ref(), icons::WARNING, palette.warn);
+        if let Some(celsius) = status.celsius {
+            let words = format!("{} °C", skin.number(celsius, 0));
+            row(ui, skin, &skin.say("biss_status.temperature"), skin.mono(words));
+        }
+        if let Some(mode) = status.mode {
+            row(ui, skin, &skin.say("biss_status.mode"), mode.to_string());
+        }
+        if let Some(filter) = status.filter {
+            row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));
+        }
+        if status.protection.is_some_and(|protection| protection != 0) {
+            paragraph(ui, RichText::new(skin.say("biss_status.open")).color(palette.warn));
+        }
+    });
+}
+
+fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate::app::Rgb) {
+    for (bit, name) in bits.iter().flat_map(|bits| &bits.set) {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icon).color(colour));
+            ui.label(skin.mono(format!("b{bit}")));
+            paragraph(ui, name.clone().unwrap_or_else(|| skin.say("biss_status.unknown_bit")));
+        });
+    }
+}
+
+/// Speeds that the procedures ask for, and rest.
+const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
+
+/// What turns the virtual encoder's shaft.
+fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(motor) = &encoder.motor else { return };
+    ui.add_space(skin.space.groups);
+    card(ui, skin, "motor_card.title", |ui| {
+        paragraph(ui, skin.caption(skin.say("motor_card.words")));
+        ui.horizontal_wrapped(|ui| {
+            for rpm in SPEEDS {
+                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
+                    actions.push(Action::Biss(encoder.session.id, Biss::Turn(rpm)));
+                }
+            }
+            ui.label(skin.label(skin.say("unit.revolutions_per_minute")));
+        });
+    });
+}

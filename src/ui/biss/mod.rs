@@ -1,0 +1,114 @@
+//! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
+
+mod data;
+mod encoder;
+mod frame;
+mod registers;
+mod sheet;
+mod wiring;
+
+use egui::{ScrollArea, Ui};
+
+use super::{Skin, backups, icons};
+use crate::app::biss::Encoder;
+use crate::app::{Action, AnyDevice, Studio};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::ui) enum Page {
+    /// Who it is, how it is, its frame, and how it is wired.
+    #[default]
+    Encoder,
+    /// Registers, bank after bank.
+    Registers,
+    /// Motor and OEM data.
+    Data,
+    /// Profiles, backups and what was written.
+    Backups,
+}
+
+impl Page {
+    pub(super) const ALL: [Page; 4] = [Page::Encoder, Page::Registers, Page::Data, Page::Backups];
+
+    pub(super) fn icon(self) -> &'static str {
+        match self {
+            Page::Encoder => icons::CPU,
+            Page::Registers => icons::TABLE,
+            Page::Data => icons::MEMORY,
+            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Page::Encoder => "page.encoder",
+            Page::Registers => "page.registers",
+            Page::Data => "page.data",
+            Page::Backups => "page.backups",
+        }
+    }
+
+    pub(super) fn help(self) -> &'static str {
+        match self {
+            Page::Encoder => "help.biss_encoder",
+            Page::Registers => "help.biss_registers",
+            Page::Data => "help.biss_data",
+            Page::Backups => "help.backups",
+        }
+    }
+
+    /// It scrolls by itself; its buttons stay where they are.
+    fn is_fixed(self) -> bool {
+        matches!(self, Page::Registers | Page::Data)
+    }
+}
+
+/// What the tab remembers of one session while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(in crate::ui) struct View {
+    /// The open page.
+    pub page: Page,
+    /// The encoder that the rest is about.
+    serial_number: Option<String>,
+    registers: registers::View,
+    data: data::View,
+}
+
+impl View {
+    /// What was selected for another encoder is not for this one.
+    pub(super) fn follow(&mut self, encoder: &Encoder) {
+        let Some(own) = encoder.serial_number() else { return };
+        if self.serial_number.as_deref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.to_owned());
+    }
+}
+
+/// Draws the open page.
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
+    let frame = egui::Frame::NONE.inner_margin(margin);
+    if view.page.is_fixed() {
+        frame.show(ui, |ui| match view.page {
+            Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
+            _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
+        });
+        return;
+    }
+    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
+        frame.show(ui, |ui| match view.page {
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+            _ => encoder::page_ui(ui, skin, encoder, actions),
+        });
+    });
+}

@@ -1,0 +1,38 @@
+//! The wiring card: the pins of the kit encoder's connector, its supply and the clock.
+
+use egui::Ui;
+
+use crate::ui::Skin;
+use crate::ui::controls::{card, paragraph};
+
+/// Width of the column of pins.
+const PIN: f32 = 84.0;
+
+/// A pin of the JST BM08B-GHS, and what is on it (manual 2).
+const PINS: [(&str, &str); 8] = [
+    ("1 GND", "biss_wiring.ground"),
+    ("2 PRESET", "biss_wiring.preset"),
+    ("3 CONFIG", "biss_wiring.config"),
+    ("4 SLO+", "biss_wiring.data"),
+    ("5 SLO−", "biss_wiring.data"),
+    ("6 MA−", "biss_wiring.clock"),
+    ("7 MA+", "biss_wiring.clock"),
+    ("8 VCC", "biss_wiring.supply"),
+];
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "wiring.title", |ui| {
+        for (pin, words) in PINS {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().interact_size.y = 18.0;
+                let name = ui.label(skin.mono(pin));
+                ui.add_space((PIN - name.rect.width()).max(0.0));
+                paragraph(ui, skin.label(skin.say(words)));
+            });
+        }
+        ui.add_space(skin.space.inside);
+        for note in ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"] {
+            paragraph(ui, skin.caption(skin.say(note)));
+        }
+    });
+}

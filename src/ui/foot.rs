@@ -1,0 +1,70 @@
+//! The foot of a page where a memory is edited, whatever the device: how many edits there are, taking them back, and
+//! writing them.
+
+use egui::{RichText, Ui};
+
+use super::controls::{enabled_button, icon_button, name, primary};
+use super::{Skin, icons};
+use crate::app::session::{Phase, Source};
+use crate::app::{Action, AnyDevice, Studio, Text, Wish};
+
+/// Draws the foot.
+pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+    ui.add_space(skin.space.between);
+    let dirty = device.is_dirty();
+    ui.horizontal(|ui| {
+        if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
+            actions.push(device.wish(Wish::Undo));
+        }
+        if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
+            actions.push(device.wish(Wish::Redo));
+        }
+        if enabled_button(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
+            actions.push(device.wish(Wish::RevertAll));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if *device.phase() == Phase::Offline {
+                if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                    actions.push(device.wish(Wish::AskSave));
+                }
+                write_into(ui, skin, studio, device, actions);
+            } else {
+                let word = skin.say("memory.review");
+                let write = primary(ui, skin, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
+                if write.on_hover_text(skin.say("memory.review_hint")).clicked() {
+                    actions.push(device.wish(Wish::Review));
+                }
+            }
+            if dirty {
+                let count = device.edits();
+                let text = Text::new(match (device.source(), count) {
+                    (Source::Link(_), 1) => "memory.edited_one",
+                    (Source::Link(_), _) => "memory.edited",
+                    (Source::File { .. }, 1) => "memory.unsaved_one",
+                    (Source::File { .. }, _) => "memory.unsaved",
+                })
+                .with("count", count);
+                let words = RichText::new(skin.words(&text)).color(skin.palette.staged);
+                ui.add(egui::Label::new(words).truncate());
+            }
+        });
+    });
+}
+
+/// A profile goes into a connected device of its kind: which one is chosen here.
+fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+    let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
+    let targets: Vec<&AnyDevice> = studio.devices().iter().filter(own).collect();
+    let word = skin.say("memory.write_into");
+    ui.add_enabled_ui(!targets.is_empty(), |ui| {
+        let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
+            for target in &targets {
+                if ui.add_enabled(target.is_ready(), egui::Button::new(target.name())).clicked() {
+                    actions.push(device.wish(Wish::WriteInto(target.id())));
+                    ui.close();
+                }
+            }
+        });
+        name(menu.response, true, &word).on_disabled_hover_text(skin.say("memory.no_target"));
+    });
+}

@@ -1,0 +1,68 @@
+//! The position of a BiSS encoder, large, and the registers that are read beside it.
+
+use egui::{RichText, Ui};
+
+use super::LOW;
+use crate::app::biss::{Action as Biss, Encoder};
+use crate::app::{Action, Text};
+use crate::protocol::biss::{Register, Role};
+use crate::ui::controls::{icon_menu, paragraph, row};
+use crate::ui::{Skin, icons};
+
+pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    let reading = encoder.record.last();
+    let main = reading.map_or_else(|| "–".to_owned(), |own| skin.number(own.degrees(), 3));
+    let palette = skin.palette;
+    let colour = if encoder.session.is_polling() { palette.text } else { palette.muted };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(colour));
+        ui.label(skin.label("°"));
+        match reading {
+            Some(own) if !own.is_valid() => {
+                ui.label(RichText::new(skin.say("live.invalid")).color(palette.bad));
+            }
+            Some(own) if own.warning == Some(true) => {
+                ui.label(RichText::new(skin.say("live.warning")).color(palette.warn));
+            }
+            _ => {}
+        }
+    });
+    let Some(reading) = reading else { return };
+    if ui.available_height() < LOW {
+        // In a low window the plot needs the room.
+        let (turns, steps) = (skin.say("live.turns"), skin.say("live.step"));
+        let words = format!("{turns} {} · {steps} {} · {:X}h", reading.turns, reading.steps, reading.raw);
+        ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
+    } else {
+        row(ui, skin, &skin.say("live.turns"), skin.mono(reading.turns.to_string()));
+        row(ui, skin, &skin.say("live.step"), skin.mono(reading.steps.to_string()));
+        row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:X}h", reading.raw)));
+    }
+    let errors = encoder.record.crc_errors();
+    if errors > 0 {
+        let text = Text::new("frame_card.crc_errors").with("count", errors);
+        ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(palette.warn));
+    }
+}
+
+/// What is read beside the position: the usual registers here, any other in the register table.
+pub(super) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let word = skin.say("live.watch");
+    let Some(description) = &encoder.description else { return };
+    let watched = encoder.record.watched();
+    icon_menu(ui, icons::EYE, &word, |ui| {
+        ui.set_max_width(260.0);
+        ui.label(skin.heading(&word));
+        paragraph(ui, skin.caption(skin.say("live.watch_registers")));
+        let usual = [Role::Temperature, Role::Errors, Role::Warnings, Role::Mode];
+        let usual: Vec<Register> = usual.iter().filter_map(|role| description.with_role(*role).cloned()).collect();
+        let more = watched.iter().filter(|own| usual.iter().all(|other| other.address != own.address)).cloned();
+        for register in usual.iter().cloned().chain(more) {
+            let mut on = watched.iter().any(|own| own.address == register.address);
+            let name = if register.name.is_empty() { register.address.to_string() } else { register.name.clone() };
+            if ui.checkbox(&mut on, name).changed() {
+                actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(register), on)));
+            }
+        }
+    });
+}

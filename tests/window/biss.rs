@@ -1,0 +1,153 @@
+//! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
+
+use encoder_studio::app::biss::{Action as Biss, Encoder};
+use encoder_studio::app::connect::{Action as Connect, BissForm, BissWay};
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::{Action, Severity, Studio, Tab};
+use encoder_studio::protocol::biss::{RegisterAddress, Role};
+
+use crate::support::Desk;
+
+fn at(text: &str) -> RegisterAddress {
+    text.parse().unwrap()
+}
+
+fn is_read(studio: &Studio) -> bool {
+    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
+}
+
+/// The BiSS tab with this link, read.
+fn open(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.studio.begin(Some(link.parse().unwrap()), None);
+    desk.until("the encoder is read", is_read);
+    desk.settle();
+    desk
+}
+
+fn encoder(desk: &Desk) -> &Encoder {
+    desk.studio.biss().expect("a BiSS encoder is shown")
+}
+
+fn ask(desk: &mut Desk, action: Biss) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Biss(id, action));
+}
+
+#[test]
+fn the_virtual_encoder_is_read_over_either_way() {
+    for (link, has_bits) in [("sim:", false), ("sim:?bridge=on", true)] {
+        let desk = open(link);
+        let encoder = encoder(&desk);
+        assert!(encoder.session.is_virtual(), "{link}");
+        let identity = encoder.identity().unwrap();
+        // Manual, appendix: firmware of the newest encoder; the virtual one's serial number is 0012D687h.
+        assert_eq!((identity.serial_number.as_str(), identity.layout.bits()), ("1234567", 41), "{link}");
+        assert_eq!(encoder.session.name(), "POSITAL IXARC kit encoder · 1234567");
+        let reading = encoder.record.last().unwrap();
+        assert_eq!((reading.turns, reading.steps, reading.error.is_some()), (0x1234, 0x18000, has_bits), "{link}");
+        assert_eq!(encoder.status.as_ref().unwrap().celsius, Some(30.0));
+        assert!(desk.told(Severity::Warning).is_empty(), "{link}");
+        assert_eq!(desk.studio.settings.links(Tab::Biss), [link]);
+        assert!(desk.studio.settings.links(Tab::Hiperface).is_empty());
+    }
+}
+
+#[test]
+fn every_frame_is_shown_with_its_meaning() {
+    for link in ["sim:", "sim:?bridge=on"] {
+        let desk = open(link);
+        let lines = encoder(&desk).session.trace.lines();
+        let bare: Vec<_> = lines.iter().filter(|line| line.meaning.is_empty() && line.bytes.trim() != "00").collect();
+        assert!(lines.len() > 20 && bare.is_empty(), "{link}: {bare:?}");
+    }
+}
+
+#[test]
+fn a_bank_that_comes_in_sight_is_read_once() {
+    let mut desk = open("sim:?bridge=on");
+    let bank = encoder(&desk).table.position(Some(0x24)).unwrap();
+    assert!(encoder(&desk).wants(&encoder(&desk).table.groups()[bank]));
+    ask(&mut desk, Biss::SeeBank(Some(0x24)));
+    desk.until("the bank is read", |studio| {
+        studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x24:0x3F")).is_some())
+    });
+    let jobs = desk.studio.services.jobs().len();
+    assert!(!encoder(&desk).wants(&encoder(&desk).table.groups()[bank]));
+    ask(&mut desk, Biss::SeeBank(Some(0x24)));
+    assert_eq!(desk.studio.services.jobs().len(), jobs);
+}
+
+#[test]
+fn a_turning_shaft_keeps_its_data_to_itself() {
+    let mut desk = open("sim:?bridge=on&rpm=300");
+    ask(&mut desk, Biss::ReadArea(0x24));
+    desk.until("it is refused", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
+    assert_eq!(encoder(&desk).memory.read(at("0x24:0x00")), None);
+    desk.until("it is ready", is_read);
+    ask(&mut desk, Biss::Turn(0.0));
+    assert_eq!(encoder(&desk).motor.as_ref().unwrap().rpm(), 0.0);
+    ask(&mut desk, Biss::ReadArea(0x24));
+    desk.until("it is read", |studio| {
+        studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x43:0x3F")).is_some())
+    });
+}
+
+#[test]
+fn a_register_is_watched_beside_the_position() {
+    let mut desk = open("sim:?bridge=on&rpm=60");
+    let description = encoder(&desk).description.clone().unwrap();
+    let temperature = description.with_role(Role::Temperature).unwrap().clone();
+    ask(&mut desk, Biss::Watch(Box::new(temperature), true));
+    ask(&mut desk, Biss::Poll(Some(std::time::Duration::from_millis(5))));
+    desk.until("samples come", |studio| {
+        let record = &studio.biss().unwrap().record;
+        let watched = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
+        let history = watched.and_then(|line| record.recorder().history(line));
+        record.positions() > 50 && history.is_some_and(|history| !history.all().is_empty())
+    });
+    let recorder = encoder(&desk).record.recorder();
+    let line = recorder.lines().iter().find(|line| line.heading.contains("temperature")).unwrap();
+    let history = recorder.history(line).unwrap();
+    assert_eq!(history.sample(line.column(), history.all().start).unwrap().value.to_f64(), 30.0);
+    ask(&mut desk, Biss::Poll(None));
+}
+
+#[test]
+fn an_edit_stays_over_a_lost_link_and_a_crash() {
+    let mut desk = open("sim:?bridge=on");
+    ask(&mut desk, Biss::Put { start: at("0x24:0x10"), bytes: vec![0x5A] });
+    assert!(!encoder(&desk).is_dirty(), "nobody knows what it would replace");
+    ask(&mut desk, Biss::ReadBank(Some(0x24)));
+    desk.until("it is read", |studio| {
+        studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x24:0x10")).is_some())
+    });
+    ask(&mut desk, Biss::Put { start: at("0x24:0x10"), bytes: vec![0x5A] });
+    assert_eq!(encoder(&desk).memory.edits(), [(0x950, 0x5A)]);
+    desk.until("the draft is kept", |studio| !studio.biss().unwrap().memory.edits().is_empty());
+    desk.settle();
+    let mut desk = desk.crash();
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
+    desk.until("the edit is back", |studio| studio.biss().is_some_and(|own| own.is_dirty()));
+    assert_eq!(encoder(&desk).memory.edits(), [(0x950, 0x5A)]);
+}
+
+#[test]
+fn a_link_is_for_the_tab_that_asks_for_it() {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.connect(Connect::Open);
+    assert_eq!(desk.studio.connect.as_ref().unwrap().device, Tab::Biss);
+    let form = BissForm { way: BissWay::Pin, port: "/dev/nowhere".to_owned(), ..BissForm::default() };
+    desk.connect(Connect::EditBiss(Box::new(form)));
+    desk.connect(Connect::Connect);
+    desk.until("it cannot be opened", |studio| {
+        studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_)))
+    });
+    assert!(desk.studio.hiperface().is_none());
+    desk.act(Action::OpenVirtual);
+    desk.until("the virtual one is read", is_read);
+    assert_eq!(desk.studio.devices().len(), 2);
+}
