@@ -1,14 +1,13 @@
-//! A BiSS encoder in words: the errors of jobs with it and with the adapter, and what is said on the way.
+//! A BiSS encoder in words: the errors of jobs with it, and what is said on the way.
 
-mod adapter;
 mod damage;
 
-pub use adapter::adapter;
 pub use damage::damage;
 
-use super::{link, store};
+use super::{adapter, link, store};
 use crate::app::Text;
 use crate::device::biss::{Asked, Error};
+use crate::link::LinkError;
 use crate::protocol::biss::Mismatch;
 use crate::worker::biss::{Doing, JobError, Remark};
 
@@ -22,8 +21,15 @@ pub fn job(error: &JobError) -> Vec<Text> {
 /// The wire itself failed, so that nothing more can be asked over it: why.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error {
-        JobError::Device(Error::Link(error)) => Some(link(error)),
-        JobError::Device(_) => None,
+        JobError::Device(error) => lost(error).map(link),
+    }
+}
+
+fn lost(error: &Error) -> Option<&LinkError> {
+    match error {
+        Error::Link(error) => Some(error),
+        Error::Unclear { cause, .. } => lost(cause),
+        _ => None,
     }
 }
 
@@ -121,7 +127,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::device::biss::Damage;
     use crate::device::bridge::AdapterError;
-    use crate::link::{LinkError, LinkErrorKind};
+    use crate::link::LinkErrorKind;
     use crate::protocol::biss::{Identity, ProfileId, RegisterAddress};
 
     /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
@@ -166,7 +172,11 @@ mod tests {
     #[test]
     fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
         let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
-        assert_eq!(loss(&JobError::Device(gone)).unwrap().id(), "link.lost");
+        let address = RegisterAddress::BANK_SELECT;
+        let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };
+        for error in [gone, unclear] {
+            assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
+        }
         assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
         assert_eq!(job(&JobError::Device(Error::NeverSilent)).len(), 1);
     }

@@ -1,6 +1,7 @@
 //! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
 //! device stands in a module of its own.
 
+mod adapter;
 pub mod biss;
 mod detail;
 pub mod hiperface;
@@ -8,6 +9,7 @@ pub mod signal;
 
 use std::path::Path;
 
+pub use adapter::adapter;
 use detail::syntax;
 pub use detail::{document, logbook_problem, phrase, recording, setting, type_table, url};
 

@@ -1,7 +1,6 @@
-//! What an adapter does not do, in words.
+//! What an adapter does not do, in words, whatever bus is behind it.
 
 use crate::app::Text;
-use crate::app::explain::plain;
 use crate::device::bridge::AdapterError;
 use crate::protocol::bridge::{ErrorCode, Operation};
 
@@ -14,16 +13,16 @@ pub fn adapter(error: &AdapterError) -> Text {
         }
         AdapterError::NoBiss { name } => Text::new("adapter.no_biss").with("name", name),
         AdapterError::NoSsi { name } => Text::new("adapter.no_ssi").with("name", name),
-        AdapterError::NoAnalog { name } => Text::new("adapter.no_analog").with("name", name),
+        AdapterError::NoAnalog { name } => Text::new("adapter.no_analogue").with("name", name),
         AdapterError::Mute => Text::new("adapter.mute"),
         AdapterError::Restarted => Text::new("adapter.restarted"),
-        AdapterError::Data { cause } => Text::new("adapter.data").with_text("why", plain(cause)),
+        AdapterError::Data { cause } => Text::new("adapter.data").with("why", cause),
         AdapterError::Refused { operation, code, text } => Text::new("adapter.refused")
             .with("operation", number(*operation))
             .with_text("why", reason(*code))
             .with("text", text),
         AdapterError::Reply { operation, cause } => {
-            Text::new("adapter.reply").with("operation", number(*operation)).with_text("why", plain(cause))
+            Text::new("adapter.reply").with("operation", number(*operation)).with("why", cause)
         }
         AdapterError::Other { asked, got } => {
             Text::new("adapter.other").with("asked", number(*asked)).with("got", number(*got))
@@ -51,6 +50,7 @@ fn number(operation: Operation) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
+    use crate::protocol::bridge::BodyError;
 
     #[test]
     fn each_code_has_words_of_its_own() {
@@ -66,5 +66,26 @@ mod tests {
         said.sort();
         said.dedup();
         assert_eq!(said.len(), 16);
+    }
+
+    #[test]
+    fn what_an_adapter_lacks_and_how_its_streams_end_is_told() {
+        let name = || "box".to_owned();
+        let cause = BodyError::Operation(0x94);
+        let cases = [
+            (AdapterError::NoBiss { name: name() }, "box"),
+            (AdapterError::NoSsi { name: name() }, "box"),
+            (AdapterError::NoAnalog { name: name() }, "box"),
+            (AdapterError::Mute, "."),
+            (AdapterError::Restarted, "."),
+            (AdapterError::Data { cause }, "94h"),
+            (AdapterError::Reply { operation: Operation::Hello, cause }, "94h"),
+            (AdapterError::Other { asked: Operation::Hello, got: Operation::Supply }, "02h"),
+        ];
+        for (error, fact) in cases {
+            let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));
+            assert!(english.contains(fact) && german.contains(fact), "{english} {german}");
+            assert_ne!(english, german);
+        }
     }
 }
