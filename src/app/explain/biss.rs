@@ -54,6 +54,9 @@ pub fn encoder(error: &Error) -> Text {
         Error::WrongWidths { frames, data_bits, crc_bits } => {
             Text::new("biss.wrong_widths").with("frames", frames).with("data", data_bits).with("crc", crc_bits)
         }
+        Error::WidthsUnknown { moving } => {
+            Text::new(if *moving { "biss.widths_unknown" } else { "biss.widths_at_rest" })
+        }
         Error::NoSuchRegister { address } => Text::new("biss.no_such_register").with("address", address),
         Error::Refused { address, value, reads } => {
             let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
@@ -146,6 +149,8 @@ mod tests {
             (Error::StuckLow { tries: 5 }, vec!["SLO"]),
             (Error::StuckHigh { tries: 5 }, vec!["SLO"]),
             (Error::WrongWidths { frames: 21, data_bits: 27, crc_bits: 6 }, vec!["21", "27+6"]),
+            (Error::WidthsUnknown { moving: true }, vec!["10", "48"]),
+            (Error::WidthsUnknown { moving: false }, vec![]),
             (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
             (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "07h"]),
             (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "07h", "01h"]),

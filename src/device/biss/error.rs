@@ -91,6 +91,12 @@ pub enum Error {
         /// Bits of the checksum, as they were taken.
         crc_bits: u8,
     },
+    /// Nobody tells the widths of the frame, and no length fits.
+    #[error("no length of the frames fits their CRC")]
+    WidthsUnknown {
+        /// The frames differ: the shaft turns.
+        moving: bool,
+    },
     /// The encoder answers, and not when it is asked for this register: it has none there.
     #[error("the encoder has no register {address}")]
     NoSuchRegister {

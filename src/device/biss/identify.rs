@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use super::registers::Registers;
-use super::{Error, Master, Station};
+use super::widths::find_widths;
+use super::{Error, Master, Station, Way};
 use crate::protocol::biss::{
     Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
     RegisterAddress, Role, eds_layout,
@@ -43,6 +44,8 @@ pub enum FrameSource {
     DataSheet,
     /// The encoder's description.
     Description,
+    /// The checksum of its frames, while the shaft turned: how many bits are turns is not known.
+    Checksum,
     /// Nobody: it is taken for that of the kit encoder.
     Assumed,
 }
@@ -72,12 +75,16 @@ pub struct Sheet {
 impl Identity {
     /// Bits of the revolutions; `None` where nobody tells.
     pub fn multiturn_bits(&self) -> Option<u8> {
-        (self.source != FrameSource::Assumed).then_some(self.layout.multiturn_bits())
+        self.is_told().then_some(self.layout.multiturn_bits())
     }
 
     /// Bits within a revolution; `None` where nobody tells.
     pub fn singleturn_bits(&self) -> Option<u8> {
-        (self.source != FrameSource::Assumed).then_some(self.layout.singleturn_bits())
+        self.is_told().then_some(self.layout.singleturn_bits())
+    }
+
+    fn is_told(&self) -> bool {
+        matches!(self.source, FrameSource::DataSheet | FrameSource::Description)
     }
 }
 
@@ -121,6 +128,8 @@ pub(super) fn identify_with(
         (None, None) => FrameSource::Assumed,
     };
     station.layout = told;
+    let source = if source == FrameSource::Assumed { look_at_frames(master)? } else { source };
+    let station = master.station();
     Ok(Identity {
         mismatch: near_miss(types, &kind).filter(|_| description.identity().is_none()),
         layout: station.frame(),
@@ -133,6 +142,27 @@ pub(super) fn identify_with(
         data_sheet,
         source,
     })
+}
+
+/// Nobody tells the frame: that of the kit encoder is right where its checksum fits, and else one is looked for. Over the
+/// configuration pin nothing can be seen of it.
+fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
+    if master.station().way == Way::ConfigPin {
+        return Ok(FrameSource::Assumed);
+    }
+    match master.position() {
+        Err(Error::WrongWidths { .. }) => {}
+        Ok(_) | Err(Error::Damaged { .. }) => return Ok(FrameSource::Assumed),
+        Err(error) => return Err(error),
+    }
+    match find_widths(master) {
+        Ok(layout) => {
+            master.station().layout = Some(layout);
+            Ok(FrameSource::Checksum)
+        }
+        Err(Error::WidthsUnknown { .. }) => Ok(FrameSource::Assumed),
+        Err(error) => Err(error),
+    }
 }
 
 fn direct(address: u8) -> RegisterAddress {

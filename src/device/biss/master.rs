@@ -194,6 +194,12 @@ impl<'a> Master<'a> {
         }
     }
 
+    /// A frame of so many bits as it comes over an adapter, unchecked, right-justified.
+    pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
+        self.be_ready_for(data_bits, crc_bits)?;
+        self.ask(Asked::Position, |master| master.frame_once()).map(|(raw, _)| raw)
+    }
+
     fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         match self.station.way {
             Way::ConfigPin => self.pin_read_once(address),

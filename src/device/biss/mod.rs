@@ -16,6 +16,7 @@ mod position;
 mod registers;
 mod station;
 mod survey;
+mod widths;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};

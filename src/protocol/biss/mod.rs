@@ -13,6 +13,7 @@ mod line;
 mod procedure;
 mod single_cycle;
 mod status;
+mod widths;
 
 /// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
 pub const KIND: &str = "biss";
@@ -35,3 +36,4 @@ pub use procedure::{
 };
 pub use single_cycle::{FrameError, Layout, LayoutError, Reading};
 pub use status::{DeviceMode, ErrorRegister, Filter, Firmware, ProfileId, Temperature, WarningRegister};
+pub use widths::data_bits_of;

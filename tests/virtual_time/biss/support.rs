@@ -67,7 +67,7 @@ impl Bus {
 }
 
 impl<D: ByteDevice + 'static> Rig<D> {
-    fn with(device: D, way: Way) -> Self {
+    pub(crate) fn with(device: D, way: Way) -> Self {
         let device = Arc::new(Mutex::new(device));
         let clock = Arc::new(VirtualClock::default());
         let tap = Arc::<Mutex<Tap>>::default();

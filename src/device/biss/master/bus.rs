@@ -34,8 +34,14 @@ impl<'a> Master<'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
-    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets the bus.
+    /// As [`be_ready_for`](Self::be_ready_for), with the widths that are known.
     pub(super) fn be_ready_on_bus(&mut self) -> Result<(), Error> {
+        let layout = self.station.frame();
+        self.be_ready_for(layout.data_bits(), layout.crc_bits())
+    }
+
+    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets the bus.
+    pub(super) fn be_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         self.adapter().hello()?;
         let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
         if !hello.capabilities.has(Capabilities::BISS) {
@@ -43,8 +49,7 @@ impl<'a> Master<'a> {
         }
         let fastest = hello.max_clock_hz;
         self.switch_on()?;
-        let layout = self.station.frame();
-        self.set_bus(fastest, layout.data_bits(), layout.crc_bits())
+        self.set_bus(fastest, data_bits, crc_bits)
     }
 
     fn switch_on(&mut self) -> Result<(), Error> {
@@ -59,7 +64,7 @@ impl<'a> Master<'a> {
     }
 
     /// Sets clock and widths, where they are others than before.
-    pub(super) fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+    fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         let bus = Bus { clock_hz: self.station.clock_hz.min(fastest), data_bits, crc_bits };
         if self.station.bus == Some(bus) {
             return Ok(());
@@ -230,8 +235,9 @@ impl<'a> Master<'a> {
 
     /// Nobody answers to a register: a frame tells whether the line itself is at fault.
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
-        match (&failed, self.frame_once()) {
-            (Error::NoReply { tries, .. }, Ok(Err(Trouble::NoFrame(cause)))) => self.no_frame(cause, *tries),
+        let Error::NoReply { tries, .. } = failed else { return failed };
+        match self.frame_once() {
+            Ok(Err(Trouble::NoFrame(cause))) => self.no_frame(cause, tries),
             _ => failed,
         }
     }

@@ -1,0 +1,94 @@
+//! How long the frames of an unknown encoder are: the length with which the checksum fits again and again while the shaft
+//! turns (reference 2).
+
+use super::crc::Crc;
+
+/// Fewest and most bits of data that are tried (`U`).
+const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
+/// So many frames in a row have to fit, each with other data than the one before (`U`).
+const ENOUGH: usize = 8;
+
+/// Bits of data, without the checksum, of frames that are cut out of the first `clocked` bits behind the control bit, the
+/// last of these in bit 0. `None`: no length fits, or too few frames differ. Data that stay the same count once: with the
+/// wrong length, one frame in 64 fits by chance, and would fit as often as it is repeated.
+pub fn data_bits_of(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
+    DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
+}
+
+fn fits(frames: &[u64], clocked: u8, bits: u8, crc: &Crc) -> bool {
+    let Some(behind) = clocked.checked_sub(bits + crc.width()) else { return false };
+    let sums = |frame: u64| {
+        let data = frame.checked_shr(u32::from(behind) + u32::from(crc.width())).unwrap_or(0);
+        (data, frame.checked_shr(behind.into()).unwrap_or(0) & ((1 << crc.width()) - 1))
+    };
+    let (mut before, mut in_a_row) = (None, 0);
+    for frame in frames {
+        let (data, sum) = sums(*frame);
+        if before.replace(data) == Some(data) {
+            continue;
+        }
+        in_a_row = if u64::from(crc.of(data, bits)) == sum { in_a_row + 1 } else { 0 };
+        if in_a_row >= ENOUGH {
+            return true;
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Layout, Reading};
+    use super::*;
+    use proptest::prelude::*;
+
+    fn crc() -> Crc {
+        Crc::new(Crc::POSITION, 0, true).unwrap()
+    }
+
+    /// The first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
+    fn clocked(frame: u64, bits: u8) -> u64 {
+        frame << (64 - bits)
+    }
+
+    /// Frames of a shaft that turns by `step`.
+    fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
+        let place = |at: u32| 0x155 + at * step;
+        let reading = |at| Reading { multiturn: 3, singleturn: place(at), ..Reading::default() };
+        (0..count).map(|at| clocked(layout.emit(&reading(at)), layout.bits())).collect()
+    }
+
+    #[test]
+    fn eight_frames_that_differ_are_enough_and_seven_are_not() {
+        let kit = Layout::default();
+        let frames = turning(&kit, 7, 8);
+        assert_eq!(data_bits_of(&frames, 64, &crc()), Some(35));
+        assert_eq!(data_bits_of(&frames[..7], 64, &crc()), None);
+        let at_rest = [frames[0]; 100];
+        assert_eq!(data_bits_of(&at_rest, 64, &crc()), None);
+        let mut damaged = frames.clone();
+        damaged[4] ^= 1 << 40;
+        assert_eq!(data_bits_of(&damaged, 64, &crc()), None, "one that does not fit begins anew");
+        let [_, rest @ ..] = frames.as_slice() else { panic!() };
+        assert_eq!(data_bits_of(&[&damaged, rest, &turning(&kit, 9, 2)[1..]].concat(), 64, &crc()), Some(35));
+        let short: Vec<u64> = frames.iter().map(|frame| frame >> 24).collect();
+        assert_eq!(data_bits_of(&short, 40, &crc()), None, "not clocked far enough");
+        assert_eq!(data_bits_of(&[0; 20], 64, &crc()), None);
+        assert_eq!(data_bits_of(&[u64::MAX; 20], 64, &crc()), None);
+    }
+
+    proptest! {
+        /// High bits that stay the same do not make a shorter frame of it.
+        #[test]
+        fn any_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
+            let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();
+            let expected = layout.data_bits();
+            prop_assume!(expected <= 48);
+            prop_assert_eq!(data_bits_of(&turning(&layout, step, 12), 64, &crc()), Some(expected));
+        }
+
+        #[test]
+        fn no_frames_panic(frames: Vec<u64>, clocked: u8) {
+            let _ = data_bits_of(&frames, clocked, &crc());
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What a survey makes of a bad line, on either way: it is right, or it says what is wrong, and it ends.
+
+use std::fs;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::biss::{Echo, Error, Survey};
+use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::link::{Cancel, LinkUrl, TraceEntry, write_entry, write_header};
+use encoder_studio::store::Store;
+use encoder_studio::worker::biss::{BissJob, BissOutput, JobError, open};
+
+use super::support::{Bench, Way};
+
+const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+
+fn survey(bench: &mut Bench) -> Result<Survey, Error> {
+    match bench.run(BissJob::Survey) {
+        Ok(BissOutput::Surveyed(survey)) => Ok(*survey),
+        Ok(other) => panic!("{other:?}"),
+        Err(JobError::Device(error)) => Err(error),
+    }
+}
+
+/// All but when the position was taken.
+fn timeless(survey: Survey) -> Survey {
+    let mut survey = survey;
+    if let Some(reading) = &mut survey.status.position {
+        reading.at = Default::default();
+        reading.crc_errors = 0;
+    }
+    survey
+}
+
+#[test]
+fn a_survey_over_a_bad_line_is_right_or_an_error() {
+    let (mut right, mut failed) = (0, 0);
+    for way in WAYS {
+        let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
+        // The wire to an adapter is a cable of a metre: a packet that is lost twice is the end of a job.
+        let noises = match way {
+            Way::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
+            Way::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
+        };
+        for noise in noises {
+            for seed in 0..6 {
+                let mut bench = Bench::new(way, &format!("seed={seed}&fault={noise}"));
+                match survey(&mut bench) {
+                    Ok(survey) => {
+                        right += 1;
+                        assert_eq!(timeless(survey), truth, "{way:?} {noise}, seed {seed}");
+                    }
+                    Err(
+                        Error::NoReply { .. }
+                        | Error::Damaged { .. }
+                        | Error::Unclear { .. }
+                        | Error::Adapter(AdapterError::Silent),
+                    ) => failed += 1,
+                    Err(other) => panic!("{way:?} {noise}, seed {seed}: {other}"),
+                }
+            }
+        }
+    }
+    println!("{right} right, {failed} failed");
+    assert!(right > 30, "{right} of 48");
+}
+
+#[test]
+fn echo_and_byte_order_change_nothing_of_what_is_read() {
+    let truth = timeless(survey(&mut Bench::new(Way::ConfigPin, "")).unwrap());
+    for query in ["echo=on", "order=high-first", "echo=on&order=high-first"] {
+        let mut bench = Bench::new(Way::ConfigPin, query);
+        assert_eq!(timeless(survey(&mut bench).unwrap()), truth, "{query}");
+        let told = if query.contains("echo") { Echo::On } else { Echo::Off };
+        assert_eq!((bench.session.station().line.echo, bench.session.station().line.damaged), (told, 0));
+    }
+}
+
+/// Cut at every hundredth exchange: the error is that of silence, and it comes within ten seconds.
+#[test]
+fn silence_ends_a_survey_within_ten_seconds() {
+    for way in WAYS {
+        for frames in (0..170).step_by(17) {
+            let mut bench = Bench::new(way, "");
+            bench.tap().mute_from = Some(frames);
+            let error = survey(&mut bench).unwrap_err();
+            assert!(error.is_lost(), "{way:?} from {frames} on: {error}");
+            // A survey that is not disturbed takes half a second.
+            assert!(bench.now() < Duration::from_secs(11), "{way:?} from {frames} on: {:?}", bench.now());
+        }
+    }
+}
+
+#[test]
+fn a_link_that_is_gone_ends_everything_at_once() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        bench.tap().lost_from = Some(40);
+        assert!(matches!(survey(&mut bench), Err(Error::Link(_))));
+        assert_eq!(bench.tap().sent.len(), 41);
+    }
+}
+
+#[test]
+fn a_wish_to_end_is_heard_between_two_exchanges() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        bench.session.set_cancel(Cancel::after(60));
+        assert_eq!(survey(&mut bench), Err(Error::Cancelled));
+        assert_eq!(bench.tap().sent.len(), 60);
+    }
+}
+
+/// What was recorded answers as the encoder did.
+#[test]
+fn a_recording_of_either_way_can_be_played_again() {
+    for way in WAYS {
+        let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
+        let mut bench = Bench::new(way, "serial=4711");
+        let heard = entries.clone();
+        bench.session.watch(move |entry| heard.lock().unwrap().push(entry.clone()));
+        let truth = timeless(survey(&mut bench).unwrap());
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.trace");
+        let mut text = Vec::new();
+        write_header(&mut text).unwrap();
+        entries.lock().unwrap().iter().for_each(|entry| write_entry(&mut text, entry).unwrap());
+        fs::write(&path, text).unwrap();
+        let bridge = if way == Way::Adapter { "?bridge=on" } else { "" };
+        let url: LinkUrl = format!("replay:{}{bridge}", path.display()).parse().unwrap();
+        let mut session = open(&url, Store::at(folder.path())).unwrap();
+        let BissOutput::Surveyed(again) = session.run_inline(BissJob::Survey).unwrap() else { panic!() };
+        assert_eq!(timeless(*again), truth, "{way:?}");
+    }
+}

@@ -1,0 +1,120 @@
+//! An encoder that this program knows nothing of, behind an adapter: no data sheet, frames of other widths.
+
+use std::collections::BTreeMap;
+
+use encoder_studio::device::biss::{self as device, Error, FrameSource};
+use encoder_studio::protocol::biss::{Crc, Descriptions, Layout, Reading};
+use encoder_studio::protocol::bridge::{BissStatus, Capabilities, ErrorCode, Hello, Message, Receiver, Reply, Request};
+use encoder_studio::sim::ByteDevice;
+use encoder_studio::units::{CharacterFormat, Moment};
+
+use super::support::{Rig, Way};
+
+/// A single-turn encoder of 14 bits, and the adapter in front of it; it answers at once.
+struct Stranger {
+    layout: Layout,
+    /// Steps from one frame to the next.
+    step: u32,
+    place: u32,
+    clocked: u8,
+    direct: BTreeMap<u8, u8>,
+    receiver: Receiver,
+    inbox: Vec<u8>,
+}
+
+impl Stranger {
+    fn new(step: u32) -> Self {
+        let crc = Crc::new(Crc::POSITION, 0, true).ok();
+        let manufacturer = [(0x7E, b'X'), (0x7F, b'y')];
+        Stranger {
+            layout: Layout::new(0, 14, true, true, crc).unwrap(),
+            step,
+            place: 100,
+            clocked: 0,
+            direct: manufacturer.into_iter().collect(),
+            receiver: Receiver::default(),
+            inbox: Vec::new(),
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Message {
+        Message::Reply(match request {
+            Request::Hello => Reply::Hello(Hello {
+                capabilities: Capabilities::BISS.and(Capabilities::BISS_REGISTERS),
+                max_clock_hz: 1_000_000,
+                max_sample_hz: 0,
+                name: "test".to_owned(),
+                serial: String::new(),
+                firmware: String::new(),
+            }),
+            Request::BissConfig { clock_hz, data_bits, crc_bits, .. } => {
+                self.clocked = data_bits + crc_bits;
+                Reply::BissConfig { clock_hz }
+            }
+            Request::BissRead => {
+                self.place = (self.place + self.step) % (1 << 14);
+                let reading = Reading { singleturn: self.place, ..Reading::default() };
+                // Behind its end the line is low.
+                let bits = self.layout.bits();
+                let frame = u128::from(self.layout.emit(&reading)) << 64 >> bits >> (64 - self.clocked);
+                Reply::BissRead { t_us: 0, status: BissStatus::OK, raw: frame as u64 }
+            }
+            Request::BissRegisterRead { address, .. } => {
+                Reply::BissRegisterRead { value: self.direct.get(&address).copied().unwrap_or(0) }
+            }
+            other => {
+                let (op, text) = (other.operation().byte(), String::new());
+                return Message::Error { op, code: ErrorCode::NOT_SUPPORTED, text };
+            }
+        })
+    }
+}
+
+impl ByteDevice for Stranger {
+    fn on_bytes(&mut self, _now: Moment, bytes: &[u8]) {
+        self.receiver.push(bytes);
+        while let Some(packet) = self.receiver.next_packet() {
+            let message = self.answer(Request::parse(&packet).unwrap());
+            self.inbox.extend(message.emit(packet.seq).emit());
+        }
+    }
+
+    fn poll(&mut self, _now: Moment) -> Vec<u8> {
+        std::mem::take(&mut self.inbox)
+    }
+
+    fn poll_at(&self) -> Option<Moment> {
+        None
+    }
+
+    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
+
+    fn connect(&mut self, _now: Moment) {}
+}
+
+#[test]
+fn the_frame_of_a_turning_shaft_is_found() {
+    let mut rig = Rig::with(Stranger::new(5), Way::Adapter);
+    let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
+    assert_eq!(identity.description.name(), "BiSS C encoder");
+    assert_eq!((identity.source, identity.layout.data_bits(), identity.layout.bits()), (FrameSource::Checksum, 16, 22));
+    assert_eq!(
+        (identity.multiturn_bits(), identity.singleturn_bits()),
+        (None, None),
+        "what of it are turns is not told"
+    );
+    assert_eq!((identity.mismatch, identity.data_sheet), (None, None));
+    let reading = rig.master().position().unwrap();
+    assert_eq!((reading.turns, reading.steps), (0, rig.device().place));
+    assert_eq!((reading.error, reading.warning), (Some(false), Some(false)));
+}
+
+#[test]
+fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
+    let mut rig = Rig::with(Stranger::new(0), Way::Adapter);
+    let survey = device::survey(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
+    assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
+    assert_eq!(survey.identity.kind.manufacturer, *b"Xy");
+    let error = rig.master().position().unwrap_err();
+    assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
+}
