@@ -11,8 +11,8 @@ pub use open::open;
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::biss::{
-    self as device, Error, Identity, Master, Place, Sample, Station, identify, read_range, read_sample, read_status,
-    read_watched,
+    self as device, Error, Identity, Master, Place, Sample, Station, identify, read_registers, read_sample,
+    read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::biss::RegisterRange;
@@ -110,13 +110,9 @@ impl Device for Biss {
                 self.know(desk)?;
                 BissOutput::Position(self.master(desk).position()?)
             }
-            BissJob::Read(range) => {
-                self.know(desk)?;
-                let bytes = read_range(&mut self.master(desk), range)?;
-                BissOutput::Registers(ReadRegisters { start: range.start(), bytes })
-            }
-            BissJob::ReadDirect => self.read_all(desk, None)?,
-            BissJob::ReadBank(bank) => self.read_all(desk, Some(bank))?,
+            BissJob::Read(range) => self.read(desk, range.start(), range.count())?,
+            BissJob::ReadDirect => self.read(desk, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,
+            BissJob::ReadBank(bank) => self.read(desk, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE)?,
             BissJob::ReadArea(area) => {
                 self.know(desk)?;
                 let first = area.first;
@@ -160,15 +156,9 @@ impl Device for Biss {
 }
 
 impl Biss {
-    /// The 64 direct registers, or those of a bank.
-    fn read_all(&mut self, desk: &mut Desk, bank: Option<u8>) -> Result<BissOutput, JobError> {
+    fn read(&mut self, desk: &mut Desk, start: RegisterAddress, count: u8) -> Result<BissOutput, JobError> {
         self.know(desk)?;
-        let start = match bank {
-            None => RegisterAddress::BANK_SELECT,
-            Some(bank) => RegisterAddress::banked(bank, 0).unwrap_or(RegisterAddress::BANK_SELECT),
-        };
-        let range = RegisterRange::new(start, RegisterAddress::BANK_SIZE).unwrap_or(RegisterRange::one(start));
-        let bytes = read_range(&mut self.master(desk), range)?;
+        let bytes = read_registers(&mut self.master(desk), start, count)?;
         Ok(BissOutput::Registers(ReadRegisters { start, bytes }))
     }
 }

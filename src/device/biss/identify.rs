@@ -88,10 +88,6 @@ impl Identity {
     }
 }
 
-/// Where every BiSS C encoder has its profile, serial number, device ID and manufacturer, and the bank of its data sheet.
-const EDS_BANK: u8 = 0x41;
-const PROFILE: u8 = 0x42;
-const DEVICE_ID: u8 = 0x78;
 /// In the common bank: where the bank about the encoder is.
 const ENCODER_BANK: usize = 0x14;
 
@@ -165,13 +161,9 @@ fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     }
 }
 
-fn direct(address: u8) -> RegisterAddress {
-    RegisterAddress::direct(address).unwrap_or(RegisterAddress::BANK_SELECT)
-}
-
 fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
-    let profile = registers.read(master, direct(PROFILE), 2)?;
-    let device = registers.read(master, direct(DEVICE_ID), 8)?;
+    let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
+    let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
     let short = || Error::Unexpected("the identification is too short".to_owned());
     let profile: [u8; 2] = profile.try_into().map_err(|_| short())?;
     let device: [u8; 8] = device.try_into().map_err(|_| short())?;
@@ -209,7 +201,7 @@ fn read_data_sheet(
     if !profile.is_standard_encoder() {
         return Ok(None);
     }
-    let first = registers.read(master, direct(EDS_BANK), 1)?.first().copied().unwrap_or(0);
+    let first = registers.read(master, RegisterAddress::EDS_BANK, 1)?.first().copied().unwrap_or(0);
     let Some(common) = read_sheet(master, EdsBank::Common, first, registers)? else { return Ok(None) };
     let second = common.bytes.get(ENCODER_BANK).copied().unwrap_or(0);
     let Some(encoder) = read_sheet(master, EdsBank::Encoder, second, registers)? else { return Ok(None) };
@@ -227,8 +219,7 @@ fn read_sheet(
     bank: u8,
     registers: &mut Registers,
 ) -> Result<Option<Sheet>, Error> {
-    let Some(start) = RegisterAddress::banked(bank, 0) else { return Ok(None) };
-    let bytes = match registers.read(master, start, RegisterAddress::BANK_SIZE) {
+    let bytes = match registers.read(master, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE) {
         Ok(bytes) => bytes,
         Err(Error::NoSuchRegister { .. }) => return Ok(None),
         Err(error) => return Err(error),

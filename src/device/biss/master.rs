@@ -111,7 +111,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a register. Where the line has damaged something before, its value has to come twice.
+    /// Reads a register. Where the line has damaged something in this session, its value has to come twice.
     ///
     /// # Errors
     /// When every try failed, when there is no such register, or when the user wished an end.
@@ -154,7 +154,10 @@ impl<'a> Master<'a> {
             if self.station.way == Way::Adapter {
                 self.select_bank(address)?;
             }
-            let trouble = match self.write_once(address, value)? {
+            let trouble = match self.write_once(address, value).map_err(|error| match error {
+                Error::Link(_) | Error::NeverSilent => unclear(error),
+                error => error,
+            })? {
                 Ok(Taken::Yes) => {
                     self.station.line.recovered();
                     return Ok(());
@@ -278,6 +281,7 @@ impl<'a> Master<'a> {
 
     /// What is right about a broken line before the next try; `failed` when there is to be none.
     fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
+        self.station.noisy |= matches!(trouble, Trouble::Damage(_));
         let longest = match self.station.way {
             Way::ConfigPin => self.longest_pin_exchange(),
             Way::Adapter => self.longest_bus_exchange(),

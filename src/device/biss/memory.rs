@@ -8,9 +8,7 @@ use super::registers::Registers;
 use super::survey::look_around;
 use super::{Error, Master, PositionReading, Survey};
 use crate::profile::Unknown;
-use crate::profile::biss::{
-    Bank, BissProfile, DataImage, ListedBank, PresetSetting, ProfileIdentity, Recorded, RegisterRange,
-};
+use crate::profile::biss::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, ProfileIdentity, Recorded};
 use crate::protocol::biss::{Area, Descriptions, RegisterAddress};
 
 /// Positions that say whether the shaft stands still, and the time between two.
@@ -56,16 +54,16 @@ fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
 }
 
-/// Reads registers; those of an area of data only at standstill.
+/// Reads registers that follow each other; those of an area of data only at standstill.
 ///
 /// # Errors
 /// [`Error::Moving`], or what reading gives.
-pub fn read_range(master: &mut Master<'_>, range: RegisterRange) -> Result<Vec<u8>, Error> {
-    let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(range.start()).is_some());
+pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8) -> Result<Vec<u8>, Error> {
+    let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(start).is_some());
     if in_area {
         ensure_standstill(master)?;
     }
-    certainly(master, |master| master.read_run(range.start(), range.count().into()))
+    certainly(master, |master| master.read_run(start, count.into()))
 }
 
 /// Reads an area of data; the shaft stands still.
@@ -76,8 +74,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8))
     let mut banks = Vec::new();
     for number in area.banks() {
         told(number);
-        let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
-        let bytes = master.read_run(start, Bank::SIZE)?;
+        let bytes = master.read_run(RegisterAddress::start_of(number), Bank::SIZE)?;
         let short = || Error::Unexpected(format!("bank {number:02X}h has not 64 registers"));
         banks.push(Bank { number, bytes: bytes.try_into().map_err(|_| short())? });
     }
@@ -132,10 +129,9 @@ fn certainly<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let before = master.station().line.damaged;
     let was_sure = master.station().reads_twice();
     let value = read(master)?;
-    if was_sure || master.station().line.damaged == before { Ok(value) } else { master.thoroughly(read) }
+    if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
 }
 
 /// A profile of an encoder with these data.

@@ -23,7 +23,7 @@ pub use error::{Asked, Damage, Error};
 pub use frames::{Frame, NoReading, frames};
 pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
 pub use master::Master;
-pub use memory::{Place, ensure_standstill, profile_of, read_area, read_area_surely, read_range, save};
+pub use memory::{Place, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save};
 pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
 pub use registers::Registers;
 pub use station::{PARAMETERS, Station, Supply, Way};

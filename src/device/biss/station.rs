@@ -60,6 +60,8 @@ pub struct Station {
     pub layout: Option<Layout>,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
+    /// Replies and frames came damaged.
+    pub(super) noisy: bool,
     /// How the adapter's bus is set.
     pub(super) bus: Option<Bus>,
     /// The bank that is selected over BiSS, and when it was last sure.
@@ -113,6 +115,7 @@ impl Station {
             firmware: None,
             layout: None,
             thorough: false,
+            noisy: false,
             bus: None,
             bank: None,
             crc_errors: 0,
@@ -157,7 +160,7 @@ impl Station {
 
     /// Once is not enough: a sum lets some pairs of flipped bits through.
     pub(super) fn reads_twice(&self) -> bool {
-        self.thorough || self.line.damaged > 0
+        self.thorough || self.noisy
     }
 
     /// Whether reading a register back tells that it was written. What a command register gives back does not: the same

@@ -17,7 +17,13 @@ impl RegisterAddress {
     /// Registers of a bank, and direct ones.
     pub const BANK_SIZE: u8 = 0x40;
     /// 40h, which every encoder has: the bank of 00h…3Fh.
-    pub const BANK_SELECT: RegisterAddress = RegisterAddress(0);
+    pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
+    /// 41h, which every encoder has: the first bank of the data sheet.
+    pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
+    /// 42h and 43h, which every encoder has: the profile identification.
+    pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
+    /// 78h…7Dh, which every encoder has: the device ID; behind it the manufacturer.
+    pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
     /// A direct register, 40h…7Fh.
     pub const fn direct(address: u8) -> Option<Self> {
@@ -27,6 +33,11 @@ impl RegisterAddress {
     /// A register of a bank, 00h…3Fh.
     pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
+    }
+
+    /// The first register of a bank.
+    pub const fn start_of(bank: u8) -> Self {
+        RegisterAddress(0x40 + 0x40 * bank as u16)
     }
 
     /// By its global address; `None` beyond bank FFh.
@@ -137,6 +148,15 @@ mod tests {
             assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
         }
         assert_eq!(RegisterAddress::from_global(0x403F), RegisterAddress::banked(0xFF, 0x3F));
+        assert_eq!(Some(RegisterAddress::start_of(0xFF)), RegisterAddress::banked(0xFF, 0));
+        for (address, place) in [
+            (0x40, RegisterAddress::BANK_SELECT),
+            (0x41, RegisterAddress::EDS_BANK),
+            (0x42, RegisterAddress::PROFILE),
+            (0x78, RegisterAddress::DEVICE_ID),
+        ] {
+            assert_eq!(RegisterAddress::direct(address), Some(place));
+        }
         assert_eq!(RegisterAddress::from_global(0x4040), None);
         let last = RegisterAddress::banked(2, 0x3F).unwrap();
         assert_eq!((last.plus(0), last.plus(1)), (Some(last), None));

@@ -139,6 +139,17 @@ fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
     }
 }
 
+/// The wire goes while the write is on it.
+#[test]
+fn a_write_that_lost_its_wire_is_unclear() {
+    let mut pin = Pin::new("");
+    pin.station.order = Some(ByteOrder::LowFirst);
+    pin.tap().lost_from = Some(0);
+    let error = pin.master().write(at("0x6B"), 0x2A).unwrap_err();
+    assert!(matches!(&error, Error::Unclear { cause, .. } if matches!(**cause, Error::Link(_))), "{error}");
+    assert!(error.is_lost());
+}
+
 #[test]
 fn a_write_that_cannot_be_read_back_is_unclear() {
     let mut pin = Pin::new("");

@@ -159,7 +159,8 @@ impl<'a> Master<'a> {
                 Trouble::Damage(Damage::ControlFrame)
             }
             Err(failure) => {
-                self.station.bank = None;
+                // An adapter that was reset has to be set again.
+                (self.station.bank, self.station.bus) = (None, None);
                 return Err(failure.into());
             }
         };
@@ -194,7 +195,11 @@ impl<'a> Master<'a> {
 
     /// A frame as it comes, unchecked, and when it was taken.
     pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
-        let answered = self.adapter().ask(&Request::BissRead)?;
+        let answered = self.adapter().ask(&Request::BissRead);
+        if answered.is_err() {
+            self.station.bus = None;
+        }
+        let answered = answered?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
             return Err(unexpected("a frame", &answered.reply));
         };

@@ -154,6 +154,7 @@ impl Master<'_> {
         if heard.receiver.skipped() > 0 || heard.damage.is_some() {
             // This reply is right as far as its sum tells; the line is not.
             state.damaged += 1;
+            self.station.noisy = true;
         }
     }
 
