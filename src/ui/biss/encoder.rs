@@ -76,6 +76,7 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
+        FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
     ui.label(skin.caption(skin.say(source)));
