@@ -109,6 +109,27 @@ struct Follower {
     motion: Motion,
 }
 
+/// Positions on their way into the recorder.
+#[derive(Debug, Default)]
+struct Columns {
+    times: Vec<Time>,
+    steps: Vec<i64>,
+    speed: Vec<f64>,
+    acceleration: Vec<f64>,
+    flags: Vec<Flags>,
+}
+
+impl Columns {
+    fn push(&mut self, time: Time, steps: i64, rates: Rates, flags: Flags) {
+        self.times.push(time);
+        self.steps.push(steps);
+        // What is not known is no number, which breaks the line and counts nowhere.
+        self.speed.push(rates.speed.unwrap_or(f64::NAN));
+        self.acceleration.push(rates.acceleration.unwrap_or(f64::NAN));
+        self.flags.push(flags);
+    }
+}
+
 impl Follower {
     fn new(meaning: Meaning) -> Self {
         let unwrap = meaning.range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear);
@@ -227,15 +248,25 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Records a position.
-    pub(super) fn add(&mut self, sighting: Sighting, meaning: &Meaning) {
+    /// Records positions, one after the other.
+    pub(super) fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
         self.see(meaning);
-        let time = self.time(sighting.at);
-        let Some(word) = sighting.position else {
-            self.append(time, self.last, Rates::default(), Flags::BAD);
-            return self.lose_track();
-        };
-        self.last = word;
+        let mut columns = Columns::default();
+        for sighting in sightings {
+            self.sight(sighting, &mut columns);
+        }
+        let flags = &columns.flags;
+        let parts = [
+            Part::whole(&columns.steps).flagged(flags),
+            Part::real(&columns.speed).flagged(flags),
+            Part::real(&columns.acceleration).flagged(flags),
+        ];
+        // Their times are in order: none of them is before the newest.
+        let _ = self.recorder.append(self.positions, &columns.times, &parts);
+    }
+
+    fn sight(&mut self, sighting: &Sighting, columns: &mut Columns) {
+        let time = Time::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
             // Read on its own between two samples that are recorded already.
             return;
@@ -243,10 +274,16 @@ impl<W: Watchable> Track<W> {
         if sighting.is_bad || self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > self.apart) {
             self.lose_track();
         }
+        self.newest = Some(time);
+        let Some(word) = sighting.position else {
+            self.lose_track();
+            return columns.push(time, self.last, Rates::default(), Flags::BAD);
+        };
+        self.last = word;
         let Some(follower) = &mut self.follower else { return };
         let Some(next) = follower.unwrap.next(word).filter(|_| !sighting.is_bad) else {
             self.lose_track();
-            return self.append(time, word, Rates::default(), Flags::BAD);
+            return columns.push(time, word, Rates::default(), Flags::BAD);
         };
         if next.broken {
             follower.motion.reset();
@@ -256,7 +293,7 @@ impl<W: Watchable> Track<W> {
         if sighting.is_warned {
             flags |= Flags::WARNING;
         }
-        self.append(time, next.steps, rates, flags);
+        columns.push(time, next.steps, rates, flags);
     }
 
     /// Records these values too, and no others beside the position.
@@ -337,23 +374,8 @@ impl<W: Watchable> Track<W> {
         self.follower = Some(Follower::new(meaning.clone()));
     }
 
-    /// At a time that is not before the newest; else it is left out.
-    fn append(&mut self, time: Time, steps: i64, rates: Rates, flags: Flags) {
-        // What is not known is no number, which breaks the line and counts nowhere.
-        let (speed, acceleration) = (rates.speed.unwrap_or(f64::NAN), rates.acceleration.unwrap_or(f64::NAN));
-        let (steps, speed, acceleration, flags) = ([steps], [speed], [acceleration], [flags]);
-        let parts = [
-            Part::whole(&steps).flagged(&flags),
-            Part::real(&speed).flagged(&flags),
-            Part::real(&acceleration).flagged(&flags),
-        ];
-        if self.recorder.append(self.positions, &[time], &parts).is_ok() {
-            self.newest = Some(time);
-        }
-    }
-
     /// Samples are missing before those that come next.
-    fn gap(&mut self) {
+    pub(super) fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();
     }
@@ -370,3 +392,6 @@ impl<W: Watchable> Track<W> {
         Time::from(at).plus(self.shift)
     }
 }
+
+#[cfg(test)]
+mod tests;

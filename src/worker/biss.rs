@@ -5,6 +5,7 @@ mod open;
 
 use std::fmt;
 use std::sync::Arc;
+use std::time::Duration;
 
 pub use job::{BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key};
 pub use open::open;
@@ -29,7 +30,12 @@ pub struct Biss {
     broken: Vec<StoreError>,
     /// What turns a virtual encoder.
     motor: Option<Motor>,
+    /// Microseconds between the frames of a stream, where they are wished closer than one can ask for them.
+    streamed_us: Option<u32>,
 }
+
+/// Positions that are wished as close as this come as a stream, where there is an adapter.
+const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -65,7 +71,12 @@ impl Session<Biss> {
     ) -> Self {
         let (types, broken) = store.biss_descriptions();
         let is_virtual = motor.is_some();
-        Session::with(Biss { wire, station, types: Arc::new(types), broken, motor }, clock, store, is_virtual)
+        Session::with(
+            Biss { wire, station, types: Arc::new(types), broken, motor, streamed_us: None },
+            clock,
+            store,
+            is_virtual,
+        )
     }
 
     /// What is known about the line and the encoder.
@@ -127,8 +138,24 @@ impl Device for Biss {
         })
     }
 
+    fn pace(&mut self, desk: &mut Desk, interval: Option<Duration>) {
+        let streamed = interval.filter(|interval| *interval <= STREAMED);
+        let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
+        self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
+        if self.streamed_us.is_none()
+            && let Err(error) = self.master(desk).end_frames()
+        {
+            tracing::warn!("the adapter's stream could not be ended: {error}");
+        }
+    }
+
     fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
         self.know(desk)?;
+        if let Some(period_us) = self.streamed_us
+            && let Some(run) = self.master(desk).frames(period_us)?
+        {
+            return Ok(Sample::Frames(run));
+        }
         Ok(read_sample(&mut self.master(desk))?)
     }
 

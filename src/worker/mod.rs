@@ -64,6 +64,10 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(Tell<Self::Remark, Self::Doing>),
     ) -> Result<Self::Output, Self::Error>;
 
+    /// Samples are wished at this interval from now on, or none any more: what the device sends by itself begins with the
+    /// next sample and ends here.
+    fn pace(&mut self, _desk: &mut Desk, _interval: Option<Duration>) {}
+
     /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! A session: one wire, what is known about the device at its end, and what every job needs beside them.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use super::{Device, Event, JobId, Tell, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
@@ -79,6 +80,11 @@ impl<D: Device> Session<D> {
             Err(error) if D::is_cancelled(&error) => Event::Cancelled(id, Box::new(error)),
             Err(error) => Event::Failed(id, Box::new(error)),
         }
+    }
+
+    /// Samples are wished at this interval from now on, or none any more.
+    pub fn pace(&mut self, interval: Option<Duration>) {
+        self.device.pace(&mut self.desk, interval);
     }
 
     /// Takes a sample here and now.

@@ -66,6 +66,7 @@ impl Drop for Slot {
 fn work<D: Device>(mut bench: Bench<D>) {
     let mut agenda = Agenda::default();
     let mut known = 0;
+    let mut paced = None;
     let mut lost = false;
     let mut next_check = Instant::now() + CHECK;
     loop {
@@ -78,15 +79,19 @@ fn work<D: Device>(mut bench: Bench<D>) {
                 next_check = Instant::now() + CHECK;
                 continue;
             }
-            Err(TryRecvError::Disconnected) => return,
+            Err(TryRecvError::Disconnected) => break,
             Err(TryRecvError::Empty) => {}
         }
         bench.outbox.flush_late();
         if let Some(watches) = bench.watches.news(&mut known) {
             agenda.watch(watches);
         }
+        let polling = bench.live.polling();
+        if std::mem::replace(&mut paced, polling) != polling {
+            bench.session.pace(polling);
+        }
         let now = Instant::now();
-        let due = agenda.next(bench.live.polling(), now);
+        let due = agenda.next(polling, now);
         if let Some((at, due)) = &due
             && *at <= now
         {
@@ -107,6 +112,9 @@ fn work<D: Device>(mut bench: Bench<D>) {
         let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
         let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);
         bench.wait(until.saturating_duration_since(Instant::now()));
+    }
+    if paced.is_some() {
+        bench.session.pace(None);
     }
 }
 

@@ -8,10 +8,16 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
-use crate::device::biss::{Error, PositionReading, Sample, WatchedReading};
+use crate::device::biss::{Error, FrameRun, PositionReading, Sample, WatchedReading};
 use crate::protocol::biss::{Decoded, Decoding, Register};
 use crate::signal::history::Value;
-use crate::units::Moment;
+
+/// Positions of the same widths that came one after the other.
+#[derive(Default)]
+struct Batch {
+    widths: Option<(u8, u8)>,
+    sightings: Vec<Sighting>,
+}
 
 /// The recorder of an encoder, and what it said last.
 #[derive(Debug, Default)]
@@ -19,6 +25,7 @@ pub struct Record {
     track: Track<Register>,
     last: Option<PositionReading>,
     crc_errors: u64,
+    lost: u64,
 }
 
 impl Record {
@@ -44,33 +51,95 @@ impl Record {
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.track.lose(dropped);
+        // Thousands a second, with the same widths: recorded together.
+        let mut batch = Batch::default();
         for sample in samples {
             match sample {
-                Sample::Position(reading) => self.add_position(reading),
-                Sample::Missed { at, crc_errors } => self.add_missed(at, crc_errors),
+                Sample::Position(reading) => {
+                    self.see(&reading, &mut batch);
+                }
+                Sample::Missed { at, crc_errors } => {
+                    self.add_crc_errors(crc_errors);
+                    batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                }
+                Sample::Frames(run) => self.see_frames(&run, &mut batch),
                 Sample::Watched(reading) => self.add_watched(&reading),
             }
         }
+        self.keep(&mut batch);
     }
 
     /// Records a position.
     pub(super) fn add_position(&mut self, reading: PositionReading) {
+        let mut batch = Batch::default();
+        self.see(&reading, &mut batch);
+        self.keep(&mut batch);
+    }
+
+    fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
         self.add_crc_errors(reading.crc_errors);
+        let widths = (reading.multiturn_bits, reading.singleturn_bits);
+        if batch.widths.is_some_and(|own| own != widths) {
+            self.keep(batch);
+        }
+        batch.widths = Some(widths);
         let sighting = Sighting {
             at: reading.at,
             position: i64::try_from(reading.position()).ok(),
             is_bad: !reading.is_valid(),
             is_warned: reading.warning == Some(true),
         };
-        self.track.add(sighting, &meaning(&reading));
-        self.last = Some(reading);
+        batch.sightings.push(sighting);
+        self.last = Some(*reading);
     }
 
-    /// Frames came, and none with a right checksum.
-    fn add_missed(&mut self, at: Moment, crc_errors: u32) {
-        self.add_crc_errors(crc_errors);
-        let meaning = self.last.as_ref().map_or_else(|| Meaning::of_steps(None), meaning);
-        self.track.add(Sighting { at, position: None, is_bad: true, is_warned: false }, &meaning);
+    /// What an adapter streams; frames that are missing are told and never joined.
+    fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
+        if run.is_broken_off() {
+            self.keep(batch);
+            self.track.gap();
+        }
+        self.lost += run.lost;
+        self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
+        let widths = (run.multiturn_bits, run.singleturn_bits);
+        if batch.widths.is_some_and(|own| own != widths) {
+            self.keep(batch);
+        }
+        batch.widths = Some(widths);
+        for (at, frame) in run.timed() {
+            let Ok(reading) = frame else {
+                batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                continue;
+            };
+            let raw = run.position(reading);
+            batch.sightings.push(Sighting {
+                at,
+                position: i64::try_from(raw).ok(),
+                is_bad: reading.error,
+                is_warned: reading.warning,
+            });
+            self.last = Some(PositionReading {
+                at,
+                raw,
+                turns: reading.multiturn,
+                steps: reading.singleturn,
+                error: Some(reading.error),
+                warning: Some(reading.warning),
+                crc_errors: 0,
+                multiturn_bits: run.multiturn_bits,
+                singleturn_bits: run.singleturn_bits,
+            });
+        }
+    }
+
+    fn keep(&mut self, batch: &mut Batch) {
+        if batch.sightings.is_empty() {
+            return;
+        }
+        let before = self.last.as_ref().map(|own| (own.multiturn_bits, own.singleturn_bits));
+        let meaning = batch.widths.or(before).map_or_else(|| Meaning::of_steps(None), meaning);
+        self.track.add(&batch.sightings, &meaning);
+        *batch = Batch::default();
     }
 
     /// Frames with a wrong checksum came.
@@ -107,9 +176,9 @@ impl Record {
         self.crc_errors
     }
 
-    /// Samples that came too fast to be recorded.
+    /// Samples that came too fast to be recorded, and frames that an adapter could not send.
     pub fn dropped(&self) -> u64 {
-        self.track.dropped()
+        self.track.dropped().saturating_add(self.lost)
     }
 
     /// Positions that are recorded.
@@ -124,11 +193,10 @@ impl Record {
     }
 }
 
-/// What the positions of such a reading are.
-fn meaning(reading: &PositionReading) -> Meaning {
-    let bits = u32::from(reading.multiturn_bits) + u32::from(reading.singleturn_bits);
-    let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
-    Meaning::of_turns(range, 1 << reading.singleturn_bits.min(63))
+/// What positions of such widths are, multiturn and singleturn.
+fn meaning((multiturn, singleturn): (u8, u8)) -> Meaning {
+    let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
+    Meaning::of_turns(range, 1 << singleturn.min(63))
 }
 
 fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {

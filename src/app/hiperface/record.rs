@@ -53,11 +53,11 @@ impl Record {
                         is_bad: !reading.valid,
                         is_warned: !reading.codes.is_empty(),
                     };
-                    self.track.add(sighting, &meaning);
+                    self.track.add(&[sighting], &meaning);
                     (self.last, self.refused) = (Some(reading), false);
                 }
                 Sample::NoPosition { at, .. } => {
-                    self.track.add(Sighting { at, position: None, is_bad: true, is_warned: false }, &meaning);
+                    self.track.add(&[Sighting { at, position: None, is_bad: true, is_warned: false }], &meaning);
                     self.refused = true;
                 }
                 Sample::Watched(reading) => self.track.add_watched(&reading.what, &watching(&reading)),

@@ -1,7 +1,11 @@
 //! The frames of a stream, each with its checksum looked at: what a reading says, or why there is none.
 
+use std::time::Duration;
+
+use crate::device::bridge::Portion;
 use crate::protocol::biss::{FrameError, Layout, Reading};
 use crate::protocol::bridge::{BissData, BissStatus};
+use crate::units::Moment;
 
 /// Why a frame of a stream has no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,6 +23,58 @@ pub enum NoReading {
 
 /// A frame of a stream.
 pub type Frame = Result<Reading, NoReading>;
+
+/// Frames of a stream that follow each other at equal distances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameRun {
+    /// Number of the first, counted from the start of the stream; what is missing counts.
+    pub first: u64,
+    /// When that was taken.
+    pub at: Moment,
+    /// Nanoseconds from one to the next.
+    pub period_ns: i64,
+    /// Frames that are missing before it.
+    pub lost: u64,
+    /// The frames, one at least.
+    pub frames: Vec<Frame>,
+    /// Bits of the revolutions, 0…32.
+    pub multiturn_bits: u8,
+    /// Bits within a revolution, 0…32.
+    pub singleturn_bits: u8,
+}
+
+impl FrameRun {
+    /// What came in a packet.
+    pub(super) fn new(portion: &Portion, frames: Vec<Frame>, layout: &Layout) -> Self {
+        let Portion { first, time, period_ns, lost, .. } = *portion;
+        // Not before the stream began.
+        let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
+        let (multiturn_bits, singleturn_bits) = (layout.multiturn_bits(), layout.singleturn_bits());
+        FrameRun { first, at, period_ns, lost, frames, multiturn_bits, singleturn_bits }
+    }
+
+    /// It does not join what was there before: a stream begins, or frames are missing.
+    pub const fn is_broken_off(&self) -> bool {
+        self.first == self.lost || self.lost > 0
+    }
+
+    /// Each frame with the moment in which it was taken.
+    pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
+        let period = Duration::from_nanos(self.period_ns.unsigned_abs());
+        (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
+    }
+
+    /// Revolutions and place of a reading as one number of steps.
+    pub fn position(&self, reading: &Reading) -> u64 {
+        u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
+    }
+
+    /// Frames with a wrong checksum.
+    pub fn crc_errors(&self) -> usize {
+        let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
+        self.frames.iter().filter(is_wrong).count()
+    }
+}
 
 /// What the frames of a packet say.
 pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {

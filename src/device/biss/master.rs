@@ -4,6 +4,7 @@
 //! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
 
 mod bus;
+mod stream;
 mod ubicom;
 
 use std::sync::Arc;

@@ -20,7 +20,7 @@ mod widths;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};
-pub use frames::{Frame, NoReading, frames};
+pub use frames::{Frame, FrameRun, NoReading, frames};
 pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
 pub use master::Master;
 pub use memory::{Place, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save};

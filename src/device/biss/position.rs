@@ -1,6 +1,6 @@
 //! The position as a person or a plot takes it, and registers that are watched beside it.
 
-use super::{Damage, Error, Master};
+use super::{Damage, Error, FrameRun, Master};
 use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{Layout, Reading};
 use crate::units::Moment;
@@ -72,6 +72,8 @@ pub enum Sample {
         /// How many there were, with those before that were asked again.
         crc_errors: u32,
     },
+    /// Frames that an adapter streams.
+    Frames(FrameRun),
     /// Registers that are watched beside the position.
     Watched(WatchedReading),
 }

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::device::bridge::AdapterState;
+use crate::device::bridge::flow::Flow;
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
 use crate::protocol::ubicom::REPLY_TIME_OUT;
+use crate::signal::Time;
 use crate::units::Moment;
 
 /// Link parameters that describe the line and the encoder.
@@ -70,6 +72,10 @@ pub struct Station {
     pub(super) crc_errors: u32,
     /// A frame with these widths had a right checksum.
     pub(super) good_frames: bool,
+    /// The stream that the adapter sends.
+    pub(super) flow: Option<Flow>,
+    /// The last frame of the streams before.
+    pub(super) streamed_until: Option<Time>,
 }
 
 /// The encoder's supply as an adapter gives it.
@@ -120,6 +126,8 @@ impl Station {
             bank: None,
             crc_errors: 0,
             good_frames: false,
+            flow: None,
+            streamed_until: None,
         }
     }
 
@@ -151,6 +159,11 @@ impl Station {
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
+    }
+
+    /// The adapter is asked anew who it is, and set anew.
+    pub(super) fn forget_adapter(&mut self) {
+        (self.adapter, self.bus, self.flow) = (AdapterState::default(), None, None);
     }
 
     /// Takes the number of frames with a wrong checksum since the last reading.

@@ -45,8 +45,11 @@ pub(in crate::device) struct Flow {
     next: u64,
     /// Samples that are missing before the next.
     missing: u64,
-    begun_at: Moment,
+    /// No sample is from before this.
+    not_before: Time,
     heard_at: Moment,
+    /// The last sample.
+    last: Option<Time>,
     /// How far the adapter's clock is behind ours, in nanoseconds.
     behind_ns: Option<i128>,
 }
@@ -83,13 +86,17 @@ impl Streamed {
 }
 
 impl Flow {
-    /// Starts a stream.
+    /// Starts a stream, whose samples are later than `after`.
     ///
     /// # Errors
     /// See [`AdapterError`]; one that is refused as busy runs already.
-    pub(in crate::device) fn begin(adapter: &mut Adapter<'_, '_>, streamed: Streamed) -> Result<Self, Failure> {
+    pub(in crate::device) fn begin(
+        adapter: &mut Adapter<'_, '_>,
+        streamed: Streamed,
+        after: Option<Time>,
+    ) -> Result<Self, Failure> {
         let request = streamed.start();
-        let begun_at = adapter.line.now();
+        let begun_at = Time::from(adapter.line.now());
         let answered = match adapter.ask_once(&request)? {
             Some(answered) => answered,
             // It may run for all that: who asks twice would be told that it is busy.
@@ -110,10 +117,21 @@ impl Flow {
             continuity: Continuity::at_start(),
             next: 0,
             missing: 0,
-            begun_at,
+            not_before: after.map_or(begun_at, |after| begun_at.max(after.plus(1))),
             heard_at: adapter.line.now(),
+            last: None,
             behind_ns: None,
         })
+    }
+
+    /// What it streams.
+    pub(in crate::device) const fn streamed(&self) -> Streamed {
+        self.streamed
+    }
+
+    /// When the last sample was taken that has come.
+    pub(in crate::device) const fn last(&self) -> Option<Time> {
+        self.last
     }
 
     /// Nanoseconds from one sample to the next, as the adapter has set it.
@@ -160,7 +178,7 @@ impl Flow {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(in crate::device) fn end(self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
+    pub(in crate::device) fn end(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 
@@ -202,14 +220,13 @@ impl Flow {
             Data::Biss(data) => data.t0_us,
             Data::Analog(data) => data.t0_us,
         };
+        // Microseconds since the adapter started may be more than nanoseconds can be counted.
         let own = i128::from(t0_us) * 1000;
-        let begun_at = nanoseconds(self.begun_at);
-        let lasts = i128::from(self.period_ns) * (count as i128 - 1);
-        let behind = *self.behind_ns.get_or_insert_with(|| (nanoseconds(now) - lasts).max(begun_at) - own);
-        Time::from_nanoseconds(i64::try_from(own + behind).unwrap_or(i64::MAX))
+        let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
+        let latest = Time::from(now).plus(lasts.saturating_neg()).max(self.not_before);
+        let behind = *self.behind_ns.get_or_insert_with(|| i128::from(latest.nanoseconds()) - own);
+        let time = Time::from_nanoseconds(i64::try_from(own + behind).unwrap_or(i64::MAX));
+        self.last = Some(time.plus(lasts));
+        time
     }
-}
-
-fn nanoseconds(moment: Moment) -> i128 {
-    i128::try_from(moment.since_start().as_nanos()).unwrap_or(i128::MAX)
 }

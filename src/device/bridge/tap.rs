@@ -123,7 +123,7 @@ impl Tap {
             }
             _ => return Err(TapError::from(Failure::from(other(request.operation(), &answered.reply)))),
         };
-        let flow = Flow::begin(&mut adapter, streamed)?;
+        let flow = Flow::begin(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();
         self.flow = Some(flow);
         Ok(Streaming { hello, period_ns, full_scale_microvolt })

@@ -4,5 +4,6 @@ mod adapter;
 mod faults;
 mod jobs;
 mod master;
+mod streams;
 mod support;
 mod unknown;

@@ -30,7 +30,7 @@ pub(in super::super) enum NoFrame {
 }
 
 impl<'a> Master<'a> {
-    fn adapter(&mut self) -> Adapter<'_, 'a> {
+    pub(super) fn adapter(&mut self) -> Adapter<'_, 'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
@@ -42,6 +42,7 @@ impl<'a> Master<'a> {
 
     /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets the bus.
     pub(super) fn be_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+        self.end_frames()?;
         self.adapter().hello()?;
         let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
         if !hello.capabilities.has(Capabilities::BISS) {

@@ -1,0 +1,75 @@
+//! Frames without being asked: while a stream runs, the adapter has no time for anything else, so that whatever comes next
+//! ends it first.
+
+use std::time::Duration;
+
+use super::Master;
+use crate::device::biss::frames::{FrameRun, frames};
+use crate::device::biss::station::Way;
+use crate::device::biss::{Error, Station};
+use crate::device::bridge::Adapter;
+use crate::device::bridge::flow::{Flow, Streamed};
+use crate::protocol::bridge::Data;
+
+/// A wish to end is heard so often.
+const SLICE: Duration = Duration::from_millis(20);
+
+impl Master<'_> {
+    /// The next frames of a stream whose frames are so many microseconds apart, or as close as the adapter can; begins it
+    /// where it does not run. `None` over the configuration pin, which has no streams.
+    ///
+    /// # Errors
+    /// As for a [`position`](Self::position) when it begins; then the adapter's, or the user's wish, with which the stream
+    /// goes on.
+    pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
+        if self.station.way != Way::Adapter {
+            return Ok(None);
+        }
+        let streamed = Streamed::Biss { period_us };
+        if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
+            // It also tells whether the wires and the widths are right.
+            self.position()?;
+            let after = self.station.streamed_until;
+            self.station.flow = Some(Flow::begin(&mut self.adapter(), streamed, after)?);
+        }
+        loop {
+            let until = self.now() + SLICE;
+            let Station { line: state, adapter, flow, .. } = &mut *self.station;
+            let Some(flow) = flow else { return Ok(None) };
+            let mut host = Adapter { line: &mut self.line, state, adapter };
+            let portion = match flow.next(&mut host, until) {
+                Ok(portion) => portion,
+                Err(failure) => return Err(self.stream_failed(failure.into())),
+            };
+            if let Some(portion) = portion
+                && let Data::Biss(data) = &portion.data
+            {
+                let layout = self.station.frame();
+                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), &layout)));
+            }
+        }
+    }
+
+    /// Ends the stream that runs, also where an end is wished.
+    ///
+    /// # Errors
+    /// The adapter's; then it is tried again before whatever comes next.
+    pub fn end_frames(&mut self) -> Result<(), Error> {
+        let Some(flow) = self.station.flow.take() else { return Ok(()) };
+        self.station.streamed_until = flow.last().or(self.station.streamed_until);
+        let ended = self.shielded(|master| flow.end(&mut master.adapter()));
+        if ended.is_err() {
+            self.station.flow = Some(flow);
+        }
+        Ok(ended?)
+    }
+
+    /// A stream that failed is over, at the adapter too where that can be told.
+    fn stream_failed(&mut self, error: Error) -> Error {
+        if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
+            // Who starts anew says HELLO, which ends all streams.
+            self.station.forget_adapter();
+        }
+        error
+    }
+}

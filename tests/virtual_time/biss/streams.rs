@@ -1,0 +1,170 @@
+//! Positions closer than one can ask for them: the adapter streams them, and is told to end before anything else.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::biss::{Error, FrameRun, Sample, Station};
+use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::link::{Clock, VirtualClock};
+use encoder_studio::profile::biss::RegisterRange;
+use encoder_studio::protocol::bridge::{Operation, Receiver};
+use encoder_studio::sim::ByteDevice;
+use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::store::Store;
+use encoder_studio::units::Moment;
+use encoder_studio::worker::biss::{Biss, BissJob, JobError};
+use encoder_studio::worker::{Session, Watched};
+
+use super::support::{Way, at, pairs};
+use crate::support::{MARGIN, Tap, TestLink};
+
+const FAST: Duration = Duration::from_micros(50);
+
+struct Stand {
+    clock: Arc<VirtualClock>,
+    adapter: Arc<Mutex<Adapter>>,
+    tap: Arc<Mutex<Tap>>,
+    session: Session<Biss>,
+    _folder: tempfile::TempDir,
+}
+
+/// An encoder behind an adapter, whose bus is clocked fast enough for 20 000 frames a second.
+fn stand(query: &str) -> Stand {
+    let folder = tempfile::tempdir().unwrap();
+    let clock = Arc::new(VirtualClock::default());
+    let tap = Arc::<Mutex<Tap>>::default();
+    let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
+    let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
+    let mut station = Station::new(Way::Adapter, MARGIN);
+    station.clock_hz = 2_000_000;
+    let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
+    Stand { clock, adapter, tap, session, _folder: folder }
+}
+
+impl Stand {
+    fn run(&mut self) -> FrameRun {
+        match self.session.sample().unwrap() {
+            Sample::Frames(run) => run,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// All that is streamed within so much time.
+    fn runs(&mut self, time: Duration) -> Vec<FrameRun> {
+        let end = self.clock.now() + time;
+        let mut runs = Vec::new();
+        while self.clock.now() < end {
+            runs.push(self.run());
+        }
+        runs
+    }
+
+    /// Bytes that the adapter sends within a second by itself.
+    fn sends_by_itself(&mut self) -> usize {
+        let mut adapter = self.adapter.lock().unwrap();
+        let mut bytes = |milliseconds| {
+            self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
+            adapter.poll(self.clock.now()).len()
+        };
+        bytes(10);
+        (0..1000).map(|_| bytes(1)).sum()
+    }
+
+    /// How many requests of an operation were sent.
+    fn count(&self, operation: Operation) -> usize {
+        let mut receiver = Receiver::default();
+        self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
+        std::iter::from_fn(|| receiver.next_packet()).filter(|packet| packet.op == operation.byte()).count()
+    }
+}
+
+/// Numbers and times go on, and the position as the shaft turns: 50 revolutions a second are 327.68 steps a frame.
+fn check(runs: &[FrameRun]) {
+    let first = &runs[0];
+    let mut before: Option<(Moment, u64)> = None;
+    let mut next = first.first;
+    for run in runs {
+        assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
+        next = run.first + run.frames.len() as u64;
+        for (moment, frame) in run.timed() {
+            let position = run.position(&frame.unwrap());
+            if let Some((earlier, from)) = before {
+                assert_eq!(moment.since(earlier), FAST);
+                assert!((327..=328).contains(&(position - from)), "{from} to {position}");
+            }
+            before = Some((moment, position));
+        }
+    }
+}
+
+#[test]
+fn what_is_wished_closer_than_one_can_ask_is_streamed() {
+    let mut stand = stand("rpm=3000&position=0");
+    stand.session.pace(Some(FAST));
+    let runs = stand.runs(Duration::from_secs(3));
+    check(&runs);
+    assert!(runs[0].is_broken_off() && runs[1..].iter().all(|run| !run.is_broken_off()));
+    // What was sampled last may still be on its way.
+    let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
+    let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
+    assert!(frames > 50_000 && (streamed - 200..=streamed + 1).contains(&frames), "{frames} of {streamed}");
+    assert_eq!(stand.count(Operation::BissStream), 1);
+    stand.session.pace(None);
+    assert_eq!(stand.sends_by_itself(), 0);
+}
+
+#[test]
+fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
+    let mut stand = stand("rpm=3000&position=0");
+    stand.session.pace(Some(FAST));
+    let mut last = None;
+    for round in 0..3 {
+        let runs = stand.runs(Duration::from_millis(200));
+        check(&runs);
+        let begin = runs[0].at;
+        assert!(runs[0].is_broken_off() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
+        last = runs.last().and_then(|run| run.timed().last()).map(|(at, _)| at);
+        stand.session.run_inline(BissJob::Status).unwrap();
+        let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
+        assert!(matches!(watched, Watched::Sample(Sample::Watched(_))));
+    }
+    stand.session.pace(Some(Duration::from_millis(5)));
+    assert!(matches!(stand.session.sample(), Ok(Sample::Position(_))), "slow enough to be asked");
+    assert_eq!(stand.sends_by_itself(), 0);
+    stand.session.pace(Some(FAST));
+    stand.run();
+    stand.session.pace(Some(FAST * 2));
+    assert_eq!(stand.run().period_ns, 100_000, "another pace is another stream");
+}
+
+#[test]
+fn frames_that_are_damaged_or_do_not_come_are_told() {
+    let mut noisy = stand("noise=0.05&seed=2");
+    noisy.session.pace(Some(FAST));
+    let runs = noisy.runs(Duration::from_secs(1));
+    let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
+    let wrong: usize = runs.iter().map(FrameRun::crc_errors).sum();
+    assert!((0.04..0.06).contains(&(wrong as f64 / frames as f64)), "{wrong} of {frames}");
+    let mut open = stand("line=open");
+    open.session.pace(Some(FAST));
+    let error = open.session.sample().unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::NoAcknowledge { .. })), "{error}");
+}
+
+#[test]
+fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
+    let mut stand = stand("rpm=60");
+    stand.session.pace(Some(FAST));
+    stand.run();
+    let sent = stand.tap.lock().unwrap().sent.len();
+    stand.tap.lock().unwrap().mute_from = Some(0);
+    let error = stand.session.sample().unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
+    assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
+    stand.tap.lock().unwrap().mute_from = None;
+    // The stream is told to end with HELLO.
+    assert!(stand.run().is_broken_off());
+    assert_eq!(stand.count(Operation::Hello), 2);
+    stand.tap.lock().unwrap().unplugged = true;
+    assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
+}
