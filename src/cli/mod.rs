@@ -11,6 +11,7 @@ mod kind;
 mod number;
 mod output;
 mod ports;
+mod positions;
 mod profiles;
 mod runner;
 mod simulate;

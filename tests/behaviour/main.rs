@@ -4,6 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss_reading;
 mod biss_simulate;
 mod cli_actions;
 mod cli_analyse;

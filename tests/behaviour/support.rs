@@ -88,6 +88,23 @@ impl Bench {
         self.on_terminal("encoder.py", "serial:", arguments)
     }
 
+    /// Starts a foreign kit encoder with UBICOM; `None`, and a line that says so, where that is not possible.
+    pub(crate) fn kit(&self, arguments: &[&str]) -> Option<Foreign> {
+        self.on_terminal("ubicom_encoder.py", "serial:", arguments)
+    }
+
+    /// Starts a foreign adapter on a pseudo-terminal, with the kit encoder behind it.
+    pub(crate) fn adapter_on_terminal(&self, arguments: &[&str]) -> Option<Foreign> {
+        self.on_terminal("bridge_adapter.py", "bridge:", arguments)
+    }
+
+    /// Starts a foreign adapter on a TCP port, with the kit encoder behind it.
+    pub(crate) fn adapter(&self, arguments: &[&str]) -> Option<Foreign> {
+        let mut foreign = self.foreign("bridge_adapter.py", arguments)?;
+        foreign.url = format!("bridge:tcp:{}", foreign.place);
+        Some(foreign)
+    }
+
     fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.load(Ordering::SeqCst);
         let link = self.file(&format!("enc{number}"));
@@ -214,6 +231,11 @@ impl Foreign {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
         text.lines().map(str::to_owned).collect()
+    }
+
+    /// Registers written since the last time: `0x24:0x10 AA`.
+    pub(crate) fn registers_written(&self) -> Vec<String> {
+        self.requests().iter().filter_map(|line| line.strip_prefix("W ")).map(str::to_owned).collect()
     }
 
     /// Requests that write, of those since the last time.

@@ -1,14 +1,17 @@
 //! The commands for BiSS encoders.
 
 mod decode;
+mod inspect;
+mod profiles;
+mod run;
 mod words;
 
-use super::args::Simulate;
+use super::args::{Common, Position, Save, Simulate};
 use super::kind::Kind;
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
-use crate::profile::biss::{ProfileIdentity, compare};
+use crate::profile::biss::{ItemError, ProfileIdentity, RegisterRange, compare};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::protocol::biss::KIND;
 use crate::protocol::ubicom;
@@ -23,8 +26,32 @@ impl Kind for Biss {
         KIND
     }
 
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        inspect::identify(common, output)
+    }
+
+    fn status(&self, common: &Common, output: &Output) -> Result {
+        inspect::status(common, output)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        inspect::position(common, output, position)
+    }
+
+    fn read(&self, common: &Common, output: &Output, item: &str) -> Result {
+        inspect::read(common, output, item)
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
     fn decode(&self, output: &Output, words: &[String]) -> Result {
         decode::decode(output, words)
+    }
+
+    fn present(&self, common: &Common, _output: &Output) -> Result<Body> {
+        profiles::present(common)
     }
 
     fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
@@ -61,4 +88,9 @@ impl Simulated for bridge::Adapter {
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
+}
+
+/// The registers that a user names.
+fn item(text: &str) -> Result<RegisterRange> {
+    text.parse().map_err(|error: ItemError| Failure::Usage(error.to_string()))
 }

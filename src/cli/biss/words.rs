@@ -2,7 +2,8 @@
 
 use std::sync::LazyLock;
 
-use crate::protocol::biss::{Decoded, Description, Descriptions, Register, RegisterAddress};
+use crate::profile::biss::RegisterRange;
+use crate::protocol::biss::{Decoded, Description, Descriptions, Filter, Register, RegisterAddress};
 
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
@@ -23,8 +24,31 @@ pub(super) fn said(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     words(register, bytes)
 }
 
+/// What a register of a description says, where the bytes of a run are its own.
+pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
+    let own = register.address == range.start() && register.width == range.count();
+    own.then(|| words(register, bytes)).flatten()
+}
+
+/// What a register says as a quantity.
+pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
+    match register.decode(bytes)? {
+        Decoded::Scaled(value) => Some(value),
+        _ => None,
+    }
+}
+
+/// The word for a filter, as `do biss filter` takes it.
+pub(super) fn filter(filter: Filter) -> String {
+    match filter {
+        Filter::Balanced => "balanced".to_owned(),
+        Filter::Dynamic => "dynamic".to_owned(),
+        Filter::Unknown(code) => format!("{code:02X}h"),
+    }
+}
+
 /// What a register's bytes say; `None` for a code without meaning.
-pub(super) fn words(register: &Register, bytes: &[u8]) -> Option<String> {
+fn words(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {
         Decoded::Number(number) => format!("{number}{unit}"),

@@ -1,6 +1,6 @@
 //! Commands that only look: `find`, `identify`, `status`, `position`, `read`.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::{Value as Json, json};
 
@@ -10,13 +10,13 @@ use crate::cli::args::{Common, Find, Position};
 use crate::cli::hiperface::run::{Runner, codes_met};
 use crate::cli::hiperface::table::Table;
 use crate::cli::output::{Lines, Output};
+use crate::cli::positions::readings;
 use crate::cli::runner::{Ended, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Identity, PositionReading};
 use crate::profile::hiperface::Item;
-use crate::protocol::hiperface::{EncoderTypes, Geometry, KIND, LineSettings, StatusCode};
-use crate::worker::Device as _;
+use crate::protocol::hiperface::{EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
@@ -192,54 +192,40 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     if let Some(table) = &table {
         output.print(table.header())?;
     }
-    readings(&mut runner, output, position, identity.geometry, table.as_ref())
+    // A code that the encoder announced while it was identified is about this position too.
+    let mut codes_before = codes_met(&runner);
+    let job = || HiperfaceJob::Position(identity.geometry);
+    readings(&mut runner, position, job, |runner, came| {
+        show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
+    })
 }
 
-fn readings(
+fn show(
     runner: &mut Runner,
     output: &Output,
-    position: &Position,
-    geometry: Option<Geometry>,
+    came: std::result::Result<HiperfaceOutput, Box<JobError>>,
     table: Option<&Table>,
-) -> Result {
-    // A code that the encoder announced while it was identified is about this position too.
-    let mut codes_before = codes_met(runner);
-    let interval = Duration::from_millis(position.interval);
-    let mut next = Instant::now();
-    // A table of no certain length is ended by Ctrl-C: then it is done.
-    let endless = position.csv && position.count.is_none();
-    let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
-    for line in 0..count {
-        if line > 0 {
-            next = (next + interval).max(Instant::now());
-            let paused = runner.pause(next.saturating_duration_since(Instant::now()));
-            if endless && runner.is_interrupted() {
-                return Ok(Done::Well);
+    codes_before: &mut Vec<StatusCode>,
+) -> Result<()> {
+    match came {
+        Ok(HiperfaceOutput::Position(mut reading)) => {
+            reading.valid &= !codes_before.iter().any(|code| code.spoils_position());
+            reading.codes = codes_before.drain(..).chain(reading.codes).collect();
+            match table {
+                Some(table) => output.print(&table.row(&reading)),
+                None => show_position(output, &reading),
             }
-            paused?;
         }
-        match runner.try_run(HiperfaceJob::Position(geometry)) {
-            Ok(HiperfaceOutput::Position(mut reading)) => {
-                reading.valid &= !codes_before.iter().any(|code| code.spoils_position());
-                reading.codes = codes_before.drain(..).chain(reading.codes).collect();
-                match table {
-                    Some(table) => output.print(&table.row(&reading))?,
-                    None => show_position(output, &reading)?,
-                }
+        Ok(other) => Err(unexpected(&other)),
+        Err(error) if error.means_no_position() => match table {
+            Some(table) => {
+                output.remark(&no_position(&error));
+                output.print(&table.row_without_position(&codes_met(runner)))
             }
-            Ok(other) => return Err(unexpected(&other)),
-            Err(Ended::Job(error)) if error.means_no_position() => match table {
-                Some(table) => {
-                    output.remark(&no_position(&error));
-                    output.print(&table.row_without_position(&codes_met(runner)))?;
-                }
-                None => show_no_position(output, &error)?,
-            },
-            Err(Ended::Job(error)) if endless && Hiperface::is_cancelled(&error) => break,
-            Err(ended) => return Err(ended.into_failure()),
-        }
+            None => show_no_position(output, &error),
+        },
+        Err(error) => Err(Ended::<Hiperface>::Job(error).into_failure()),
     }
-    Ok(Done::Well)
 }
 
 fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {

@@ -1,0 +1,58 @@
+//! Running jobs on a BiSS encoder, and what they give beside their results.
+
+use crate::app::{Text, explain};
+use crate::cli::Result;
+use crate::cli::args::Code;
+use crate::cli::output::say;
+use crate::cli::runner::{self, Runs, unexpected};
+use crate::device::biss::{Identity, Way};
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::biss::{Biss, BissJob, BissOutput, JobError, Remark, open};
+use crate::worker::{OpenError, Session};
+
+/// A session with a BiSS encoder on its thread.
+pub(super) type Runner = runner::Runner<Biss>;
+
+impl Runs for Biss {
+    /// How the encoder is reached.
+    type Kept = Way;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    /// There are no access codes: those of the environment may be for other devices.
+    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Way {
+        session.station().way
+    }
+
+    fn say(remark: &Remark) {
+        match remark {
+            // They are counted, and told at the end.
+            Remark::CrcErrors(_) => {}
+            remark => explain::biss::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal()))),
+        }
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        explain::biss::job(error)
+    }
+}
+
+/// Who is there.
+pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
+    match runner.run(BissJob::Identify)? {
+        BissOutput::Identity(identity) => Ok(identity),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// Frames with a wrong checksum that the last job met, beside those of its reading.
+pub(super) fn crc_errors(runner: &Runner) -> u64 {
+    let count = |remark: &Remark| match remark {
+        Remark::CrcErrors(count) => u64::from(*count),
+        _ => 0,
+    };
+    runner.remarks.iter().map(count).sum()
+}

@@ -1,0 +1,44 @@
+//! `position`: readings one after the other, whatever the device: how many, how far apart, until when.
+
+use std::time::{Duration, Instant};
+
+use super::args::Position;
+use super::runner::{Ended, Runner, Runs};
+use super::{Done, Result};
+
+/// Runs `job` again and again, and lets `show` print what came of it; it says whether that was a line, or that it is over.
+pub(super) fn readings<D: Runs>(
+    runner: &mut Runner<D>,
+    position: &Position,
+    job: impl Fn() -> D::Job,
+    mut show: impl FnMut(&mut Runner<D>, std::result::Result<D::Output, Box<D::Error>>) -> Result<bool>,
+) -> Result {
+    let interval = Duration::from_millis(position.interval);
+    let mut next = Instant::now();
+    // A table of no certain length is ended by Ctrl-C: then it is done.
+    let endless = position.csv && position.count.is_none();
+    let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
+    let (mut lines, mut first) = (0, true);
+    while lines < count {
+        if !first {
+            next = (next + interval).max(Instant::now());
+            let paused = runner.pause(next.saturating_duration_since(Instant::now()));
+            if endless && runner.is_interrupted() {
+                return Ok(Done::Well);
+            }
+            paused?;
+        }
+        first = false;
+        let came = match runner.try_run(job()) {
+            Ok(output) => Ok(output),
+            Err(Ended::Job(error)) if endless && D::is_cancelled(&error) => return Ok(Done::Well),
+            Err(Ended::Job(error)) => Err(error),
+            Err(ended) => return Err(ended.into_failure()),
+        };
+        lines += match show(runner, came) {
+            Err(_) if endless && runner.is_interrupted() => return Ok(Done::Well),
+            shown => u64::from(shown?),
+        };
+    }
+    Ok(Done::Well)
+}
