@@ -4,6 +4,8 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss_offline;
+mod biss_profile;
 mod biss_reading;
 mod biss_simulate;
 mod cli_actions;
