@@ -61,6 +61,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     let frame = match identity.source {
         FrameSource::DataSheet => "as its data sheet says",
         FrameSource::Description => "as its description says",
+        FrameSource::Checksum => "found by its checksum: how many bits are turns is not known",
         FrameSource::Assumed => "taken for granted: nothing tells it",
     };
     let (multiturn, singleturn) = (identity.layout.multiturn_bits(), identity.layout.singleturn_bits());

@@ -6,7 +6,7 @@ use crate::app::biss::Action as Biss;
 use crate::app::biss::Encoder;
 use crate::app::{Action, Text};
 use crate::device::biss::PositionReading;
-use crate::protocol::biss::Layout;
+use crate::protocol::biss::{Layout, Reading};
 use crate::signal::quality::Verdict;
 use crate::ui::Skin;
 use crate::ui::controls::{card_with, enabled_button, paragraph};
@@ -35,6 +35,15 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             paragraph(ui, egui::RichText::new(skin.words(&text)).color(skin.palette.warn));
         }
     });
+}
+
+fn as_sent(reading: &PositionReading) -> Reading {
+    Reading {
+        multiturn: reading.turns,
+        singleturn: reading.steps,
+        error: reading.error == Some(true),
+        warning: reading.warning == Some(true),
+    }
 }
 
 /// The fields of a frame with their bits. Over the configuration pin only the position comes.
@@ -75,7 +84,8 @@ fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Ve
         }
     }
     if layout.crc_bits() > 0 {
-        let crc = reading.map(|own| own.raw & ((1 << layout.crc_bits().min(63)) - 1));
+        // Only frames whose checksum fits are shown: what it says follows from the rest.
+        let crc = reading.map(|own| layout.emit(&as_sent(own)) & ((1 << layout.crc_bits().min(63)) - 1));
         let value = crc.map(|crc| format!("{crc:02X}h")).unwrap_or_default();
         add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);
     }
