@@ -228,25 +228,25 @@ impl AnyDevice {
 
     /// A review of a write is open.
     pub fn is_reviewing(&self) -> bool {
-        self.hiperface().is_some_and(|own| own.review.is_some())
+        each!(self, own => own.review.is_some())
     }
 
     /// The review of a write, where one is on its way.
     pub fn sheet(&self) -> Option<Sheet> {
-        let own = self.hiperface()?;
-        let running = own.session.line().and_then(|line| line.running());
-        let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-        own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
+        each!(self, own => {
+            let running = own.session.line().and_then(|line| line.running());
+            let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
+            own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
+        })
     }
 
     pub(super) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
-        let Some(own) = self.hiperface_mut() else { return };
-        match action {
+        each!(self, own => match action {
             ReviewAction::Write(plan) => own.write(plan, services),
             ReviewAction::Toggle(at) => own.plan_with(at, services),
             ReviewAction::ForceWear(force) => own.force_wear(force),
             ReviewAction::Close => own.close_review(),
-        }
+        })
     }
 
     /// What was recorded of it.
@@ -268,9 +268,7 @@ impl AnyDevice {
     }
 
     pub(super) fn close_review(&mut self) {
-        if let Some(own) = self.hiperface_mut() {
-            own.close_review()
-        }
+        each!(self, own => own.close_review())
     }
 
     pub(super) fn pump(&mut self, services: &mut Services) {

@@ -16,6 +16,7 @@ use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
 use crate::link::{LinkUrl, Scheme};
+use crate::worker::biss::Change;
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -278,6 +279,12 @@ impl Studio {
                 let Some(profile) = profile else { return };
                 self.show(Tab::Biss, target);
                 self.with_biss(target, |encoder, services| encoder.plan_restore(profile, services));
+            }
+            biss::Action::PlanMounting { mut run, motor, data } => {
+                let profile = data.and_then(|id| self.device(id)?.biss()?.wanted_profile());
+                run.data = profile.map(Box::new);
+                let change = Change::Guided { run: *run, motor };
+                self.with_biss(id, |encoder, services| encoder.act(biss::Action::Plan(Box::new(change)), services));
             }
             action => self.with_biss(id, |encoder, services| encoder.act(action, services)),
         }

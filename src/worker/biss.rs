@@ -1,18 +1,23 @@
 //! A BiSS encoder at the end of a session, and its jobs.
 
+mod commit;
 mod job;
 mod open;
+mod prepare;
 
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-pub use job::{BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key};
+pub use job::{
+    Attendance, BissJob, BissOutput, Change, ChangeKind, Commit, Committed, Doing, JobError, Prepared, ReadRegisters,
+    Remark, WEAR_LIMIT, WEAR_WARNING, device_key,
+};
 pub use open::open;
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::biss::{
-    self as device, Error, Identity, Master, Place, Sample, Station, identify, read_registers, read_sample,
+    self as device, Error, Identity, Master, Place, Sample, Station, identify, procedure, read_registers, read_sample,
     read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
@@ -135,6 +140,15 @@ impl Device for Biss {
                 let progress = &mut |done, total, place| steps(done, total, doing(place));
                 BissOutput::Saved(Box::new(device::save(&mut self.master(desk), &types, progress)?))
             }
+            BissJob::Prepare(change) => {
+                let steps = &mut |progress| tell(Tell::Progress(progress));
+                BissOutput::Prepared(Box::new(prepare::prepare(self, desk, &change, steps)?))
+            }
+            BissJob::Commit(commit) => {
+                let steps = &mut |progress| tell(Tell::Progress(progress));
+                BissOutput::Committed(Box::new(commit::commit(self, desk, &commit, steps)?))
+            }
+            BissJob::LeadBack => BissOutput::LedBack(procedure::lead_back(&mut self.master(desk), &types)?),
         })
     }
 
@@ -167,7 +181,11 @@ impl Device for Biss {
     }
 
     fn is_cancelled(error: &JobError) -> bool {
-        matches!(error, JobError::Device(Error::Cancelled))
+        match error {
+            JobError::Device(error) => *error == Error::Cancelled,
+            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_cancelled(),
+            _ => false,
+        }
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

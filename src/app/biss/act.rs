@@ -7,6 +7,7 @@ use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
+use super::review::Review;
 use super::words;
 use crate::app::action::{FileQuestion, ReadError};
 use crate::app::services::{JobEnd, Services};
@@ -27,7 +28,7 @@ impl Encoder {
     pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Reconnect | Action::WriteInto(_) | Action::PlanMounting { .. } => {}
             Action::Review => self.review_edits(services),
             Action::Read => {
                 if !self.session.read_file_again(services) {
@@ -57,6 +58,10 @@ impl Encoder {
             Action::Redo => self.memory.redo(),
             Action::RevertAll => self.memory.revert(),
             Action::Revert { start, count } => self.memory.revert_range(start, count),
+            Action::Plan(change) => self.plan(*change, services),
+            Action::Answer(task, answer) => self.answer(task, answer),
+            Action::CloseGuide => self.close_guide(),
+            Action::LeadBack => self.submit(BissJob::LeadBack, services),
             Action::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);
@@ -86,7 +91,8 @@ impl Encoder {
     /// Starts a job, or says why not and gives false.
     pub(super) fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
         let what = words::job(&job);
-        self.session.submit(job, what, false, services)
+        let writes = matches!(job, BissJob::Commit(_) | BissJob::LeadBack);
+        self.session.submit(job, what, writes, services)
     }
 
     /// Watches a register beside the position, or no more.
@@ -190,19 +196,12 @@ impl Encoder {
         }
     }
 
-    pub(in crate::app) fn plan_restore(&mut self, _profile: BissProfile, services: &mut Services) {
-        self.refuse(Text::new("biss.read_only"), services);
-    }
-
-    fn review_edits(&mut self, services: &mut Services) {
-        self.refuse(Text::new("biss.read_only"), services);
-    }
-
     /// The connection is gone; what is known and edited stays.
     pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
         // What passed at last says most about why it was the last.
         self.take_samples_and_frames();
         self.forget_asked();
+        self.write_lost(&why);
         self.session.lose(why, services);
     }
 
@@ -216,6 +215,10 @@ impl Encoder {
     /// What was asked for on the line does not come any more.
     fn forget_asked(&mut self) {
         self.seen.clear();
+        self.read_after.clear();
+        if self.review.as_ref().is_some_and(Review::is_plan) {
+            self.review = None;
+        }
     }
 }
 

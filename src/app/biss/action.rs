@@ -4,7 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::app::studio::SessionId;
+use crate::device::biss::procedure::{Answer, Task};
+use crate::profile::biss::{MotorSource, MountingRun};
 use crate::protocol::biss::{Register, RegisterAddress};
+use crate::worker::biss::Change;
 
 /// Something in the BiSS tab.
 pub enum Action {
@@ -48,6 +51,23 @@ pub enum Action {
     },
     /// Show what writing the edits would do.
     Review,
+    /// Show what a change would do.
+    Plan(Box<Change>),
+    /// Show what a mounting run would do; the plain data comes from a profile that is open in another session.
+    PlanMounting {
+        /// What is done, without the data.
+        run: Box<MountingRun>,
+        /// What turns the motor.
+        motor: MotorSource,
+        /// Whose data.
+        data: Option<SessionId>,
+    },
+    /// Answer what a procedure asks.
+    Answer(Task, Answer),
+    /// Put a procedure that is over away.
+    CloseGuide,
+    /// Back to operation, with the password cleared.
+    LeadBack,
     /// Turn the virtual encoder's shaft, in revolutions a minute.
     Turn(f64),
     /// Ask where to save the profile.

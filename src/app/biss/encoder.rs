@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::drafts::Edits;
+use super::guide::Guide;
 use super::meaning::Meaning;
 use super::memory::Memory;
 use super::record::Record;
+use super::review::Review;
 use super::table::Table;
 use crate::app::services::Services;
 use crate::app::session::{Drafting, Phase, Session, Source};
@@ -38,12 +40,18 @@ pub struct Encoder {
     pub table: Table,
     /// What was recorded while it was polled.
     pub record: Record,
+    /// A write on its way.
+    pub review: Option<Review>,
+    /// A procedure on its way, or as it ended.
+    pub guide: Option<Guide>,
     /// What turns the virtual encoder's shaft.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
     pub(in crate::app) drafting: Drafting<Edits>,
     /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
     pub(super) seen: BTreeSet<Option<u8>>,
+    /// Banks that were written, to be read again.
+    pub(super) read_after: BTreeSet<u8>,
 }
 
 impl Encoder {
@@ -62,9 +70,12 @@ impl Encoder {
             memory: Memory::default(),
             table: Table::default(),
             record: Record::default(),
+            review: None,
+            guide: None,
             motor: None,
             meaning: Meaning::default(),
             seen: BTreeSet::new(),
+            read_after: BTreeSet::new(),
         }
     }
 
@@ -224,6 +235,7 @@ impl Encoder {
         self.session.backups = None;
         self.session.writes = None;
         self.seen.clear();
+        self.review = None;
     }
 
     /// Reads the list of backups and writes again, on a thread.

@@ -1,6 +1,7 @@
 //! What the line to an encoder tells: results of jobs, live samples, and its loss.
 
 use super::encoder::Encoder;
+use super::review::Review;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
 use crate::app::services::{JobEnd, Opener, Services, World};
@@ -27,7 +28,12 @@ impl Kind for Biss {
 
     fn last_words(event: &Event<Self>) -> Option<LastWords> {
         let (job, end, severity, texts) = match event {
-            Event::Finished(job, _) => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),
+            Event::Finished(job, output) => match &**output {
+                BissOutput::Committed(committed) => {
+                    (job, JobEnd::Done, Severity::Good, vec![explain::biss::written(&committed.written)])
+                }
+                _ => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),
+            },
             Event::Cancelled(job, error) => (job, JobEnd::Cancelled, Severity::Warning, explain::biss::job(error)),
             Event::Failed(job, error) => {
                 let texts = explain::biss::job(error);
@@ -83,7 +89,12 @@ impl Encoder {
 
     fn take(&mut self, event: Event<Biss>, services: &mut Services) {
         match event {
-            Event::Started(_) | Event::Progress(..) => {}
+            Event::Started(_) => {}
+            Event::Progress(_, progress) => {
+                if let (Doing::Operation { news, .. }, Some(guide)) = (progress.what, &mut self.guide) {
+                    guide.tell(*news);
+                }
+            }
             Event::Remark(Remark::CrcErrors(count)) => self.record.add_crc_errors(count),
             Event::Remark(remark) => services.tell(Severity::Warning, explain::biss::remark(&remark), None),
             Event::Finished(id, output) => {
@@ -95,7 +106,18 @@ impl Encoder {
             Event::Cancelled(id, error) => {
                 services.job_ends(self.session.id, id, JobEnd::Cancelled);
                 self.session.save_to = None;
-                services.tell(Severity::Note, explain::biss::job(&error), Some(&self.session.name()));
+                let texts = explain::biss::job(&error);
+                let begun = matches!(*error, JobError::Interrupted { .. });
+                // As the user wished; what was written until then is to be looked at.
+                let severity = if begun { Severity::Warning } else { Severity::Note };
+                services.tell(severity, texts.clone(), Some(&self.session.name()));
+                if self.review.as_ref().is_some_and(Review::is_planning) {
+                    self.review = None;
+                }
+                self.write_failed(&error, &texts);
+                if begun {
+                    self.submit(BissJob::Survey, services);
+                }
             }
             Event::PollFailed(error) if explain::biss::loss(&error).is_some() => {
                 let why = explain::biss::loss(&error);
@@ -118,7 +140,10 @@ impl Encoder {
 
     fn finished(&mut self, output: BissOutput, services: &mut Services) {
         match output {
-            BissOutput::Surveyed(survey) => self.take_survey(*survey, services),
+            BissOutput::Surveyed(survey) => {
+                self.take_survey(*survey, services);
+                self.read_written(services);
+            }
             BissOutput::Status(status) => {
                 if let Some(position) = status.position {
                     self.record.add_position(position);
@@ -126,13 +151,23 @@ impl Encoder {
                 self.status = Some(*status);
             }
             BissOutput::Position(reading) => self.record.add_position(reading),
-            BissOutput::Registers(read) => self.memory.take(read.start, &read.bytes),
+            BissOutput::Registers(read) => {
+                self.memory.take(read.start, &read.bytes);
+                self.read_written(services);
+            }
             BissOutput::Area(banks) => {
                 for bank in banks {
                     bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
                 }
             }
             BissOutput::Saved(profile) => self.saved(*profile, services),
+            BissOutput::Prepared(prepared) => self.planned(prepared),
+            BissOutput::Committed(committed) => self.committed(*committed, services),
+            BissOutput::LedBack(mode) => {
+                let text = Text::new("guide.led_back").with("mode", mode);
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                self.submit(BissJob::Survey, services);
+            }
             // The survey tells more.
             BissOutput::Identity(_) => {}
         }
@@ -143,6 +178,8 @@ impl Encoder {
         let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
         services.job_ends(self.session.id, id, JobEnd::Failed(first.clone()));
         self.session.save_to = None;
+        let stands_there = self.write_failed(error, &texts);
+        let begun = matches!(error, JobError::Interrupted { .. });
         let silent = is_silence(error) || (self.session.just_connected && explain::biss::loss(error).is_none());
         match explain::biss::loss(error) {
             Some(why) => self.lose(why, services),
@@ -153,14 +190,32 @@ impl Encoder {
             }
             None => {
                 self.session.answers();
-                services.tell(Severity::Error, texts, Some(&self.session.name()));
+                if stands_there {
+                    services.note(Severity::Error, texts, Some(&self.session.name()));
+                } else {
+                    services.tell(Severity::Error, texts, Some(&self.session.name()));
+                }
+                if begun {
+                    self.submit(BissJob::Survey, services);
+                }
             }
+        }
+    }
+
+    /// Reads the next of the banks that were written.
+    fn read_written(&mut self, services: &mut Services) {
+        if let Some(bank) = self.read_after.pop_first() {
+            self.submit(BissJob::ReadBank(bank), services);
         }
     }
 }
 
 /// The link is open, and the encoder or the adapter does not answer.
 fn is_silence(error: &JobError) -> bool {
-    let JobError::Device(cause) = error;
-    cause.is_lost() && explain::biss::loss(error).is_none()
+    let is_lost = match error {
+        JobError::Device(cause) => cause.is_lost(),
+        JobError::Interrupted { interrupted, .. } => interrupted.cause.is_lost(),
+        _ => false,
+    };
+    is_lost && explain::biss::loss(error).is_none()
 }

@@ -2,7 +2,7 @@
 
 use super::memory::MemoryError;
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::{self, plain};
 use crate::protocol::biss::{EDS_TICK, EdsError, EdsValue, Feedback, Filter};
 use crate::worker::biss::BissJob;
 
@@ -17,6 +17,9 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("{bank:02X}h")),
         BissJob::ReadArea(area) => Text::new("job.read").with("item", &area.name),
         BissJob::Save => Text::new("job.save"),
+        BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::biss::change(change)),
+        BissJob::Commit(_) => Text::new("job.write"),
+        BissJob::LeadBack => Text::new("job.lead_back"),
     }
 }
 

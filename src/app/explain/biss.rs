@@ -1,11 +1,16 @@
 //! A BiSS encoder in words: the errors of jobs with it, and what is said on the way.
 
 mod damage;
+mod guide;
+mod write;
 
 pub use damage::damage;
+pub use guide::{advice, blocker, outcome, procedure, step, task};
+pub use write::{change, failure, op, plan, written};
 
-use super::{adapter, link, store};
+use super::{adapter, file, link, store};
 use crate::app::Text;
+use crate::device::biss::procedure::Failure;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::protocol::biss::Mismatch;
@@ -15,6 +20,14 @@ use crate::worker::biss::{Doing, JobError, Remark};
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotKept(error) => vec![Text::new("write.not_kept").with_text("why", file(error))],
+        JobError::Worn { used, cost, limit } => {
+            vec![Text::new("write.worn").with("used", used).with("cost", cost).with("limit", limit)]
+        }
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            write::interruption(interrupted, backup, *planned, *kind)
+        }
     }
 }
 
@@ -22,6 +35,11 @@ pub fn job(error: &JobError) -> Vec<Text> {
 pub fn loss(error: &JobError) -> Option<Text> {
     match error {
         JobError::Device(error) => lost(error).map(link),
+        JobError::Interrupted { interrupted, .. } => match &interrupted.cause {
+            Failure::Device(error) => lost(error).map(link),
+            _ => None,
+        },
+        JobError::Plan(_) | JobError::NotKept(_) | JobError::Worn { .. } => None,
     }
 }
 
@@ -80,6 +98,8 @@ pub fn encoder(error: &Error) -> Text {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
             Text::new("encoder.moving").with("readings", words.join(", "))
         }
+        Error::NotInOperation { mode } => Text::new("biss.not_in_operation").with("mode", mode),
+        Error::Changed { item } => Text::new("biss.changed").with("item", item),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
 }
@@ -117,6 +137,7 @@ pub fn doing(doing: &Doing) -> Text {
     match doing {
         Doing::Register(address) => Text::new("biss.register").with("address", address),
         Doing::Bank(bank) => Text::new("biss.bank").with("bank", format!("0x{bank:02X}")),
+        Doing::Operation { news, .. } => step(news.step),
     }
 }
 

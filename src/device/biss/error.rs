@@ -5,7 +5,7 @@ use std::fmt;
 use crate::device::bridge::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
-use crate::protocol::biss::{FrameError, Identity, RegisterAddress};
+use crate::protocol::biss::{DeviceMode, FrameError, Identity, RegisterAddress};
 use crate::protocol::ubicom::ReplyError;
 
 /// What was asked of an encoder.
@@ -161,6 +161,18 @@ pub enum Error {
     Moving {
         /// The positions read one after the other, in steps.
         readings: Vec<u64>,
+    },
+    /// The encoder is in a device mode, in which its registers may show what was entered and never saved.
+    #[error("the encoder is in device mode {mode}")]
+    NotInOperation {
+        /// The mode.
+        mode: DeviceMode,
+    },
+    /// What was read changed between the plan and its execution.
+    #[error("{item} has changed since the plan was made")]
+    Changed {
+        /// What changed.
+        item: String,
     },
     /// The encoder answers, and not as the reference says; with what it did.
     #[error("{0}")]

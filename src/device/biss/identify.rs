@@ -6,6 +6,8 @@ use std::sync::Arc;
 use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Way};
+use crate::profile::Unknown;
+use crate::profile::biss::ProfileIdentity;
 use crate::protocol::biss::{
     Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
     RegisterAddress, Role, eds_layout,
@@ -73,6 +75,21 @@ pub struct Sheet {
 }
 
 impl Identity {
+    /// As it stands in a profile.
+    pub fn profile(&self) -> ProfileIdentity {
+        ProfileIdentity {
+            serial_number: self.serial_number.clone(),
+            profile_id: self.kind.profile,
+            device_id: self.kind.device_id,
+            manufacturer: self.kind.manufacturer,
+            firmware: self.firmware,
+            description: self.description.name().to_owned(),
+            multiturn_bits: self.multiturn_bits(),
+            singleturn_bits: self.singleturn_bits(),
+            unknown: Unknown::new(),
+        }
+    }
+
     /// Bits of the revolutions; `None` where nobody tells.
     pub fn multiturn_bits(&self) -> Option<u8> {
         self.is_told().then_some(self.layout.multiturn_bits())

@@ -90,10 +90,15 @@ impl<'a> Master<'a> {
 
     /// Does what leads back to a safe state: in it, a wish to end is not heard.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.line.shield(true);
+        let before = self.shield(true);
         let result = work(self);
-        self.line.shield(before);
+        self.shield(before);
         result
+    }
+
+    /// From now on a wish to end is heard, or is not; gives back whether it was not.
+    pub(super) fn shield(&mut self, shielded: bool) -> bool {
+        self.line.shield(shielded)
     }
 
     /// Does what an encoder may leave without an answer for so long: in it, reading is repeated until then, however often.

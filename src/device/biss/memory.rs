@@ -8,7 +8,7 @@ use super::registers::Registers;
 use super::survey::look_around;
 use super::{Error, Master, PositionReading, Survey};
 use crate::profile::Unknown;
-use crate::profile::biss::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, ProfileIdentity, Recorded};
+use crate::profile::biss::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
 use crate::protocol::biss::{Area, Descriptions, RegisterAddress};
 
 /// Positions that say whether the shaft stands still, and the time between two.
@@ -139,17 +139,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
     let mut profile = BissProfile {
-        identity: ProfileIdentity {
-            serial_number: identity.serial_number.clone(),
-            profile_id: identity.kind.profile,
-            device_id: identity.kind.device_id,
-            manufacturer: identity.kind.manufacturer,
-            firmware: identity.firmware,
-            description: identity.description.name().to_owned(),
-            multiturn_bits: identity.multiturn_bits(),
-            singleturn_bits: identity.singleturn_bits(),
-            unknown: Unknown::new(),
-        },
+        identity: identity.profile(),
         filter: survey.status.filter,
         preset: survey.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
         recorded: Recorded {

@@ -13,10 +13,12 @@ mod identify;
 mod master;
 mod memory;
 mod position;
+pub mod procedure;
 mod registers;
 mod station;
 mod survey;
 mod widths;
+pub mod write;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};

@@ -37,6 +37,24 @@ pub struct MountingRun {
     pub data: Option<Box<BissProfile>>,
 }
 
+impl MountingRun {
+    /// Some of it needs a motor.
+    pub fn needs_motor(&self) -> bool {
+        self.calibrate || self.wiegand.is_some()
+    }
+
+    /// Refuses a motor that needs this encoder where the run needs a motor.
+    ///
+    /// # Errors
+    /// [`PlanError::DrivenByThisEncoder`].
+    pub fn check(&self, motor: MotorSource) -> Result<(), PlanError> {
+        if self.needs_motor() && motor == MotorSource::ThisEncoder {
+            return Err(PlanError::DrivenByThisEncoder);
+        }
+        Ok(())
+    }
+}
+
 /// What kind of place a register is to somebody who writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place<'d> {
@@ -202,9 +220,7 @@ pub fn plan_mounting(
     motor: MotorSource,
 ) -> Result<BissPlan, PlanError> {
     let firmware = device.identity.firmware;
-    if (run.calibrate || run.wiegand.is_some()) && motor == MotorSource::ThisEncoder {
-        return Err(PlanError::DrivenByThisEncoder);
-    }
+    run.check(motor)?;
     let mut plan = BissPlan { base: Base::default(), ops: Vec::new() };
     if run.calibrate {
         procedure(description, firmware, ProcedureKind::Calibration)?;

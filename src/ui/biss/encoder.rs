@@ -6,6 +6,7 @@ use super::{frame, sheet, wiring};
 use crate::app::biss::{Action as Biss, Encoder, words};
 use crate::app::{Action, Text, explain};
 use crate::device::biss::{Bits, FrameSource, Identity};
+use crate::sim::biss::Motor;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -22,7 +23,10 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             identity(ui, skin, encoder, actions);
             ui.add_space(skin.space.groups);
             status(ui, skin, encoder, actions);
-            motor(ui, skin, encoder, actions);
+            if let Some(motor) = &encoder.motor {
+                ui.add_space(skin.space.groups);
+                motor_ui(ui, skin, encoder, motor, actions);
+            }
         },
         |ui, _| {
             sheet::cards_ui(ui, skin, encoder);
@@ -142,9 +146,7 @@ fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 /// What turns the virtual encoder's shaft.
-fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let Some(motor) = &encoder.motor else { return };
-    ui.add_space(skin.space.groups);
+pub(super) fn motor_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
     card(ui, skin, "motor_card.title", |ui| {
         paragraph(ui, skin.caption(skin.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {

@@ -3,7 +3,9 @@
 mod data;
 mod encoder;
 mod frame;
+mod procedures;
 mod registers;
+mod run;
 mod sheet;
 mod wiring;
 
@@ -23,18 +25,21 @@ pub(in crate::ui) enum Page {
     Registers,
     /// Motor and OEM data.
     Data,
+    /// Calibration, Wiegand test, preset, filter: step by step.
+    Procedures,
     /// Profiles, backups and what was written.
     Backups,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 4] = [Page::Encoder, Page::Registers, Page::Data, Page::Backups];
+    pub(super) const ALL: [Page; 5] = [Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Registers => icons::TABLE,
             Page::Data => icons::MEMORY,
+            Page::Procedures => icons::LIST_CHECKS,
             Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
         }
     }
@@ -44,6 +49,7 @@ impl Page {
             Page::Encoder => "page.encoder",
             Page::Registers => "page.registers",
             Page::Data => "page.data",
+            Page::Procedures => "page.procedures",
             Page::Backups => "page.backups",
         }
     }
@@ -53,6 +59,7 @@ impl Page {
             Page::Encoder => "help.biss_encoder",
             Page::Registers => "help.biss_registers",
             Page::Data => "help.biss_data",
+            Page::Procedures => "help.biss_procedures",
             Page::Backups => "help.backups",
         }
     }
@@ -72,6 +79,7 @@ pub(in crate::ui) struct View {
     serial_number: Option<String>,
     registers: registers::View,
     data: data::View,
+    procedures: procedures::View,
 }
 
 impl View {
@@ -108,6 +116,7 @@ pub(super) fn page_ui(
     ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         frame.show(ui, |ui| match view.page {
             Page::Backups => backups::page_ui(ui, skin, device, actions),
+            Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
             _ => encoder::page_ui(ui, skin, encoder, actions),
         });
     });

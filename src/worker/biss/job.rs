@@ -1,13 +1,24 @@
 //! What can be asked of a BiSS encoder, and what comes of it.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use super::Identity;
 use crate::bits::hex_compact;
+use crate::device::biss::procedure::{Answer, Demand, News, Operator, Seat, Unattended};
+use crate::device::biss::write::{Interrupted, Written};
 use crate::device::biss::{Error, PositionReading, Status, Survey};
-use crate::profile::biss::{Bank, BissProfile, RegisterRange};
-use crate::protocol::biss::{Area, KIND, RegisterAddress};
-use crate::store::{DeviceKey, StoreError};
+use crate::profile::Consent;
+use crate::profile::biss::{
+    Bank, BissPlan, BissProfile, MotorSource, MountingRun, PlanError, PresetParts, RegisterRange, RestoreOptions,
+};
+use crate::protocol::biss::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
+use crate::store::{DeviceKey, FileError, LogbookError, StoreError};
+
+/// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
+pub const WEAR_LIMIT: u64 = 1000;
+/// Persistent writes from which a person should know that they are numbered.
+pub const WEAR_WARNING: u64 = 800;
 
 /// What a session with a BiSS encoder does.
 #[derive(Debug)]
@@ -30,6 +41,128 @@ pub enum BissJob {
     ReadArea(Area),
     /// Everything that can be restored; at standstill.
     Save,
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+    /// Back to operation and the password cleared, whoever left the encoder otherwise.
+    LeadBack,
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the encoder as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<BissProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Write registers: where, and which bytes. Those of an area of data are saved together.
+    Write(Vec<(RegisterRange, Vec<u8>)>),
+    /// Select a filter.
+    SelectFilter(Filter),
+    /// Store this preset value, where one is given; and make the shaft's place what is stored then, where parts are.
+    Preset {
+        /// The value.
+        value: Option<PresetValue>,
+        /// Which part of the position.
+        parts: Option<PresetParts>,
+    },
+    /// Procedures led by a person: one, or all of a mounting.
+    Guided {
+        /// Which.
+        run: MountingRun,
+        /// What turns the motor in them.
+        motor: MotorSource,
+    },
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edited bytes are written: those that are not yet stay edited.
+    Bytes,
+    /// Procedures led by a person: those that are not done are begun again.
+    Guided,
+    /// One thing, which is done or not.
+    Single,
+}
+
+impl Change {
+    /// Its kind.
+    pub fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Write(_) => ChangeKind::Bytes,
+            Change::Guided { .. } => ChangeKind::Guided,
+            Change::SelectFilter(_) | Change::Preset { .. } => ChangeKind::Single,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: BissPlan,
+    /// The encoder it is for.
+    pub identity: Identity,
+    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Registers that are as they should be already.
+    pub unchanged: u64,
+    /// Settings of a profile that the encoder does not have.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<RegisterRange>,
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the encoder counts as worn.
+    pub force_wear: bool,
+    /// Who stands at the motor.
+    pub attendance: Attendance,
+}
+
+/// Who stands at the motor while a plan is carried out.
+#[derive(Clone, Debug)]
+pub enum Attendance {
+    /// Somebody whose answers are left here.
+    Seat(Seat),
+    /// Nobody.
+    Nobody(Unattended),
+}
+
+impl Operator for Attendance {
+    fn attend(&mut self, demand: &Demand) -> Answer {
+        match self {
+            Attendance::Seat(seat) => seat.attend(demand),
+            Attendance::Nobody(nobody) => nobody.attend(demand),
+        }
+    }
+}
+
+/// What a commit did.
+#[derive(Clone, Debug, Default)]
+pub struct Committed {
+    /// Counts, and what came of each operation.
+    pub written: Written,
+    /// The before-image; `None` when there was nothing to write.
+    pub backup: Option<PathBuf>,
+    /// What the logbook could not take: the write itself is done.
+    pub logbook_warning: Option<LogbookError>,
 }
 
 /// Registers as they were read.
@@ -51,12 +184,19 @@ pub enum Remark {
 }
 
 /// The step that a BiSS job is at. Its text is the command line's.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Doing {
     /// A register is read.
     Register(RegisterAddress),
     /// A bank is read.
     Bank(u8),
+    /// An operation of a plan is carried out.
+    Operation {
+        /// What it changes.
+        item: String,
+        /// Where it is.
+        news: Box<News>,
+    },
 }
 
 impl fmt::Display for Doing {
@@ -64,6 +204,7 @@ impl fmt::Display for Doing {
         match self {
             Doing::Register(address) => write!(f, "{address}"),
             Doing::Bank(bank) => write!(f, "bank:0x{bank:02X}"),
+            Doing::Operation { item, .. } => f.write_str(item),
         }
     }
 }
@@ -79,6 +220,10 @@ pub enum BissOutput {
     Registers(ReadRegisters),
     Area(Vec<Bank>),
     Saved(Box<BissProfile>),
+    Prepared(Box<Prepared>),
+    Committed(Box<Committed>),
+    /// With the mode in which it was.
+    LedBack(DeviceMode),
 }
 
 /// Why a job ended early.
@@ -87,6 +232,34 @@ pub enum JobError {
     /// The device.
     #[error(transparent)]
     Device(#[from] Error),
+    /// It cannot be planned; nothing was written.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The before-image cannot be kept; nothing was written.
+    #[error(transparent)]
+    NotKept(FileError),
+    /// The encoder counts as worn; nothing was written.
+    #[error("{used} write cycles seen, {cost} more would exceed {limit}")]
+    Worn {
+        /// Seen so far.
+        used: u64,
+        /// What the plan costs.
+        cost: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// It was begun and not finished.
+    #[error("{interrupted}; before-image: {}", backup.display())]
+    Interrupted {
+        /// What was written, why it ended, and in which state the encoder was left.
+        interrupted: Box<Interrupted>,
+        /// The before-image.
+        backup: PathBuf,
+        /// Operations of the plan.
+        planned: usize,
+        /// The kind of change.
+        kind: ChangeKind,
+    },
 }
 
 /// How backups and the logbook know an encoder: serial numbers are unique within what one manufacturer calls a device.

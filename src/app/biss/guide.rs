@@ -1,0 +1,117 @@
+//! A guided procedure as a person follows it: its steps, how far it is, what is asked now, what came of it. Nothing is
+//! carried out here; the answers go to whoever carries the plan out.
+
+use crate::app::Text;
+use crate::device::biss::procedure::{Answer, Demand, Detail, News, Outcome, Seat, Step, Task, steps_of};
+use crate::profile::biss::Op;
+
+/// A procedure on its way, or as it ended.
+pub struct Guide {
+    ops: Vec<Op>,
+    news: Option<News>,
+    pub(super) seat: Seat,
+    /// How it ended; `None`: it goes on.
+    pub end: Option<End>,
+}
+
+/// How a procedure ended.
+#[derive(Clone, Debug)]
+pub enum End {
+    /// To its end: what came of each operation.
+    Done(Vec<Outcome>),
+    /// Early: what happened, in which state the encoder was left, and what to do.
+    Failed {
+        /// In words.
+        texts: Vec<Text>,
+        /// What came of the operations before.
+        before: Vec<Outcome>,
+        /// The encoder may not be in operation.
+        may_lead_back: bool,
+    },
+}
+
+/// How far a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// It is over.
+    Done,
+    /// It waits for a person.
+    Waits,
+    /// It runs.
+    Runs,
+    /// It ended the procedure.
+    Failed,
+    /// It comes later, or not any more.
+    Ahead,
+}
+
+/// A step of the whole.
+#[derive(Clone, Debug)]
+pub struct GuideStep<'a> {
+    /// The operation that it belongs to.
+    pub op: &'a Op,
+    /// It is the first of its operation.
+    pub is_first: bool,
+    /// What it is.
+    pub step: Step,
+    /// How far it is.
+    pub reached: Reached,
+}
+
+impl Guide {
+    pub(super) fn new(ops: Vec<Op>) -> Self {
+        Guide { ops, news: None, seat: Seat::default(), end: None }
+    }
+
+    /// It goes on.
+    pub fn is_running(&self) -> bool {
+        self.end.is_none()
+    }
+
+    pub(super) fn tell(&mut self, news: News) {
+        self.news = Some(news);
+    }
+
+    /// What is told of the step that counts.
+    pub fn detail(&self) -> Option<&Detail> {
+        self.news.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
+    }
+
+    /// What is asked of the person.
+    pub fn demand(&self) -> Option<&Demand> {
+        match self.detail()? {
+            Detail::Demand(demand) => Some(demand),
+            _ => None,
+        }
+    }
+
+    /// Answers what is being asked.
+    pub(super) fn answer(&self, task: Task, answer: Answer) {
+        if self.is_running() {
+            self.seat.answer(task, answer);
+        }
+    }
+
+    /// All steps, in their order.
+    pub fn steps(&self) -> Vec<GuideStep<'_>> {
+        let at = self.news.as_ref().map(|news| (news.op, news.step));
+        let mut steps = Vec::new();
+        let mut passed = true;
+        for (number, op) in self.ops.iter().enumerate() {
+            for (place, step) in steps_of(op).into_iter().enumerate() {
+                let is_own = at == Some((number, step));
+                passed &= !is_own && at.is_some_and(|(own, _)| number <= own);
+                let reached = match &self.end {
+                    Some(End::Done(_)) => Reached::Done,
+                    Some(End::Failed { .. }) if is_own => Reached::Failed,
+                    _ if is_own && self.demand().is_some() => Reached::Waits,
+                    _ if is_own => Reached::Runs,
+                    _ if passed => Reached::Done,
+                    _ => Reached::Ahead,
+                };
+                steps.push(GuideStep { op, is_first: place == 0, step, reached });
+            }
+        }
+        steps
+    }
+}

@@ -1,0 +1,169 @@
+//! Guided procedures in words: their steps, what a person is to do, why a start is not possible, what came of them.
+
+use crate::app::Text;
+use crate::device::biss::procedure::{
+    Advice, Blocker, CalibrationReport, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
+};
+use crate::profile::biss::{Op, PresetParts};
+use crate::protocol::biss::PulseVoltage;
+
+/// The heading of an operation.
+pub fn procedure(op: &Op) -> Text {
+    Text::new(match op {
+        Op::Calibrate => "guide.calibration",
+        Op::WiegandTest { .. } => "guide.wiegand",
+        Op::StorePreset { .. } => "guide.store_preset",
+        Op::FirePreset { .. } => "guide.fire_preset",
+        Op::SelectFilter { .. } => "guide.filter",
+        Op::StoreData { .. } => "guide.data",
+        Op::WriteRegister { .. } => "guide.register",
+    })
+}
+
+/// A step.
+pub fn step(step: Step) -> Text {
+    match step {
+        Step::Await(task) => self::task(task),
+        Step::Run(run) => Text::new(match run {
+            Run::CalibrationCounterclockwise => "guide.run_calibration_ccw",
+            Run::CalibrationClockwise => "guide.run_calibration_cw",
+            Run::WiegandClockwise => "guide.run_wiegand_cw",
+            Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
+        }),
+        Step::Enter(mode) => Text::new("guide.enter").with("mode", mode),
+        Step::Conditions => Text::new("guide.conditions"),
+        Step::Open => Text::new("guide.open"),
+        Step::Write => Text::new("guide.write"),
+        Step::Results => Text::new("guide.results"),
+        Step::Save => Text::new("guide.save"),
+        Step::Fire => Text::new("guide.fire"),
+        Step::Restart => Text::new("guide.restart"),
+        Step::LeadBack => Text::new("guide.lead_back"),
+        Step::ReadBack => Text::new("guide.read_back"),
+    }
+}
+
+/// What a person is to do.
+pub fn task(task: Task) -> Text {
+    match task {
+        Task::Turn(run) => {
+            let id = match (run.is_clockwise(), run.calibrates()) {
+                (true, true) => "guide.turn_cw_500",
+                (false, true) => "guide.turn_ccw_500",
+                (true, false) => "guide.turn_cw",
+                (false, false) => "guide.turn_ccw",
+            };
+            Text::new(id)
+        }
+        Task::Stand => Text::new("guide.stand"),
+        Task::StandAtPlace => Text::new("guide.stand_at_place"),
+    }
+}
+
+/// Why a start is not possible.
+pub fn blocker(blocker: Blocker) -> Text {
+    match blocker {
+        Blocker::Measuring => Text::new("guide.measuring"),
+        Blocker::NoPosition => Text::new("guide.no_position"),
+        Blocker::Standing => Text::new("guide.standing"),
+        Blocker::Turning { rpm } => Text::new("guide.turning").with_number("rpm", rpm, 1),
+        Blocker::WrongDirection => Text::new("guide.wrong_direction"),
+        Blocker::Speed { rpm, allowed } => speeds(Text::new("guide.speed"), allowed).with_number("rpm", rpm, 0),
+        Blocker::Unsteady { spread } => Text::new("guide.unsteady").with_number("spread", spread, 1),
+        Blocker::Temperature { celsius } => Text::new("guide.temperature").with("celsius", celsius),
+    }
+}
+
+/// What to know before a start.
+pub fn advice(advice: Advice) -> Text {
+    match advice {
+        Advice::Speed { recommended } => speeds(Text::new("guide.recommended"), recommended),
+        Advice::TableAtRisk => Text::new("guide.table_at_risk"),
+        Advice::Marked => Text::new("guide.marked"),
+    }
+}
+
+fn speeds(text: Text, range: SpeedRange) -> Text {
+    text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
+}
+
+/// What came of an operation, a line each; for the page and for the report.
+pub fn outcome(outcome: &Outcome) -> Vec<Text> {
+    match outcome {
+        Outcome::Skipped => vec![Text::new("guide.skipped")],
+        Outcome::Stored { registers } => vec![Text::new("guide.stored").with("count", registers)],
+        Outcome::PresetStored(value) => vec![
+            Text::new("guide.preset_stored")
+                .with("singleturn", value.singleturn())
+                .with("multiturn", value.multiturn()),
+        ],
+        Outcome::PresetFired { parts, from, to } => {
+            let id = match parts {
+                PresetParts::Both => "guide.preset_both",
+                PresetParts::Singleturn => "guide.preset_singleturn",
+                PresetParts::Multiturn => "guide.preset_multiturn",
+            };
+            let text = Text::new(id).with("from_turns", from.turns).with("to_turns", to.turns);
+            vec![text.with_number("from", from.degrees(), 3).with_number("to", to.degrees(), 3)]
+        }
+        Outcome::FilterSelected(filter) => {
+            vec![Text::new("guide.filter_selected").with_text("filter", crate::app::biss::words::filter(*filter))]
+        }
+        Outcome::Calibrated(report) => calibrated(report),
+        Outcome::Tested(report) => tested(report),
+    }
+}
+
+fn calibrated(report: &CalibrationReport) -> Vec<Text> {
+    let mut texts = vec![Text::new("guide.calibrated")];
+    texts.extend(report.celsius.map(|celsius| Text::new("guide.at_temperature").with("celsius", celsius)));
+    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
+    texts.extend(motion("guide.motion_cw", report.clockwise));
+    texts
+}
+
+fn tested(report: &WiegandReport) -> Vec<Text> {
+    let result = report.result;
+    let direction = |id, average: PulseVoltage, lowest: PulseVoltage| {
+        let verdict = if lowest > PulseVoltage::LIMIT { "guide.above_limit" } else { "guide.below_limit" };
+        Text::new(id)
+            .with_number("average", average.volts(), 1)
+            .with_number("lowest", lowest.volts(), 1)
+            .with_text("verdict", Text::new(verdict).with_number("limit", PulseVoltage::LIMIT.volts(), 1))
+    };
+    let mut texts = vec![
+        direction("guide.pulses_cw", result.average_cw, result.lowest_cw),
+        direction("guide.pulses_ccw", result.average_ccw, result.lowest_ccw),
+    ];
+    texts.extend(motion("guide.motion_cw", report.clockwise));
+    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
+    texts.push(Text::new(if report.saved { "guide.result_saved" } else { "guide.result_not_saved" }));
+    texts
+}
+
+fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
+    let motion = motion?;
+    Some(Text::new(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::English;
+    use crate::protocol::biss::WiegandResult;
+
+    /// Manual 6.3: the average less four standard deviations has to be above 5.3 V.
+    #[test]
+    fn a_wiegand_result_is_measured_against_the_limit() {
+        let result = WiegandResult {
+            average_cw: PulseVoltage::new(63),
+            lowest_cw: PulseVoltage::new(54),
+            average_ccw: PulseVoltage::new(62),
+            lowest_ccw: PulseVoltage::new(53),
+        };
+        let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
+        let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
+        assert!(words[0].contains("6.3") && words[0].contains("5.4") && words[0].contains("above"), "{words:?}");
+        assert!(words[1].contains("5.3") && words[1].contains("not above"), "{words:?}");
+    }
+}

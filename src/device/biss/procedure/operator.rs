@@ -1,0 +1,384 @@
+//! Who stands beside the motor while a procedure runs: what is asked of that person, what is measured meanwhile, and what
+//! the person answers. In a window it is somebody at a button, on a production line nobody, in a test a script.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::Motion;
+
+/// A part of a procedure during which the motor turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Run {
+    /// The first run of the calibration.
+    CalibrationCounterclockwise,
+    /// The second run of the calibration; its failure loses the table.
+    CalibrationClockwise,
+    /// The first run of the Wiegand test.
+    WiegandClockwise,
+    /// The second run of the Wiegand test.
+    WiegandCounterclockwise,
+}
+
+/// Speeds in revolutions a minute, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedRange {
+    /// The slowest.
+    pub least: f64,
+    /// The fastest.
+    pub greatest: f64,
+}
+
+impl SpeedRange {
+    const fn new(least: f64, greatest: f64) -> Self {
+        SpeedRange { least, greatest }
+    }
+
+    fn contains(self, rpm: f64) -> bool {
+        (self.least..=self.greatest).contains(&rpm)
+    }
+}
+
+impl Run {
+    /// It needs rising positions.
+    pub const fn is_clockwise(self) -> bool {
+        matches!(self, Run::CalibrationClockwise | Run::WiegandClockwise)
+    }
+
+    /// It is part of the calibration.
+    pub const fn calibrates(self) -> bool {
+        matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
+    }
+
+    /// Manual 6.3 and 6.4: the speeds at which it may be started.
+    pub const fn allowed(self) -> SpeedRange {
+        if self.calibrates() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
+    }
+
+    /// Manual 6.4: the speed that gives the best result. For the Wiegand test all are as good.
+    pub const fn recommended(self) -> SpeedRange {
+        if self.calibrates() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
+    }
+}
+
+/// What the person is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Task {
+    /// Turn the motor as this run needs it.
+    Turn(Run),
+    /// Let the shaft stand: data are not accessed while it turns.
+    Stand,
+    /// Let the shaft stand at the place that is to have the preset value.
+    StandAtPlace,
+}
+
+/// Why a start is not possible yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Blocker {
+    /// There are not enough positions yet.
+    Measuring,
+    /// The encoder gives no position.
+    NoPosition,
+    /// The shaft stands and has to turn.
+    Standing,
+    /// The shaft turns and has to stand.
+    Turning {
+        /// Revolutions a minute, above 0 clockwise.
+        rpm: f64,
+    },
+    /// It turns the other way.
+    WrongDirection,
+    /// It turns too slowly or too fast.
+    Speed {
+        /// Revolutions a minute, without direction.
+        rpm: f64,
+        /// What is allowed.
+        allowed: SpeedRange,
+    },
+    /// The motor still accelerates, or its speed wavers.
+    Unsteady {
+        /// Revolutions a minute.
+        spread: f64,
+    },
+    /// Manual 6.4: 25…40 °C.
+    Temperature {
+        /// The encoder's temperature.
+        celsius: i16,
+    },
+}
+
+/// What a person should know before the start, which is possible all the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Advice {
+    /// Another speed, or a steadier one, gives a better result.
+    Speed {
+        /// What is recommended.
+        recommended: SpeedRange,
+    },
+    /// Manual 6.4: if this run fails, the table of the calibration is lost.
+    TableAtRisk,
+    /// The encoder marks its positions as invalid: the speed is taken from them all the same.
+    Marked,
+}
+
+/// What is asked, and what is measured at the moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Demand {
+    /// What the person is to do.
+    pub task: Task,
+    /// How the shaft turns; `None` until it is measured.
+    pub motion: Option<Motion>,
+    /// The encoder's temperature, where the procedure depends on it.
+    pub celsius: Option<i16>,
+    /// Why a start is not possible; empty where it is.
+    pub blockers: Vec<Blocker>,
+    /// What to know before it.
+    pub advice: Vec<Advice>,
+    /// How long this is being asked.
+    pub waited: Duration,
+}
+
+impl Demand {
+    /// The temperatures of the calibration.
+    const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
+    /// More than this part of the speed is no steady motor.
+    const UNSTEADY: f64 = 0.05;
+    /// A speed is measured to this part of it.
+    const EXACT: f64 = 0.01;
+    /// Below this nobody would say that a motor turns, in revolutions a minute.
+    const SLOWEST: f64 = 1.0;
+
+    /// Judges what was measured.
+    pub(super) fn new(task: Task, measured: Measured, waited: Duration) -> Self {
+        let Measured { motion, celsius, marked, unreadable } = measured;
+        let mut blockers = Vec::new();
+        let mut advice = Vec::new();
+        match (motion, task) {
+            _ if unreadable => blockers.push(Blocker::NoPosition),
+            (None, _) => blockers.push(Blocker::Measuring),
+            (Some(motion), Task::Turn(run)) => blockers.extend(Self::unfit(run, motion)),
+            (Some(motion), Task::Stand | Task::StandAtPlace) => {
+                blockers.extend((!motion.is_still()).then_some(Blocker::Turning { rpm: motion.rpm }));
+            }
+        }
+        if let Some(celsius) = celsius.filter(|celsius| !Self::CELSIUS.contains(celsius)) {
+            blockers.push(Blocker::Temperature { celsius });
+        }
+        if let (Task::Turn(run), Some(motion)) = (task, motion) {
+            let recommended = run.recommended();
+            let off = !recommended.contains(motion.rpm.abs()) || motion.spread > 2.0;
+            advice.extend((run.calibrates() && off).then_some(Advice::Speed { recommended }));
+            advice.extend(marked.then_some(Advice::Marked));
+        }
+        if task == Task::Turn(Run::CalibrationClockwise) {
+            advice.push(Advice::TableAtRisk);
+        }
+        Demand { task, motion, celsius, blockers, advice, waited }
+    }
+
+    fn unfit(run: Run, motion: Motion) -> Option<Blocker> {
+        let (rpm, allowed) = (motion.rpm.abs(), run.allowed());
+        let tolerance = rpm * Self::EXACT;
+        if rpm < Self::SLOWEST {
+            Some(Blocker::Standing)
+        } else if (motion.rpm > 0.0) != run.is_clockwise() {
+            Some(Blocker::WrongDirection)
+        } else if rpm + tolerance < allowed.least || rpm - tolerance > allowed.greatest {
+            Some(Blocker::Speed { rpm, allowed })
+        } else if motion.spread > rpm * Self::UNSTEADY {
+            Some(Blocker::Unsteady { spread: motion.spread })
+        } else {
+            None
+        }
+    }
+
+    /// Nothing stands against a start.
+    pub fn is_ready(&self) -> bool {
+        self.blockers.is_empty()
+    }
+}
+
+/// What was measured for a demand.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Measured {
+    pub(super) motion: Option<Motion>,
+    pub(super) celsius: Option<i16>,
+    /// Positions are marked as invalid.
+    pub(super) marked: bool,
+    /// There are none.
+    pub(super) unreadable: bool,
+}
+
+/// What the person answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Nothing yet.
+    Wait,
+    /// Start. It counts only where nothing stands against it.
+    Go,
+    /// Leave this part of the run out and go on with the next.
+    Skip,
+    /// End the run.
+    Cancel,
+    /// Nobody will come: end with what stands against the start.
+    GiveUp,
+}
+
+/// Whoever stands beside the motor.
+pub trait Operator {
+    /// Asked again and again, a few times a second, each time with a new measurement.
+    fn attend(&mut self, demand: &Demand) -> Answer;
+}
+
+/// Nobody: starts as soon as everything fits, and waits for that only so long.
+#[derive(Clone, Copy, Debug)]
+pub struct Unattended {
+    /// How long, for each thing that is asked.
+    pub patience: Duration,
+}
+
+impl Operator for Unattended {
+    fn attend(&mut self, demand: &Demand) -> Answer {
+        let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, Blocker::Temperature { .. }));
+        let measures = demand.blockers == [Blocker::Measuring];
+        if demand.is_ready() {
+            Answer::Go
+        } else if hopeless || (demand.waited >= self.patience && !measures) {
+            Answer::GiveUp
+        } else {
+            Answer::Wait
+        }
+    }
+}
+
+/// Somebody elsewhere, for whom answers are left here. Clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct Seat(Arc<Mutex<Option<(Task, Answer)>>>);
+
+impl Seat {
+    /// Answers what is being asked; an answer to anything else is not taken.
+    pub fn answer(&self, to: Task, answer: Answer) {
+        *self.slot() = Some((to, answer));
+    }
+
+    fn slot(&self) -> std::sync::MutexGuard<'_, Option<(Task, Answer)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Operator for Seat {
+    fn attend(&mut self, demand: &Demand) -> Answer {
+        match self.slot().take() {
+            Some((task, answer)) if task == demand.task => answer,
+            _ => Answer::Wait,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn turning(rpm: f64, spread: f64) -> Measured {
+        let motion = Some(Motion { rpm, spread, travel: rpm.abs() / 60.0 });
+        Measured { motion, celsius: Some(30), ..Measured::default() }
+    }
+
+    fn demand(task: Task, measured: Measured) -> Demand {
+        Demand::new(task, measured, Duration::ZERO)
+    }
+
+    /// Manual 6.3 and 6.4.
+    #[test]
+    fn a_start_is_possible_only_where_everything_fits() {
+        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let allowed = SpeedRange { least: 300.0, greatest: 700.0 };
+        let cases = [
+            (first, -500.0, 0.0, vec![]),
+            (first, -300.0, 0.0, vec![]),
+            (first, -700.0, 0.0, vec![]),
+            (first, 500.0, 0.0, vec![Blocker::WrongDirection]),
+            (second, 500.0, 0.0, vec![]),
+            (second, -500.0, 0.0, vec![Blocker::WrongDirection]),
+            (first, -290.0, 0.0, vec![Blocker::Speed { rpm: 290.0, allowed }]),
+            (first, -710.0, 0.0, vec![Blocker::Speed { rpm: 710.0, allowed }]),
+            (first, 0.5, 0.0, vec![Blocker::Standing]),
+            (first, -500.0, 26.0, vec![Blocker::Unsteady { spread: 26.0 }]),
+            (Run::WiegandClockwise, 500.0, 20.0, vec![]),
+            (Run::WiegandClockwise, 2000.0, 0.0, vec![]),
+            (Run::WiegandCounterclockwise, -1000.0, 0.0, vec![]),
+            (Run::WiegandCounterclockwise, 1000.0, 0.0, vec![Blocker::WrongDirection]),
+            (
+                Run::WiegandClockwise,
+                450.0,
+                0.0,
+                vec![Blocker::Speed { rpm: 450.0, allowed: SpeedRange { least: 500.0, greatest: 2000.0 } }],
+            ),
+        ];
+        for (run, rpm, spread, blockers) in cases {
+            let demand = demand(Task::Turn(run), turning(rpm, spread));
+            assert_eq!(demand.blockers, blockers, "{run:?} at {rpm}");
+            assert_eq!(demand.is_ready(), blockers.is_empty());
+        }
+    }
+
+    #[test]
+    fn temperature_and_missing_positions_stand_against_a_start() {
+        let task = Task::Turn(Run::CalibrationCounterclockwise);
+        for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
+            let measured = Measured { celsius: Some(celsius), ..turning(-500.0, 0.0) };
+            let expected = if fits { vec![] } else { vec![Blocker::Temperature { celsius }] };
+            assert_eq!(demand(task, measured).blockers, expected);
+        }
+        assert_eq!(demand(task, Measured::default()).blockers, [Blocker::Measuring]);
+        let unreadable = Measured { unreadable: true, ..Measured::default() };
+        assert_eq!(demand(task, unreadable).blockers, [Blocker::NoPosition]);
+    }
+
+    #[test]
+    fn advice_is_given_and_stops_nobody() {
+        let advice = |run, rpm, spread| demand(Task::Turn(run), turning(rpm, spread)).advice;
+        let speed = Advice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
+        assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 1.9), []);
+        assert_eq!(advice(Run::CalibrationCounterclockwise, -503.0, 0.0), [speed]);
+        assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 2.1), [speed]);
+        assert_eq!(advice(Run::CalibrationClockwise, 501.0, 0.0), [Advice::TableAtRisk]);
+        assert_eq!(advice(Run::WiegandClockwise, 1234.0, 9.0), []);
+        let marked = Measured { marked: true, ..turning(1000.0, 0.0) };
+        assert_eq!(demand(Task::Turn(Run::WiegandClockwise), marked).advice, [Advice::Marked]);
+    }
+
+    #[test]
+    fn a_shaft_that_is_to_stand_may_not_turn() {
+        for task in [Task::Stand, Task::StandAtPlace] {
+            assert_eq!(demand(task, turning(3.0, 0.0)).blockers, [Blocker::Turning { rpm: 3.0 }]);
+            assert!(demand(task, turning(0.0, 0.0)).is_ready());
+        }
+    }
+
+    #[test]
+    fn nobody_starts_as_soon_as_it_fits_and_waits_so_long() {
+        let mut nobody = Unattended { patience: Duration::from_secs(10) };
+        let task = Task::Turn(Run::WiegandClockwise);
+        let mut ask = |measured, seconds| nobody.attend(&Demand::new(task, measured, Duration::from_secs(seconds)));
+        let fits = Measured { celsius: None, ..turning(1000.0, 0.0) };
+        let stands = Measured { celsius: None, ..turning(0.0, 0.0) };
+        assert_eq!(ask(fits, 0), Answer::Go);
+        assert_eq!((ask(stands, 9), ask(stands, 10)), (Answer::Wait, Answer::GiveUp));
+        assert_eq!(ask(Measured::default(), 11), Answer::Wait, "it ends with a reason");
+        assert_eq!(ask(Measured { celsius: Some(50), ..fits }, 0), Answer::GiveUp, "waiting does not cool it");
+    }
+
+    #[test]
+    fn an_answer_belongs_to_what_was_asked() {
+        let seat = Seat::default();
+        let mut operator = seat.clone();
+        let (first, second) = (Task::Turn(Run::WiegandClockwise), Task::Turn(Run::WiegandCounterclockwise));
+        let mut ask = |task| operator.attend(&demand(task, Measured::default()));
+        assert_eq!(ask(first), Answer::Wait);
+        seat.answer(first, Answer::Go);
+        assert_eq!(ask(second), Answer::Wait, "pressed too late, for the run before");
+        assert_eq!(ask(first), Answer::Wait, "and it does not wait there");
+        seat.answer(first, Answer::Skip);
+        assert_eq!((ask(first), ask(first)), (Answer::Skip, Answer::Wait));
+    }
+}

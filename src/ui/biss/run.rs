@@ -1,0 +1,178 @@
+//! A guided procedure on its way: its steps, what to do now, what is measured against what is allowed, and the end with its
+//! report.
+
+use egui::{RichText, Ui};
+
+use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
+use crate::app::{Action, Text, explain::biss as says};
+use crate::device::biss::procedure::{Answer, Demand, Detail, Outcome, Task};
+use crate::profile::biss::Op;
+use crate::ui::controls::{button, card, enabled_button, paragraph};
+use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+use crate::ui::{Skin, icons};
+
+pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    if let Some(end) = &guide.end {
+        end_ui(ui, skin, encoder, end, actions);
+        ui.add_space(skin.space.groups);
+    }
+    card(ui, skin, "guide.title", |ui| {
+        let list: Vec<Step> =
+            guide.steps().iter().map(|own| step(skin, guide, own.op, own.is_first, own.step, own.reached)).collect();
+        let demand = guide.demand();
+        let why = demand.and_then(|own| own.blockers.first()).map(|own| skin.words(&says::blocker(*own)));
+        let word = skin.say(match demand.map(|own| own.task) {
+            Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
+            _ => "guide.start",
+        });
+        let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
+        let (skip, cancel) = (skin.say("guide.skip"), skin.say("guide.cancel"));
+        let stopping = encoder.session.line().and_then(|line| line.running()).is_some_and(|own| own.stopping);
+        let model = Steps {
+            steps: &list,
+            start,
+            skip: demand.map(|_| skip.as_str()),
+            cancel: (guide.is_running() && !stopping).then_some(cancel.as_str()),
+        };
+        let event = steps(ui, skin, &model);
+        if stopping && guide.is_running() {
+            ui.label(skin.label(skin.say("shell.stopping")));
+        }
+        match (event, demand) {
+            (Some(StepsEvent::Start), Some(own)) => {
+                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Go)));
+            }
+            (Some(StepsEvent::Skip), Some(own)) => {
+                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Skip)));
+            }
+            (Some(StepsEvent::Cancel), _) => actions.push(Action::Stop),
+            _ => {}
+        }
+    });
+    if let Some(motor) = &encoder.motor {
+        ui.add_space(skin.space.groups);
+        super::encoder::motor_ui(ui, skin, encoder, motor, actions);
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "a step is told what it is of")]
+fn step(
+    skin: &Skin,
+    guide: &Guide,
+    op: &Op,
+    is_first: bool,
+    own: crate::device::biss::procedure::Step,
+    reached: Reached,
+) -> Step {
+    let what = skin.words(&says::step(own));
+    let title = if is_first { format!("{} · {what}", skin.words(&says::procedure(op))) } else { what };
+    let (state, word) = match reached {
+        Reached::Done => (StepState::Done, "guide.done"),
+        Reached::Waits => (StepState::Waiting, "guide.waits"),
+        Reached::Runs => (StepState::Running, "guide.runs"),
+        Reached::Failed => (StepState::Failed, "guide.failed"),
+        Reached::Ahead => (StepState::ToCome, "guide.ahead"),
+    };
+    let mut step = Step { title, state, word: skin.say(word), ..Step::default() };
+    match (reached, guide.detail()) {
+        (Reached::Waits, Some(Detail::Demand(demand))) => {
+            let notes: Vec<String> = demand.advice.iter().map(|own| skin.words(&says::advice(*own))).collect();
+            step.note = notes.join("\n");
+            step.gauges = gauges(skin, demand);
+        }
+        (Reached::Runs, Some(Detail::Count { done, total })) => {
+            step.progress = Some(*done as f32 / (*total).max(1) as f32);
+            step.note = format!("{done}/{total}");
+        }
+        (Reached::Runs, Some(Detail::Lasts { elapsed, expected })) => {
+            step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
+            step.note = format!("{} s", skin.number(elapsed.as_secs_f64(), 0));
+        }
+        _ => {}
+    }
+    step
+}
+
+/// What is measured while a person is to turn the motor.
+fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
+    let mut gauges = Vec::new();
+    if let Task::Turn(run) = demand.task {
+        let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
+        let allowed = run.allowed();
+        let rpm = demand.motion.map(|own| own.rpm * sign);
+        let limits = Text::new("guide.rpm_range").with_number("least", allowed.least, 0).with_number(
+            "greatest",
+            allowed.greatest,
+            0,
+        );
+        gauges.push(Gauge {
+            name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+            value: rpm,
+            shown: rpm.map(|rpm| format!("{} 1/min", skin.number(rpm, 1))).unwrap_or_default(),
+            allowed: allowed.least..=allowed.greatest,
+            limits: skin.words(&limits),
+            scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
+        });
+        if run.calibrates() {
+            let celsius = demand.celsius.map(f64::from);
+            gauges.push(Gauge {
+                name: skin.say("biss_status.temperature"),
+                value: celsius,
+                shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
+                allowed: 25.0..=40.0,
+                limits: "25…40 °C".to_owned(),
+                scale: 10.0..=55.0,
+            });
+        }
+    }
+    gauges
+}
+
+fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    let title = match end {
+        End::Done(_) => "guide.report",
+        End::Failed { .. } => "guide.ended_early",
+    };
+    card(ui, skin, title, |ui| {
+        let outcomes = match end {
+            End::Done(outcomes) => outcomes,
+            End::Failed { before, .. } => before,
+        };
+        if let End::Failed { texts, .. } = end {
+            for text in texts {
+                ui.horizontal_top(|ui| {
+                    ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
+                    paragraph(ui, skin.words(text));
+                });
+            }
+        }
+        let lines = report(skin, outcomes);
+        for line in &lines {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                paragraph(ui, line);
+            });
+        }
+        ui.horizontal_wrapped(|ui| {
+            if let End::Failed { may_lead_back: true, .. } = end {
+                let word = skin.say("lead_back_card.button");
+                if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
+                    actions.push(Action::Biss(id, Biss::LeadBack));
+                }
+            }
+            if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
+                let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));
+                ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
+            }
+            if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
+                actions.push(Action::Biss(id, Biss::CloseGuide));
+            }
+        });
+    });
+}
+
+fn report(skin: &Skin, outcomes: &[Outcome]) -> Vec<String> {
+    outcomes.iter().flat_map(says::outcome).map(|text| skin.words(&text)).collect()
+}

@@ -1,0 +1,122 @@
+//! What a BiSS encoder brings to a write.
+
+use jiff::Timestamp;
+
+use super::{Attendance, Biss, Commit, Committed, Doing, JobError, Prepared, WEAR_LIMIT, device_key};
+use crate::device::biss::procedure::{Failure, News};
+use crate::device::biss::write::{Confirmed, Interrupted, Written, carry_out, confirm};
+use crate::device::biss::{Error, Master};
+use crate::profile::biss::{BissProfile, DataImage, Op, PresetSetting, Recorded};
+use crate::profile::{Body, Document, Unknown};
+use crate::store::Outcome;
+use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
+use crate::worker::{Desk, Progress};
+
+pub(super) fn commit(
+    encoder: &mut Biss,
+    desk: &mut Desk,
+    commit: &Commit,
+    tell: &mut dyn FnMut(Progress<Doing>),
+) -> Result<Committed, JobError> {
+    let prepared = &commit.prepared;
+    let plan = &prepared.plan;
+    if plan.is_empty() {
+        return Ok(Committed::default());
+    }
+    let store = desk.store.clone();
+    let terms = Terms {
+        device: device_key(&prepared.identity, desk.is_virtual),
+        items: plan.ops.iter().map(Op::item).collect(),
+        cost: plan.write_cycles(),
+        seen: prepared.cycles_seen,
+        limit: WEAR_LIMIT,
+        force_wear: commit.force_wear,
+    };
+    encoder.know(desk)?;
+    let attendance = commit.attendance.clone();
+    let mut write = EncoderWrite { master: encoder.master(desk), commit, attendance, tell };
+    match carry_through(&store, &terms, &mut write) {
+        Ok(done) => {
+            Ok(Committed { written: done.written, backup: Some(done.backup), logbook_warning: done.logbook_warning })
+        }
+        Err(Failed::Worn { seen, cost, limit }) => Err(JobError::Worn { used: seen, cost, limit }),
+        Err(Failed::Refused(error)) => Err(error.into()),
+        Err(Failed::NotKept(error)) => Err(JobError::NotKept(error)),
+        Err(Failed::Interrupted { interrupted, backup }) => {
+            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind })
+        }
+    }
+}
+
+struct EncoderWrite<'w, 'm> {
+    master: Master<'m>,
+    commit: &'w Commit,
+    attendance: Attendance,
+    tell: &'w mut dyn FnMut(Progress<Doing>),
+}
+
+impl<'w> Write for EncoderWrite<'w, '_> {
+    type Confirmed = Confirmed<'w>;
+    type Written = Written;
+    type Refusal = Error;
+    type Interrupted = Box<Interrupted>;
+
+    fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
+        let Commit { prepared, consent, .. } = self.commit;
+        confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
+    }
+
+    fn before_image(&self) -> String {
+        before_image(&self.commit.prepared)
+    }
+
+    fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
+        let ops = &self.commit.prepared.plan.ops;
+        let told = &mut |news: News| {
+            let item = ops.get(news.op).map(Op::item).unwrap_or_default();
+            let (done, total) = (news.op as u64, ops.len() as u64);
+            (self.tell)(Progress { done, total, what: Doing::Operation { item, news: Box::new(news) } });
+        };
+        carry_out(&mut self.master, confirmed, &mut self.attendance, told)
+    }
+
+    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
+        match ended {
+            Ok(written) => (Outcome::Done, written.write_cycles),
+            Err(interrupted) => {
+                let outcome = match &interrupted.cause {
+                    Failure::Device(Error::Cancelled) => Outcome::Cancelled,
+                    cause => Outcome::Failed(cause.to_string()),
+                };
+                (outcome, interrupted.done.write_cycles)
+            }
+        }
+    }
+}
+
+/// A profile of what the plan touches, as it was.
+fn before_image(prepared: &Prepared) -> String {
+    let base = &prepared.plan.base;
+    let description = &prepared.identity.description;
+    let touched = description.areas().iter().map(|area| {
+        let banks = base.banks.iter().filter(|bank| area.contains(bank.number)).copied();
+        DataImage::of(area, banks.collect())
+    });
+    let mut profile = BissProfile {
+        identity: prepared.identity.profile(),
+        filter: base.filter,
+        preset: base.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
+        recorded: Recorded::default(),
+        mounting: Vec::new(),
+        data: touched.filter(|image| image.all().next().is_some()).collect(),
+    };
+    profile.mark_mounting();
+    let mut document = Document::new(Timestamp::now().to_string(), Body::Biss(profile));
+    let mut note = "before-image of a write".to_owned();
+    for (address, value) in &base.registers {
+        // A profile has no place for them.
+        note.push_str(&format!("; {address} was 0x{value:02X}"));
+    }
+    document.note = Some(note);
+    document.emit()
+}
