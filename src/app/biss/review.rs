@@ -65,7 +65,7 @@ impl Reviewed for Review {
             warnings.push(Text::new("biss_review.missing").with_list("items", items));
         }
         if !prepared.mounting_left.is_empty() {
-            let items = prepared.mounting_left.iter().map(|range| explain::plain(range));
+            let items = prepared.mounting_left.iter().map(explain::plain);
             warnings.push(Text::new("review.mounting_left").with_list("items", items));
         }
         warnings

@@ -100,7 +100,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
     if let Task::Turn(run) = demand.task {
         let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
         let allowed = run.allowed();
-        let rpm = demand.motion.map(|own| own.rpm * sign);
+        let (rpm, unit) = (demand.motion.map(|own| own.rpm * sign), skin.say("unit.revolutions_per_minute"));
         let limits = Text::new("guide.rpm_range").with_number("least", allowed.least, 0).with_number(
             "greatest",
             allowed.greatest,
@@ -109,7 +109,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
         gauges.push(Gauge {
             name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
             value: rpm,
-            shown: rpm.map(|rpm| format!("{} 1/min", skin.number(rpm, 1))).unwrap_or_default(),
+            shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
             allowed: allowed.least..=allowed.greatest,
             limits: skin.words(&limits),
             scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
