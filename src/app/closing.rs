@@ -74,6 +74,7 @@ impl Studio {
         if std::mem::replace(&mut self.closing, true) {
             return;
         }
+        self.signals.stop(&mut self.services);
         let patience = self.services.world.patience;
         let limits = [(Waited::Disk, patience.disk), (Waited::Jobs, patience.job), (Waited::Writes, patience.write)];
         for (what, limit) in limits {

@@ -11,6 +11,7 @@ use super::session::{Kind, LastWords};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Wire};
+use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
 /// How long closing waits, and opening for a wire that somebody still holds.
@@ -74,6 +75,20 @@ impl<D: Kind> Left for Ending<D> {
     }
 }
 
+impl Left for End {
+    fn is_ended(&self) -> bool {
+        self.has_come()
+    }
+
+    fn wait(&self, patience: Duration) -> bool {
+        End::wait(self, patience)
+    }
+
+    fn last_words(&self) -> Vec<LastWords> {
+        Vec::new()
+    }
+}
+
 /// Two links that lead to the same wire.
 pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
@@ -82,7 +97,16 @@ pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 impl Services {
     /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
     pub(super) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
-        let ending: Arc<dyn Left> = Arc::new(worker.end());
+        self.let_end(Arc::new(worker.end()), who, turn);
+    }
+
+    /// Lets a stream go, which belongs to no session.
+    pub(super) fn leave_stream(&mut self, end: End, url: LinkUrl) {
+        let who = Leaver { session: SessionId::default(), about: String::new(), url, write: None };
+        self.let_end(Arc::new(end), who, None);
+    }
+
+    fn let_end(&mut self, ending: Arc<dyn Left>, who: Leaver, turn: Option<Sender<()>>) {
         let (watched, patience) = (ending.clone(), self.patience_with(who.write.is_some()));
         self.tasks.run("leave", move || {
             watched.wait(patience);

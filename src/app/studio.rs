@@ -377,7 +377,7 @@ impl Studio {
         for device in &mut self.devices {
             device.stop(&mut self.services);
         }
-        self.signals.stop();
+        self.signals.stop(&mut self.services);
         if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
             search.stop();
         }

@@ -16,6 +16,7 @@ mod recording;
 mod remembering;
 mod screen;
 mod signals;
+mod signals_adapter;
 mod signals_beside;
 mod signals_calculators;
 mod signals_live;

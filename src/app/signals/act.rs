@@ -19,7 +19,7 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: u32,
-    /// The virtual encoder.
+    /// The virtual encoder, or an adapter.
     pub(super) source: Source,
     synchronise: Synchronise,
     /// The signals over time.
@@ -40,7 +40,7 @@ impl Default for Signals {
             periods: 1024,
             source: Source::default(),
             synchronise: Synchronise::default(),
-            scope: Scope::live(),
+            scope: Scope::live(true),
             measurement: None,
             comparison: None,
             table: None,
@@ -78,7 +78,7 @@ impl Signals {
         self.measurement.as_ref()
     }
 
-    /// The virtual encoder.
+    /// The virtual encoder, or an adapter.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -130,8 +130,8 @@ impl Signals {
     }
 
     /// Stops all that runs.
-    pub(in crate::app) fn stop(&mut self) {
-        self.source.stop();
+    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+        self.source.stop(services);
         self.give_up();
     }
 
@@ -218,7 +218,7 @@ impl Signals {
                 self.forget_reading();
                 "signals.reading_failed"
             }
-            Failed::Measure(number) if self.not_measured(number) => "signals.measuring_failed",
+            Failed::Measure(number) if self.not_measured(number, services) => "signals.measuring_failed",
             Failed::Judge => "signals.judging_failed",
             Failed::Read(_) | Failed::Measure(_) => return,
         };
@@ -241,7 +241,7 @@ impl Signals {
         }
     }
 
-    /// The newest samples of the virtual encoder take the place of what was shown.
+    /// The newest samples of the source take the place of what was shown.
     pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
         self.show(measurement, services);
         self.problem = None;
@@ -253,7 +253,7 @@ impl Signals {
         let path = table.place.path();
         match result {
             Ok((measurement, scope)) => {
-                self.source.stop();
+                self.source.stop(services);
                 self.replace_scope(scope, services);
                 let judge = measurement.judge;
                 self.show(measurement, services);

@@ -36,7 +36,7 @@ pub enum Action {
     Keep,
     /// Compare no longer.
     DropComparison,
-    /// About the virtual encoder.
+    /// About what runs: the virtual encoder, or an adapter.
     Source(SourceAction),
     /// Absolute and analogue position brought together.
     Synchronise(synchronise::Action),
@@ -58,7 +58,7 @@ pub enum Done {
         /// What came of it.
         measurement: Box<Measurement>,
     },
-    /// The newest samples of the virtual encoder were measured.
+    /// The newest samples of the source were measured.
     Measured {
         /// Since which start: only the latest counts.
         number: u32,

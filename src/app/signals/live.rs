@@ -1,28 +1,34 @@
-//! The virtual encoder as a source: its settings, its newest samples, and the measurement of them, which is made again a
-//! few times a second. Samples come from `worker::stream`; whoever draws never waits for them.
+//! What samples on and on: the virtual encoder, or an adapter; its settings, its newest samples, and the measurement of
+//! them, which is made again a few times a second. Samples come from `worker::stream`; whoever draws never waits for them.
 
 use std::sync::Arc;
 
+use super::feed::{AdapterLink, Feed};
 use super::recent::{MOST, Recent};
 use super::{Done, Failed, Measurement, Origin, Scope, Signals, promise};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
-use crate::link::{Clock, RealClock};
+use crate::device::bridge::Streaming;
 use crate::signal::Time;
 use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
-use crate::worker::stream::{Analogue, Stream};
 
-/// What a person asks of the virtual encoder.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a person asks of the source.
+#[derive(Clone, Debug, PartialEq)]
 pub enum SourceAction {
-    /// Let it turn.
+    /// Let the virtual encoder turn.
     Start,
+    /// Let the adapter sample.
+    StartAdapter,
+    /// Another link to an adapter, as it is typed; the one that runs keeps its own.
+    SetLink(String),
+    /// So many samples a second wished of an adapter; one that runs keeps its own.
+    SetSampleRate(u32),
     /// Stand still; what was measured last stays.
     Stop,
-    /// Keep what is shown while it turns on, or go on.
+    /// Keep what is shown while it goes on, or go on.
     Hold(bool),
-    /// Another value of a setting; one outside of its range is refused in words.
+    /// Another value of a setting of the virtual encoder; one outside of its range is refused in words.
     Set(Quantity, f64),
     /// Break a wire, or mend it.
     SetOpenWire(Option<Wire>),
@@ -32,15 +38,31 @@ pub enum SourceAction {
     SetReferences(References),
     /// Measure the newest samples of so many milliseconds, 10 to 10 000.
     SetWindow(u32),
-    /// All settings as they were to begin with.
+    /// All settings of the virtual encoder as they were to begin with.
     Reset,
 }
 
-/// The virtual encoder, running or not.
+/// Which source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SourceKind {
+    /// The virtual encoder.
+    #[default]
+    Encoder,
+    /// An adapter.
+    Adapter,
+}
+
+/// The source, running or not.
 pub struct Source {
-    /// What was set last and could be.
+    /// What was set last of the virtual encoder and could be.
     settings: Settings,
     problem: Option<Text>,
+    /// The link to the adapter, as typed.
+    link: String,
+    sample_hz: u32,
+    adapter_problem: Option<Text>,
+    /// Which one was started last.
+    kind: SourceKind,
     window_ms: u32,
     runs: u32,
     /// Samples that were lost, but for those that the stream counts while it runs.
@@ -50,7 +72,7 @@ pub struct Source {
 
 /// A running source.
 struct Live {
-    stream: Stream<Analogue>,
+    feed: Feed,
     recent: Recent,
     held: bool,
     /// A task measures.
@@ -59,19 +81,30 @@ struct Live {
     measured: Option<Time>,
 }
 
-/// Samples that wait for the window, at most: two seconds at 100 kHz.
-const WAITING: usize = 200_000;
 /// Windows that can be measured, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
+/// The virtual adapter, whose shaft turns slowly enough for a period to be seen.
+pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
     fn default() -> Self {
-        Source { settings: Settings::default(), problem: None, window_ms: 200, runs: 0, lost: 0, live: None }
+        Source {
+            settings: Settings::default(),
+            problem: None,
+            link: VIRTUAL_ADAPTER.to_owned(),
+            sample_hz: 100_000,
+            adapter_problem: None,
+            kind: SourceKind::default(),
+            window_ms: 200,
+            runs: 0,
+            lost: 0,
+            live: None,
+        }
     }
 }
 
 impl Source {
-    /// What is set.
+    /// What is set of the virtual encoder.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -81,35 +114,72 @@ impl Source {
         self.problem.as_ref()
     }
 
+    /// The link to the adapter, as typed.
+    pub fn link(&self) -> &str {
+        &self.link
+    }
+
+    /// Samples a second that are wished of an adapter.
+    pub fn sample_hz(&self) -> u32 {
+        self.sample_hz
+    }
+
+    /// Why the adapter samples no more, or could not be asked to.
+    pub fn adapter_problem(&self) -> Option<&Text> {
+        self.adapter_problem.as_ref()
+    }
+
+    /// Which source was started last.
+    pub fn kind(&self) -> SourceKind {
+        self.kind
+    }
+
+    /// The adapter that runs and how it samples; `None` while it is being asked.
+    pub fn streaming(&self) -> Option<&Streaming> {
+        self.live.as_ref().and_then(|live| live.feed.streaming())
+    }
+
+    /// The source that runs lives in this process.
+    pub fn is_virtual(&self) -> bool {
+        self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
+    }
+
     /// How many milliseconds of the newest samples are measured.
     pub fn window_ms(&self) -> u32 {
         self.window_ms
     }
 
-    /// It turns.
+    /// It runs.
     pub fn is_running(&self) -> bool {
         self.live.is_some()
     }
 
-    /// What is shown is kept while it turns on.
+    /// What is shown is kept while it goes on.
     pub fn is_held(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
     /// The milliseconds that are measured where the samples that can be measured at once last shorter than what is set.
     pub fn shortened_ms(&self) -> Option<f64> {
-        let longest_ms = MOST as f64 * self.settings.period_ns() as f64 / 1e6;
+        let period_ns = match self.kind {
+            SourceKind::Encoder => self.settings.period_ns(),
+            SourceKind::Adapter => self.streaming()?.period_ns,
+        };
+        let longest_ms = MOST as f64 * period_ns as f64 / 1e6;
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Samples that were lost since it was started last, because nobody read them in time or nobody could show them.
+    /// Samples that were lost since it was started last, on their way, because nobody read them in time or because nobody
+    /// could show them.
     pub fn lost(&self) -> u64 {
-        self.lost + self.live.as_ref().map_or(0, |live| live.stream.lost())
+        self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
     }
 
-    pub(super) fn stop(&mut self) {
+    pub(super) fn stop(&mut self, services: &mut Services) {
         self.lost = self.lost();
-        self.live = None;
+        if let Some(live) = self.live.take() {
+            live.feed.let_go(services);
+        }
     }
 
     /// Whether it could be.
@@ -119,7 +189,7 @@ impl Source {
                 self.settings = checked.settings().clone();
                 self.problem = None;
                 if let Some(live) = &self.live {
-                    live.stream.change(checked);
+                    live.feed.change(checked);
                 }
                 true
             }
@@ -130,9 +200,8 @@ impl Source {
         }
     }
 
-    /// Whether it runs now.
-    fn start(&mut self, services: &mut Services) -> bool {
-        let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    /// Whether the virtual encoder runs now.
+    fn start_encoder(&mut self, services: &mut Services) -> bool {
         let checked = match self.settings.clone().checked() {
             Ok(checked) => checked,
             Err(error) => {
@@ -140,19 +209,59 @@ impl Source {
                 return false;
             }
         };
-        let producer = Analogue::new(checked, clock.now());
-        match Stream::spawn(producer, WAITING, clock, services.tasks.wake()) {
-            Ok(stream) => {
-                self.runs = self.runs.wrapping_add(1);
-                self.lost = 0;
-                let recent = Recent::default();
-                self.live = Some(Live { stream, recent, held: false, measuring: false, measured: None });
+        match Feed::of_encoder(checked, services) {
+            Ok(feed) => {
+                self.run(SourceKind::Encoder, feed, services);
                 true
             }
-            Err(error) => {
-                let text = Text::new("session.no_thread").with("why", error);
-                services.tell(Severity::Error, vec![text], None);
+            Err(why) => {
+                services.tell(Severity::Error, vec![why], None);
                 false
+            }
+        }
+    }
+
+    /// Whether the adapter is being asked now. What is wrong with the link is told where that stands.
+    fn start_adapter(&mut self, services: &mut Services) -> bool {
+        let link = match AdapterLink::read(&self.link) {
+            Ok(link) => link,
+            Err(why) => {
+                self.adapter_problem = Some(why);
+                return false;
+            }
+        };
+        // What runs gives its wire back first.
+        self.stop(services);
+        match link.start(self.sample_hz, services) {
+            Ok(feed) => {
+                self.adapter_problem = None;
+                self.run(SourceKind::Adapter, feed, services);
+                true
+            }
+            Err(why) => {
+                services.tell(Severity::Error, vec![why], None);
+                false
+            }
+        }
+    }
+
+    fn run(&mut self, kind: SourceKind, feed: Feed, services: &mut Services) {
+        self.stop(services);
+        self.kind = kind;
+        self.runs = self.runs.wrapping_add(1);
+        self.lost = 0;
+        self.live = Some(Live { feed, recent: Recent::default(), held: false, measuring: false, measured: None });
+    }
+}
+
+impl Live {
+    /// Whose samples these are; `None` while an adapter has not told.
+    fn origin(&self) -> Option<Origin> {
+        match &self.feed {
+            Feed::Virtual(_) => Some(Origin::Virtual),
+            Feed::Adapter { .. } => {
+                let name = self.feed.streaming()?.hello.name.clone();
+                Some(Origin::Adapter { name, is_virtual: self.feed.is_virtual() })
             }
         }
     }
@@ -163,13 +272,24 @@ impl Signals {
         let settings = self.source.settings().clone();
         match action {
             SourceAction::Start => {
-                if self.source.start(services) {
+                if self.source.start_encoder(services) {
                     self.forget_reading();
-                    self.replace_scope(Scope::live(), services);
+                    self.replace_scope(Scope::live(true), services);
                     self.set_periods(settings.periods as u32, services);
                 }
             }
-            SourceAction::Stop => self.source.stop(),
+            SourceAction::StartAdapter => {
+                if self.source.start_adapter(services) {
+                    self.forget_reading();
+                    self.replace_scope(Scope::live(false), services);
+                }
+            }
+            SourceAction::SetLink(link) => {
+                self.source.link = link;
+                self.source.adapter_problem = None;
+            }
+            SourceAction::SetSampleRate(sample_hz) => self.source.sample_hz = sample_hz.max(1),
+            SourceAction::Stop => self.source.stop(services),
             SourceAction::Hold(held) => {
                 if let Some(live) = &mut self.source.live {
                     live.held = held;
@@ -196,9 +316,10 @@ impl Signals {
         }
     }
 
-    /// Other settings of the source; where its periods a revolution were set, they count for what is shown too.
+    /// Other settings of the virtual encoder; where its periods a revolution were set, they count for what is shown too.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
-        if self.source.change(settings) && with_periods {
+        let own = self.source.kind == SourceKind::Encoder;
+        if self.source.change(settings) && with_periods && own {
             self.set_periods(self.source.settings().periods as u32, services);
         }
     }
@@ -209,8 +330,8 @@ impl Signals {
         let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };
         // Asked first: what came before the end is taken.
-        let ended = live.stream.is_ended();
-        for batch in live.stream.take() {
+        let ended = live.feed.is_ended();
+        for batch in live.feed.take() {
             if !live.held {
                 self.source.lost += self.scope.add(&batch);
             }
@@ -223,21 +344,23 @@ impl Signals {
         if live.held || live.measuring || !live.recent.is_due(live.measured) {
             return;
         }
-        let Some(window) = live.recent.window(window_ms) else { return };
+        let Some((window, origin)) = live.recent.window(window_ms).zip(live.origin()) else { return };
         live.measuring = true;
         live.measured = live.recent.newest();
         promise::run(&services.tasks, "measure", Done::Failed(Failed::Measure(number)), move || {
-            let measurement = Measurement::of(Origin::Virtual, Arc::new(window.capture()), judge);
+            let measurement = Measurement::of(origin, Arc::new(window.capture()), judge);
             Done::Measured { number, measurement: Box::new(measurement) }
         });
     }
 
     /// The source has ended by itself.
     fn ended(&mut self, services: &mut Services) {
-        let error = self.source.live.as_ref().and_then(|live| live.stream.take_error());
-        self.source.stop();
-        let text = Text::new(if error.is_some() { "virtual.forgotten" } else { "virtual.ended" });
-        services.tell(Severity::Error, vec![text], None);
+        let Some(why) = self.source.live.as_ref().map(|live| live.feed.why_ended()) else { return };
+        self.source.stop(services);
+        if self.source.kind == SourceKind::Adapter {
+            self.source.adapter_problem = Some(why.clone());
+        }
+        services.tell(Severity::Error, vec![why], None);
     }
 
     /// The newest samples were measured.
@@ -257,10 +380,10 @@ impl Signals {
     }
 
     /// The newest samples could not be measured: what cannot be done once is not tried four times a second.
-    pub(super) fn not_measured(&mut self, number: u32) -> bool {
+    pub(super) fn not_measured(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {
-            self.source.stop();
+            self.source.stop(services);
         }
         current
     }

@@ -24,6 +24,13 @@ pub enum Origin {
     Table(Place),
     /// The virtual encoder.
     Virtual,
+    /// An adapter.
+    Adapter {
+        /// What it calls itself.
+        name: String,
+        /// It lives in this process.
+        is_virtual: bool,
+    },
 }
 
 /// Where a table lies.
@@ -40,6 +47,8 @@ impl Origin {
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => Text::new("signals.virtual"),
+            Origin::Adapter { is_virtual: true, .. } => Text::new("signals.virtual_adapter"),
+            Origin::Adapter { name, .. } => Text::new("signals.adapter").with("name", name),
             Origin::Table(place) => place.name(),
         }
     }

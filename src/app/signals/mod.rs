@@ -1,9 +1,11 @@
-//! The Signals tab: a capture of sine and cosine on the desk, from a file or a virtual encoder, and what is to be known about it. Complete
-//! without a window and without an encoder; what takes long runs as a task, and what comes late is dropped.
+//! The Signals tab: a capture of sine and cosine on the desk, from a file, a virtual encoder or an adapter, and what is to
+//! be known about it. Complete without a window and without an encoder; what takes long runs as a task, and what comes late
+//! is dropped.
 
 mod act;
 mod action;
 mod beside;
+mod feed;
 pub mod forms;
 pub mod input_circuit;
 pub mod interpolation;
@@ -21,7 +23,7 @@ mod table;
 pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};
 pub use beside::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
-pub use live::{Source, SourceAction};
+pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
 pub use measurement::{Judge, Measurement, Origin, Place, Results};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};

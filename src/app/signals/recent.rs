@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use super::feed::Channels;
 use crate::signal::Time;
 use crate::signal::capture::Capture;
 use crate::signal::wires::Wires;
@@ -12,7 +13,7 @@ use crate::worker::stream::Batch;
 /// The newest samples without a gap.
 #[derive(Default)]
 pub(super) struct Recent {
-    chunks: VecDeque<Arc<Wires>>,
+    chunks: VecDeque<Arc<Channels>>,
     /// Samples in them.
     count: usize,
     /// When the last of them was taken.
@@ -22,7 +23,7 @@ pub(super) struct Recent {
 
 /// The newest samples of some milliseconds.
 pub(super) struct Window {
-    chunks: Vec<Arc<Wires>>,
+    chunks: Vec<Arc<Channels>>,
     /// Samples of the first chunk that are too old.
     skip: usize,
     period_ns: i64,
@@ -34,7 +35,7 @@ pub(super) const MOST: usize = 500_000;
 const EVERY_NS: i64 = 250_000_000;
 
 impl Recent {
-    pub(super) fn add(&mut self, batch: Batch<Wires>) {
+    pub(super) fn add(&mut self, batch: Batch<Channels>) {
         if batch.lost > 0 || batch.period_ns != self.period_ns {
             (self.chunks, self.count) = (VecDeque::new(), 0);
         }
@@ -70,7 +71,7 @@ impl Recent {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
         let mut skip = self.count.checked_sub(count)?;
-        let too_old = |chunk: &&Arc<Wires>| {
+        let too_old = |chunk: &&Arc<Channels>| {
             let is_too_old = chunk.len() <= skip;
             skip -= if is_too_old { chunk.len() } else { 0 };
             is_too_old
@@ -83,24 +84,26 @@ impl Recent {
 impl Window {
     /// As a capture whose times begin at zero; copies the samples.
     pub(super) fn capture(&self) -> Capture {
-        let column = |of: fn(&Wires) -> &Vec<f64>| -> Vec<f64> {
+        let column = |of: fn(&Channels) -> &[f64]| -> Vec<f64> {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
         };
+        let (sine_v, cosine_v) = (column(|own| &own.sine_v), column(|own| &own.cosine_v));
+        // Nothing but the virtual encoder has its wires one by one, and that always.
         let wires = Wires {
-            sin_v: column(|own| &own.sin_v),
-            refsin_v: column(|own| &own.refsin_v),
-            cos_v: column(|own| &own.cos_v),
-            refcos_v: column(|own| &own.refcos_v),
+            sin_v: column(|own| own.wire(|wires| &wires.sin_v)),
+            refsin_v: column(|own| own.wire(|wires| &wires.refsin_v)),
+            cos_v: column(|own| own.wire(|wires| &wires.cos_v)),
+            refcos_v: column(|own| own.wire(|wires| &wires.refcos_v)),
             reference_deg: Vec::new(),
         };
-        let reference_deg = column(|own| &own.reference_deg);
+        let reference_deg = column(|own| own.wire(|wires| &wires.reference_deg));
         let period_s = self.period_ns as f64 * 1e-9;
         Capture {
-            time_s: (0..wires.len()).map(|at| at as f64 * period_s).collect(),
-            sine_v: wires.sine_v(),
-            cosine_v: wires.cosine_v(),
+            time_s: (0..sine_v.len()).map(|at| at as f64 * period_s).collect(),
+            sine_v,
+            cosine_v,
             reference_deg: (!reference_deg.is_empty()).then_some(reference_deg),
-            wires: Some(wires),
+            wires: Some(wires).filter(|wires| !wires.sin_v.is_empty()),
             absolute: None,
         }
     }
@@ -109,8 +112,9 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::worker::stream::Pair;
 
-    fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<Wires> {
+    fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<Channels> {
         let column = |at: f64| (0..count).map(|own| (first as f64 + own as f64) * at).collect();
         let samples = Wires {
             sin_v: column(2.0),
@@ -119,7 +123,19 @@ mod tests {
             refcos_v: column(1.0),
             reference_deg: column(0.5),
         };
-        Batch { first, time: Time::from_nanoseconds(first as i64 * period_ns), period_ns, lost, samples }
+        let time = Time::from_nanoseconds(first as i64 * period_ns);
+        Batch { first, time, period_ns, lost, samples: samples.into() }
+    }
+
+    #[test]
+    fn signals_without_their_wires_are_measured_as_well() {
+        let mut recent = Recent::default();
+        let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
+        recent.add(Batch { first: 0, time: Time::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
+        let window = recent.window(2).unwrap().capture();
+        assert_eq!((window.sine_v, window.cosine_v), (vec![2.0, 3.0], vec![5.0, 6.0]));
+        assert!(window.wires.is_none() && window.reference_deg.is_none());
+        assert_eq!(window.time_s, [0.0, 0.001]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The signals over time, as lines of a recorder: differences, the length of the amplitude vector, and the four wires where
 //! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
+use super::feed::Channels;
 use crate::app::Text;
 use crate::app::recorder::{self, GroupId, Line, Recorder, SAMPLE, Scale};
 use crate::signal::Time;
@@ -31,7 +32,7 @@ pub enum NoTimes {
 /// Seconds beyond which nanoseconds cannot be counted.
 const FARTHEST_S: f64 = 9.2e9;
 
-/// Samples of the virtual encoder that are kept: five seconds at 100 kHz.
+/// Samples of a running source that are kept: five seconds at 100 kHz.
 const KEPT: usize = 500_000;
 /// Nanoseconds of them that are shown to begin with.
 const SPAN: i64 = 10_000_000;
@@ -45,9 +46,9 @@ const WIRES: [(&str, &str); 4] =
     [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
 
 impl Scope {
-    /// Nothing yet; for samples that come.
-    pub(super) fn live() -> Self {
-        Scope::new(true, KEPT, Recorder::new(SPAN))
+    /// Nothing yet; for samples that come, with the four wires or without.
+    pub(super) fn live(with_wires: bool) -> Self {
+        Scope::new(with_wires, KEPT, Recorder::new(SPAN))
     }
 
     /// All of a capture.
@@ -111,14 +112,14 @@ impl Scope {
     }
 
     /// Samples that have come; how many of them could not be taken.
-    pub(super) fn add(&mut self, batch: &Batch<Wires>) -> u64 {
+    pub(super) fn add(&mut self, batch: &Batch<Channels>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();
         }
         let count = i64::try_from(batch.samples.len()).unwrap_or(0);
         let times: Vec<Time> = (0..count).map(|at| batch.time.plus(at.saturating_mul(batch.period_ns))).collect();
-        let (sine, cosine) = (batch.samples.sine_v(), batch.samples.cosine_v());
-        match self.append(&times, &sine, &cosine, Some(&batch.samples)) {
+        let Channels { sine_v, cosine_v, wires } = &batch.samples;
+        match self.append(&times, sine_v, cosine_v, wires.as_ref()) {
             Ok(()) => 0,
             Err(_) => {
                 self.interrupt();
@@ -178,7 +179,7 @@ mod tests {
         assert!(!scope.recorder.counts() && scope.refused.is_none());
     }
 
-    fn batch(first: i64, count: usize) -> Batch<Wires> {
+    fn batch(first: i64, count: usize) -> Batch<Channels> {
         let column = vec![1.0; count];
         let samples = Wires {
             sin_v: column.clone(),
@@ -187,12 +188,12 @@ mod tests {
             refcos_v: column,
             reference_deg: Vec::new(),
         };
-        Batch { first: 0, time: Time::from_nanoseconds(first), period_ns: 10, lost: 0, samples }
+        Batch { first: 0, time: Time::from_nanoseconds(first), period_ns: 10, lost: 0, samples: samples.into() }
     }
 
     #[test]
     fn what_is_not_recorded_leaves_a_break_and_what_is_refused_is_counted() {
-        let mut scope = Scope::live();
+        let mut scope = Scope::live(true);
         let broken = |scope: &Scope| {
             let history = scope.recorder.history(&scope.recorder.lines()[0]).unwrap();
             let all = history.all();

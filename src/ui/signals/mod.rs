@@ -1,6 +1,7 @@
 //! The Signals tab: its pages, each about one thing that a person wants to know of a sine and a cosine. It needs no
 //! encoder and no session.
 
+mod adapter;
 mod error;
 mod input_circuit;
 mod nonlinearity;

@@ -2,8 +2,8 @@
 
 use egui::{RichText, Ui};
 
-use super::{table, virtual_encoder};
-use crate::app::signals::{Action as Signals_, Example, Origin, Place, Signals, SourceAction};
+use super::{adapter, table, virtual_encoder};
+use crate::app::signals::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind};
 use crate::app::{Action, Text};
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
@@ -15,6 +15,8 @@ pub(super) struct View {
     table: table::View,
     /// The virtual encoder's settings are shown.
     settings: bool,
+    /// Where the adapter is can be said.
+    adapter: bool,
 }
 
 /// Draws it. True: there is a capture to be shown below.
@@ -32,6 +34,10 @@ pub(super) fn source_ui(
         present(ui, skin, signals, view, actions);
         ui.add_space(skin.space.between);
     }
+    if view.adapter || signals.source().adapter_problem().is_some() {
+        view.adapter = !adapter::card_ui(ui, skin, signals.source(), actions);
+        ui.add_space(skin.space.between);
+    }
     let (shown, failed) = (signals.measurement().is_some(), signals.problem().is_some());
     if (view.table.is_open || failed || !shown)
         && !running
@@ -41,23 +47,29 @@ pub(super) fn source_ui(
         ui.add_space(skin.space.between);
     }
     if !shown && !running {
-        nothing(ui, skin, signals, actions);
+        nothing(ui, skin, signals, view, actions);
     }
     shown
 }
 
 /// The virtual encoder's settings, where they are wanted. A page draws them where what they change can be seen.
 pub(super) fn settings_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &View, actions: &mut Vec<Action>) {
-    if view.settings && is_virtual(signals) {
+    if view.settings && live(signals) == Some(SourceKind::Encoder) {
         virtual_encoder::card_ui(ui, skin, signals.source(), actions);
         ui.add_space(skin.space.between);
     }
 }
 
-/// The virtual encoder is what is shown, or will be.
-fn is_virtual(signals: &Signals) -> bool {
-    let shown = signals.measurement().is_some_and(|own| own.origin == Origin::Virtual);
-    shown || signals.source().is_running()
+/// The source that is shown, or will be; `None`: a table is.
+fn live(signals: &Signals) -> Option<SourceKind> {
+    if signals.source().is_running() {
+        return Some(signals.source().kind());
+    }
+    match signals.measurement()?.origin {
+        Origin::Virtual => Some(SourceKind::Encoder),
+        Origin::Adapter { .. } => Some(SourceKind::Adapter),
+        Origin::Table(_) => None,
+    }
 }
 
 /// What is being read, how far it is, and a way to end it.
@@ -98,7 +110,7 @@ fn present(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
         fill(ui);
         ui.horizontal_wrapped(|ui| {
             title(ui, skin, signals);
-            source_menu(ui, skin, actions);
+            source_menu(ui, skin, view, actions);
             source_buttons(ui, skin, signals, view, actions);
             keep_ui(ui, skin, signals, actions);
             if signals.table().is_some() {
@@ -112,39 +124,65 @@ fn present(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
 /// Whose samples these are.
 fn title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
     let palette = skin.palette;
-    let source = signals.source();
-    if is_virtual(signals) {
-        ui.label(skin.heading(skin.words(&Origin::Virtual.name())));
-        badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
-        let (id, colour) = match (source.is_running(), source.is_held()) {
-            (true, true) => ("virtual.held", palette.staged),
-            (true, false) => ("virtual.running", palette.good),
-            (false, _) => ("virtual.stopped", palette.muted),
-        };
-        ui.label(RichText::new(skin.say(id)).color(colour));
-        if source.lost() > 0 {
-            let text = Text::new("virtual.lost").with("count", source.lost());
-            ui.label(RichText::new(skin.words(&text)).color(palette.warn));
-        }
+    if live(signals).is_some() {
+        live_title(ui, skin, signals);
     } else if let Some(measurement) = signals.measurement() {
         let name = skin.words(&measurement.origin.name());
         let response = ui.add(egui::Label::new(skin.heading(name)).truncate());
         match &measurement.origin {
             Origin::Table(Place::File(path)) => drop(response.on_hover_text(path.display().to_string())),
             Origin::Table(Place::Example(_)) => badge(ui, skin, &skin.say("signals.example"), palette.muted),
-            Origin::Virtual => {}
+            Origin::Virtual | Origin::Adapter { .. } => {}
         }
     }
     ui.add_space(skin.space.between);
 }
 
-/// Starting, holding and stopping the virtual encoder, and its settings.
+/// Which source, whether it runs, and what it lost.
+fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
+    let palette = skin.palette;
+    let source = signals.source();
+    let shown = signals.measurement().map(|own| &own.origin);
+    let origin = match (source.is_running(), source.kind(), source.streaming()) {
+        (true, SourceKind::Encoder, _) => Some(Origin::Virtual),
+        (true, SourceKind::Adapter, Some(streaming)) => {
+            Some(Origin::Adapter { name: streaming.hello.name.clone(), is_virtual: source.is_virtual() })
+        }
+        // Who it is will be told.
+        (true, SourceKind::Adapter, None) => None,
+        (false, ..) => shown.cloned(),
+    };
+    let name = origin.as_ref().map_or(Text::new("adapter.title"), Origin::name);
+    ui.add(egui::Label::new(skin.heading(skin.words(&name))).truncate());
+    if matches!(origin, Some(Origin::Virtual | Origin::Adapter { is_virtual: true, .. })) {
+        badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
+    }
+    let (id, colour) = match (source.is_running(), source.is_held()) {
+        (true, _) if origin.is_none() => ("adapter.asking", palette.accent),
+        (true, true) => ("virtual.held", palette.staged),
+        (true, false) => ("virtual.running", palette.good),
+        (false, _) => ("virtual.stopped", palette.muted),
+    };
+    let response = ui.label(RichText::new(skin.say(id)).color(colour));
+    if let Some(streaming) = source.streaming() {
+        let rate = 1e9 / streaming.period_ns.max(1) as f64;
+        let volts = f64::from(streaming.full_scale_microvolt) * 1e-6;
+        let actual = Text::new("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
+        let hello = &streaming.hello;
+        let who = [hello.name.as_str(), &hello.serial, &hello.firmware].join(" · ");
+        response.on_hover_text(format!("{who}\n{}", skin.words(&actual)));
+    }
+    if source.lost() > 0 {
+        let text = Text::new("virtual.lost").with("count", source.lost());
+        ui.label(RichText::new(skin.words(&text)).color(palette.warn));
+    }
+}
+
+/// Starting, holding and stopping what runs, and its settings.
 fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::Signals(Signals_::Source(action)));
-    if !is_virtual(signals) {
-        return;
-    }
+    let Some(kind) = live(signals) else { return };
     if source.is_running() {
         if button(ui, icons::STOP, &skin.say("virtual.stop")).clicked() {
             ask(SourceAction::Stop);
@@ -155,9 +193,16 @@ fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, 
             ask(SourceAction::Hold(!held));
         }
     } else if button(ui, icons::PLAY, &skin.say("virtual.again")).clicked() {
-        ask(SourceAction::Start);
+        ask(match kind {
+            SourceKind::Encoder => SourceAction::Start,
+            SourceKind::Adapter => SourceAction::StartAdapter,
+        });
     }
-    toggle(ui, icons::SLIDERS, &skin.say("virtual.settings"), &mut view.settings);
+    let open = match kind {
+        SourceKind::Encoder => &mut view.settings,
+        SourceKind::Adapter => &mut view.adapter,
+    };
+    toggle(ui, icons::SLIDERS, &skin.say("virtual.settings"), open);
 }
 
 /// A button that shows something, or hides it.
@@ -195,7 +240,7 @@ fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Actio
 }
 
 /// Everything that samples can come from.
-fn source_menu(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Action>) {
     let word = skin.say("signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
@@ -205,6 +250,10 @@ fn source_menu(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
         }
         if button(ui, icons::WAVE_SINE, &skin.say("virtual.start")).clicked() {
             chosen = Some(Action::Signals(Signals_::Source(SourceAction::Start)));
+        }
+        if button(ui, icons::PLUGS, &skin.say("adapter.open")).clicked() {
+            view.adapter = true;
+            ui.close();
         }
         ui.label(skin.caption(skin.say("signals.examples")));
         for example in Example::ALL {
@@ -221,7 +270,7 @@ fn source_menu(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
 }
 
 /// What would be here, and what fills it.
-fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
+fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;
     }
@@ -236,6 +285,9 @@ fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
         }
         if button(ui, icons::WAVE_SINE, &skin.say("virtual.start")).clicked() {
             actions.push(Action::Signals(Signals_::Source(SourceAction::Start)));
+        }
+        if button(ui, icons::PLUGS, &skin.say("adapter.open")).clicked() {
+            view.adapter = true;
         }
         ui.add_space(skin.space.groups);
         ui.label(skin.caption(skin.say("signals.try_example")));

@@ -2,6 +2,8 @@
 //! and its stream is ended there when nobody wants it any more. What came damaged or not at all is missing before the batch
 //! that follows.
 
+mod open;
+
 use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -13,6 +15,8 @@ use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::protocol::biss::Layout;
 use crate::protocol::bridge::{Data, SsiFlags};
 use crate::worker::OpenError;
+
+pub use open::open_adapter;
 
 /// What an adapter is to stream, and what its samples are.
 pub trait Stretch: Send + 'static {

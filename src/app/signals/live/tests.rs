@@ -76,7 +76,7 @@ fn what_was_measured_by_other_limits_is_judged_again() {
 fn a_source_that_ends_by_itself_is_told_and_runs_no_more() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
-    signals.source.live.as_ref().unwrap().stream.stop();
+    signals.source.live.as_ref().unwrap().feed.stop();
     let began = Instant::now();
     while signals.source.is_running() {
         assert!(began.elapsed() < Duration::from_secs(20), "it runs for ever");

@@ -1,0 +1,221 @@
+//! Samples of sine and cosine as they come, from whatever runs: the virtual encoder, or an adapter.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use crate::app::services::Services;
+use crate::app::{Text, explain};
+use crate::device::bridge::{Streaming, TapError};
+use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::signal::wires::Wires;
+use crate::sim::sine_cosine::Checked;
+use crate::worker::OpenError;
+use crate::worker::stream::{
+    Analogue, Batch, Bridge, BridgeError, End, Open, Pair, Producer, SineCosine, Stream, open_adapter,
+};
+
+/// Both signals in volts, equally long.
+#[derive(Clone, Debug)]
+pub(super) struct Channels {
+    pub(super) sine_v: Vec<f64>,
+    pub(super) cosine_v: Vec<f64>,
+    /// The wires one by one, where they are known.
+    pub(super) wires: Option<Wires>,
+}
+
+impl Channels {
+    pub(super) fn len(&self) -> usize {
+        self.sine_v.len()
+    }
+
+    /// A wire; nothing where it is not known.
+    pub(super) fn wire(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
+        self.wires.as_ref().map_or(&[], |wires| of(wires))
+    }
+}
+
+impl From<Wires> for Channels {
+    fn from(wires: Wires) -> Self {
+        Channels { sine_v: wires.sine_v(), cosine_v: wires.cosine_v(), wires: Some(wires) }
+    }
+}
+
+impl From<Pair> for Channels {
+    fn from(pair: Pair) -> Self {
+        Channels { sine_v: pair.sine_v, cosine_v: pair.cosine_v, wires: None }
+    }
+}
+
+/// A source that runs.
+pub(super) enum Feed {
+    /// The virtual encoder.
+    Virtual(Stream<Analogue>),
+    /// An adapter.
+    Adapter {
+        stream: Stream<Bridge<SineCosine>>,
+        /// Who it is and how it samples, as soon as it is known.
+        streaming: Arc<OnceLock<Streaming>>,
+        url: LinkUrl,
+    },
+}
+
+/// A link that leads to an adapter; nothing has been opened.
+pub(super) struct AdapterLink {
+    url: LinkUrl,
+    clock: Arc<dyn Clock>,
+    margin: Duration,
+    open: Open,
+}
+
+impl AdapterLink {
+    /// Reads a link.
+    ///
+    /// # Errors
+    /// It leads to no adapter: why.
+    pub(super) fn read(text: &str) -> Result<Self, Text> {
+        let url: LinkUrl =
+            text.parse().map_err(|why| Text::new("adapter.link").with_text("why", explain::url(&why)))?;
+        let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+        let (margin, open) = open_adapter(&url, clock.clone()).map_err(|error| refused(&error))?;
+        Ok(AdapterLink { url, clock, margin, open })
+    }
+
+    /// Lets it sample so many times a second. Whether it is there is told by its stream.
+    ///
+    /// # Errors
+    /// No thread is left.
+    pub(super) fn start(self, sample_hz: u32, services: &Services) -> Result<Feed, Text> {
+        let AdapterLink { url, clock, margin, open } = self;
+        let before = services.endings_on(&url);
+        let open: Open = Box::new(move || {
+            // Whoever had the wire before gives it back first; where he does not, it cannot be opened.
+            for (ending, patience) in before {
+                ending.wait(patience);
+            }
+            open()
+        });
+        let bridge = Bridge::new(SineCosine { sample_hz }, margin, open);
+        let streaming = bridge.streaming();
+        Ok(Feed::Adapter { stream: spawn(bridge, clock, services)?, streaming, url })
+    }
+}
+
+/// Samples that wait for the window, at most: two seconds at 100 kHz.
+const WAITING: usize = 200_000;
+
+impl Feed {
+    /// The virtual encoder.
+    ///
+    /// # Errors
+    /// No thread is left.
+    pub(super) fn of_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
+        let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+        let producer = Analogue::new(checked, clock.now());
+        Ok(Feed::Virtual(spawn(producer, clock, services)?))
+    }
+
+    /// What has come since the last time.
+    pub(super) fn take(&self) -> Vec<Batch<Channels>> {
+        match self {
+            Feed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
+            Feed::Adapter { stream, .. } => stream.take().into_iter().map(channels).collect(),
+        }
+    }
+
+    /// Samples lost since the beginning.
+    pub(super) fn lost(&self) -> u64 {
+        match self {
+            Feed::Virtual(stream) => stream.lost(),
+            Feed::Adapter { stream, .. } => stream.lost(),
+        }
+    }
+
+    /// It has ended by itself.
+    pub(super) fn is_ended(&self) -> bool {
+        match self {
+            Feed::Virtual(stream) => stream.is_ended(),
+            Feed::Adapter { stream, .. } => stream.is_ended(),
+        }
+    }
+
+    /// Why it has ended by itself.
+    pub(super) fn why_ended(&self) -> Text {
+        match self {
+            Feed::Virtual(stream) if stream.take_error().is_some() => Text::new("virtual.forgotten"),
+            Feed::Virtual(_) => Text::new("virtual.ended"),
+            Feed::Adapter { stream, .. } => match stream.take_error() {
+                Some(error) => failed(&error),
+                None => Text::new("virtual.ended"),
+            },
+        }
+    }
+
+    /// Who samples and how; `None` for the virtual encoder, and until it is known.
+    pub(super) fn streaming(&self) -> Option<&Streaming> {
+        match self {
+            Feed::Virtual(_) => None,
+            Feed::Adapter { streaming, .. } => streaming.get(),
+        }
+    }
+
+    /// The adapter lives in this process.
+    pub(super) fn is_virtual(&self) -> bool {
+        match self {
+            Feed::Virtual(_) => true,
+            Feed::Adapter { url, .. } => url.scheme == Scheme::Sim,
+        }
+    }
+
+    /// Other settings of the virtual encoder.
+    pub(super) fn change(&self, checked: Checked) {
+        if let Feed::Virtual(stream) = self {
+            stream.change(checked);
+        }
+    }
+
+    /// Ends it where it runs, as if by itself.
+    #[cfg(test)]
+    pub(super) fn stop(&self) {
+        match self {
+            Feed::Virtual(stream) => stream.stop(),
+            Feed::Adapter { stream, .. } => stream.stop(),
+        }
+    }
+
+    /// Lets it go: an adapter is told to stop, for which nobody here waits.
+    pub(super) fn let_go(self, services: &mut Services) {
+        if let Feed::Adapter { stream, url, .. } = self {
+            let end: End = stream.end();
+            drop(stream);
+            services.leave_stream(end, url);
+        }
+    }
+}
+
+fn spawn<P: Producer>(producer: P, clock: Arc<dyn Clock>, services: &Services) -> Result<Stream<P>, Text> {
+    let refused = |error| Text::new("session.no_thread").with("why", error);
+    Stream::spawn(producer, WAITING, clock, services.tasks.wake()).map_err(refused)
+}
+
+fn channels<S: Into<Channels>>(batch: Batch<S>) -> Batch<Channels> {
+    let Batch { first, time, period_ns, lost, samples } = batch;
+    Batch { first, time, period_ns, lost, samples: samples.into() }
+}
+
+fn failed(error: &BridgeError) -> Text {
+    match error {
+        BridgeError::Open(error) => refused(error),
+        BridgeError::Tap(TapError::Link(error)) => explain::link(error),
+        BridgeError::Tap(TapError::Adapter(error)) => explain::adapter(error),
+        BridgeError::Tap(TapError::Cancelled) => Text::new("virtual.ended"),
+    }
+}
+
+/// A link that cannot be used is changed where it stands.
+fn refused(error: &OpenError) -> Text {
+    match error {
+        OpenError::Url(why) => Text::new("adapter.link").with_text("why", explain::url(why)),
+        OpenError::Sim(why) => Text::new("adapter.link").with_text("why", explain::setting(why)),
+        other => explain::open(other),
+    }
+}

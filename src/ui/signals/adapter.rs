@@ -1,0 +1,59 @@
+//! The adapter as a source: where it is, how fast it shall sample, and why it does not.
+
+use egui::Ui;
+
+use crate::app::signals::{Action as Signals, Source, SourceAction, VIRTUAL_ADAPTER};
+use crate::app::{Action, Text};
+use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
+use crate::ui::{Skin, icons};
+
+/// Samples a second to choose from; the adapter takes what it can.
+const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
+/// Width of the link's entry.
+const LINK: f32 = 280.0;
+
+/// Draws the card. True: it is not needed any more.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) -> bool {
+    let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
+    let (mut started, mut closed) = (false, false);
+    let aside = |ui: &mut Ui| {
+        closed = icon_button(ui, true, icons::X, &skin.say("adapter.close")).clicked();
+    };
+    card_with(ui, skin, "adapter.title", aside, |ui| {
+        let word = skin.say("adapter.link_label");
+        entry(ui, skin, &word, |ui| {
+            let mut link = source.link().to_owned();
+            let width = LINK.min(ui.available_width() - skin.space.between);
+            let response = text_entry(ui, &mut link, width, &word, VIRTUAL_ADAPTER);
+            if response.changed() {
+                ask(SourceAction::SetLink(link));
+            }
+            if response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+                started = true;
+            }
+        });
+        let word = skin.say("adapter.rate");
+        entry(ui, skin, &word, |ui| {
+            let mut rate = source.sample_hz();
+            let rates = RATES.map(|hz| (hz, skin.words(&Text::new("adapter.kilohertz").with("count", hz / 1_000))));
+            if choice(ui, &word, &mut rate, rates) {
+                ask(SourceAction::SetSampleRate(rate));
+            }
+        });
+        paragraph(ui, skin.caption(skin.say("adapter.link_hint")));
+        problem(ui, skin, source.adapter_problem());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
+            started |= primary(ui, skin, true, icons::PLAY, &skin.say("adapter.start")).clicked();
+            if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &skin.say("adapter.use_virtual")).clicked() {
+                ask(SourceAction::SetLink(VIRTUAL_ADAPTER.to_owned()));
+            }
+        });
+    });
+    if started {
+        ask(SourceAction::StartAdapter);
+    } else if closed {
+        // What was wrong has been read.
+        ask(SourceAction::SetLink(source.link().to_owned()));
+    }
+    started || closed
+}

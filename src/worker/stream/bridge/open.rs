@@ -1,0 +1,86 @@
+//! From a link URL to an adapter that streams: `bridge:` leads to a real one, `sim:` to the virtual one.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use super::Open;
+use crate::link::{ByteLink, Clock, LinkUrl, Query, Scheme, SimLink, UrlError};
+use crate::protocol::ubicom::FORMAT;
+use crate::sim::bridge::{Adapter, Config};
+use crate::worker::OpenError;
+use crate::worker::open::{check_parameters, margin, open_bytes};
+
+/// What a link to the virtual adapter may say as it does for a session; there is no other here.
+const BRIDGE: &str = "bridge";
+/// How much later a reply may come than the protocol says.
+const MARGIN: &str = "margin";
+
+/// How late the replies of an adapter may be, and what opens the wire to it, on whichever thread.
+///
+/// # Errors
+/// A link that does not lead to an adapter, or a parameter that it does not take; nothing has been opened.
+pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, Open), OpenError> {
+    let known = "sim: and bridge:";
+    let simulated = match url.scheme {
+        Scheme::Bridge => {
+            check_parameters(&url.query, url.scheme, &[MARGIN])?;
+            None
+        }
+        Scheme::Sim => {
+            url.query.read(BRIDGE, "on", |text| (text == "on").then_some(()))?;
+            Some(Config::from_pairs(&url.query.without(&[BRIDGE, MARGIN]))?)
+        }
+        Scheme::Serial | Scheme::Tcp | Scheme::Replay => {
+            return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+        }
+    };
+    let late = read_margin(&url.query)?.unwrap_or(margin(url.scheme));
+    let url = url.clone();
+    let open = move || {
+        open_bytes(&url, FORMAT, &clock, || {
+            let adapter = Adapter::new(&simulated.unwrap_or_default());
+            Ok(Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())) as Box<dyn ByteLink>)
+        })
+    };
+    Ok((late, Box::new(open)))
+}
+
+fn read_margin(query: &Query) -> Result<Option<Duration>, UrlError> {
+    let milliseconds = |text: &str| text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis);
+    query.read(MARGIN, "milliseconds from 0 to 2000", milliseconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::VirtualClock;
+
+    fn opened(text: &str) -> Result<Duration, String> {
+        let adapter = open_adapter(&text.parse().unwrap(), Arc::new(VirtualClock::default()));
+        adapter.map(|(margin, _)| margin).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn links_lead_to_an_adapter_or_say_why_not() {
+        for (text, milliseconds) in [
+            ("sim:", 20),
+            ("sim:?bridge=on&rpm=60&noise=0.1&margin=7", 7),
+            ("bridge:/dev/ttyACM0", 100),
+            ("bridge:tcp:host:4001?margin=2000", 2000),
+        ] {
+            assert_eq!(opened(text), Ok(Duration::from_millis(milliseconds)), "{text}");
+        }
+        for (text, why) in [
+            ("serial:/dev/ttyUSB0", "serial: links do not lead to this device; those that do are sim: and bridge:"),
+            ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim: and bridge:"),
+            ("bridge:/dev/x?rpm=1", "rpm is not a parameter of bridge: links; known are margin"),
+            ("bridge:/dev/x?margin=2001", "margin=2001: milliseconds from 0 to 2000"),
+            ("sim:?bridge=off", "bridge=off: on"),
+            ("sim:?rpm=NaN", "rpm"),
+            ("sim:?what=1", "what"),
+        ] {
+            let error = opened(text).unwrap_err();
+            assert!(error.contains(why), "{text}: {error}");
+        }
+    }
+}

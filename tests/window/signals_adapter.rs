@@ -1,0 +1,246 @@
+//! Sine and cosine through an adapter: the virtual one and one behind a network, what is shown of them, and what is said
+//! where there is none.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction, SourceKind};
+use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
+use encoder_studio::protocol::bridge::{Receiver, Request};
+use encoder_studio::signal::history::Flags;
+use encoder_studio::sim::ByteDevice;
+use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::units::Moment;
+
+use crate::screen::Screen;
+use crate::support::{Desk, HANGING, LONG, Outside};
+
+/// An adapter behind a TCP port, one connection after the other.
+struct Served {
+    port: u16,
+    /// What it was asked.
+    heard: Arc<Mutex<Vec<Request>>>,
+    /// The connection is to be closed.
+    cut: Arc<Mutex<bool>>,
+}
+
+impl Served {
+    fn new(query: &str) -> Self {
+        let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
+        let mut adapter = Adapter::new(&Config::from_pairs(&pairs).unwrap());
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let served = Served { port: listener.local_addr().unwrap().port(), heard: Arc::default(), cut: Arc::default() };
+        let (heard, cut) = (served.heard.clone(), served.cut.clone());
+        std::thread::spawn(move || {
+            let began = Instant::now();
+            for stream in listener.incoming() {
+                let now = || Moment::after_start(began.elapsed());
+                serve(stream.unwrap(), &mut adapter, &heard, &cut, &now);
+            }
+        });
+        served
+    }
+
+    fn link(&self) -> String {
+        format!("bridge:tcp:127.0.0.1:{}", self.port)
+    }
+
+    fn asked(&self, request: &Request) -> usize {
+        self.heard.lock().unwrap().iter().filter(|own| *own == request).count()
+    }
+}
+
+fn serve(
+    mut stream: TcpStream,
+    adapter: &mut Adapter,
+    heard: &Mutex<Vec<Request>>,
+    cut: &Mutex<bool>,
+    now: &dyn Fn() -> Moment,
+) {
+    stream.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
+    adapter.connect(now());
+    let mut receiver = Receiver::default();
+    let mut buffer = [0; 512];
+    while !std::mem::take(&mut *cut.lock().unwrap()) {
+        match stream.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(count) => {
+                adapter.on_bytes(now(), &buffer[..count]);
+                receiver.push(&buffer[..count]);
+                let requests =
+                    std::iter::from_fn(|| receiver.next_packet()).filter_map(|own| Request::parse(&own).ok());
+                heard.lock().unwrap().extend(requests);
+            }
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(_) => return,
+        }
+        if stream.write_all(&adapter.poll(now())).is_err() {
+            return;
+        }
+    }
+}
+
+fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
+    desk.signals(Signals::Source(SourceAction::SetLink(link.to_owned())));
+    desk.signals(Signals::Source(SourceAction::SetSampleRate(sample_hz)));
+    desk.signals(Signals::Source(SourceAction::StartAdapter));
+}
+
+/// Samples in the scope, and how many of them do not join the one before; the first of all joins nothing.
+fn recorded(studio: &Studio) -> (u64, usize) {
+    let recorder = studio.recorder(Of::Signals).unwrap();
+    let history = recorder.history(&recorder.lines()[0]).unwrap();
+    let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
+    (history.all().end, history.all().filter(is_break).count())
+}
+
+/// The virtual adapter samples an encoder with 0.5 V and 1024 periods; a revolution takes ten seconds.
+#[test]
+fn the_virtual_adapter_is_measured_like_a_capture() {
+    let mut desk = Desk::fresh("");
+    begin(&mut desk, "sim:?bridge=on&rpm=6", 50_000);
+    let measured = |studio: &Studio| studio.signals.measurement().is_some_and(|own| own.analysis.is_ok());
+    desk.until("it is measured", measured);
+    let signals = &desk.studio.signals;
+    let measurement = signals.measurement().unwrap();
+    let name = "virtual adapter".to_owned();
+    assert_eq!(measurement.origin, Origin::Adapter { name, is_virtual: true });
+    let ellipse = measurement.analysis.as_ref().unwrap().ellipse;
+    assert!((ellipse.amplitude_v - 0.5).abs() < 0.01, "{ellipse:?}");
+    assert!(
+        measurement.levels_v.is_none() && measurement.capture.wires.is_none(),
+        "there are two signals, not four wires"
+    );
+    assert_eq!(desk.studio.recorder(Of::Signals).unwrap().lines().len(), 3);
+    let streaming = signals.source().streaming().unwrap();
+    assert_eq!((streaming.period_ns, streaming.full_scale_microvolt), (20_000, 1_250_000));
+    assert_eq!((signals.source().lost(), signals.source().kind()), (0, SourceKind::Adapter));
+    desk.signals(Signals::Source(SourceAction::Stop));
+    assert!(!desk.studio.signals.source().is_running());
+    assert!(desk.studio.signals.measurement().is_some(), "what was measured last stays");
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn an_adapter_behind_a_network_streams_without_a_gap_and_is_told_to_stop() {
+    let served = Served::new("rpm=60");
+    let mut desk = Desk::fresh("");
+    for round in 1..=3 {
+        begin(&mut desk, &served.link(), 20_000);
+        desk.until("a second of it is there", |studio| recorded(studio).0 > 20_000);
+        assert_eq!((recorded(&desk.studio).1, desk.studio.signals.source().lost()), (0, 0), "{round}");
+        desk.signals(Signals::Source(SourceAction::Stop));
+        // The next start waits until this one has given the wire back.
+    }
+    desk.until("it was told to stop", |_| served.asked(&Request::AnalogStream { on: false }) == 3);
+    assert_eq!(served.asked(&Request::AnalogStream { on: true }), 3);
+    assert!(desk.told(Severity::Warning).is_empty(), "{:?}", desk.told(Severity::Warning));
+}
+
+#[test]
+fn a_window_that_closes_tells_the_adapter_to_stop_first() {
+    let served = Served::new("rpm=60");
+    let mut desk = Desk::fresh("");
+    begin(&mut desk, &served.link(), 20_000);
+    desk.until("samples come", |studio| recorded(studio).0 > 100);
+    desk.act(Action::Close);
+    desk.until("the window may close", Studio::may_close);
+    assert_eq!(served.asked(&Request::AnalogStream { on: false }), 1);
+}
+
+#[test]
+fn a_connection_that_is_closed_is_told_and_can_be_begun_again() {
+    let served = Served::new("rpm=60");
+    let mut desk = Desk::fresh("");
+    begin(&mut desk, &served.link(), 20_000);
+    desk.until("samples come", |studio| recorded(studio).0 > 100);
+    *served.cut.lock().unwrap() = true;
+    desk.until("it is told", |studio| !studio.signals.source().is_running());
+    assert_eq!(desk.told(Severity::Error), ["link.lost"]);
+    assert_eq!(desk.studio.signals.source().adapter_problem().map(|text| text.id()), Some("link.lost"));
+    desk.signals(Signals::Source(SourceAction::StartAdapter));
+    assert!(desk.studio.signals.source().adapter_problem().is_none());
+    desk.until("samples come again", |studio| recorded(studio).0 > 100);
+}
+
+#[test]
+fn what_is_wrong_is_said_where_the_link_stands() {
+    for (link, problem, asked) in [
+        ("", "adapter.link", false),
+        ("sim:?bridge=off", "adapter.link", false),
+        ("sim:?rpm=fast", "adapter.link", false),
+        ("serial:/dev/ttyUSB0", "adapter.link", false),
+        ("bridge:", "adapter.link", false),
+        ("bridge:/dev/ttyACM0?rpm=1", "adapter.link", false),
+        ("bridge:/dev/there-is-none", "link.not_found", true),
+        ("sim:?bridge=on&version=2", "adapter.version", true),
+        ("sim:?bridge=on&fault=silent-after:0", "adapter.silent", true),
+    ] {
+        let mut desk = Desk::fresh("");
+        begin(&mut desk, link, 10_000);
+        desk.until("it is told", |studio| studio.signals.source().adapter_problem().is_some());
+        let source = desk.studio.signals.source();
+        assert_eq!(source.adapter_problem().map(|text| text.id()), Some(problem), "{link}");
+        assert!(!source.is_running(), "{link}");
+        assert_eq!(desk.told(Severity::Error), if asked { vec![problem] } else { vec![] }, "{link}");
+        desk.signals(Signals::Source(SourceAction::SetLink("sim:".to_owned())));
+        assert!(desk.studio.signals.source().adapter_problem().is_none(), "another link is another try");
+    }
+}
+
+#[test]
+fn what_runs_goes_on_while_another_link_is_refused_and_the_virtual_encoder_takes_its_place() {
+    let mut desk = Desk::fresh("");
+    begin(&mut desk, "sim:?rpm=6", 10_000);
+    desk.until("samples come", |studio| recorded(studio).0 > 100);
+    begin(&mut desk, "tcp:host:1", 10_000);
+    let source = desk.studio.signals.source();
+    assert!(source.is_running() && source.adapter_problem().is_some());
+    desk.signals(Signals::Source(SourceAction::Start));
+    let source = desk.studio.signals.source();
+    assert_eq!((source.is_running(), source.kind()), (true, SourceKind::Encoder));
+    desk.until("it is measured", |studio| {
+        studio.signals.measurement().is_some_and(|own| own.origin == Origin::Virtual)
+    });
+    assert_eq!(desk.studio.recorder(Of::Signals).unwrap().lines().len(), 7, "the wires are back");
+}
+
+#[test]
+fn the_adapter_is_chosen_started_held_and_stopped() {
+    for size in [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]] {
+        let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
+        screen.act(Action::ShowTab(Tab::Signals));
+        screen.click("adapter.open");
+        screen.look_at_signals();
+        screen.act(Action::Signals(Signals::Source(SourceAction::SetLink("bridge:/dev/there-is-none".to_owned()))));
+        screen.click("adapter.start");
+        screen.until("it is told", |studio| studio.signals.source().adapter_problem().is_some());
+        assert!(screen.shows("/dev/there-is-none does not exist."));
+        screen.look_at_signals();
+        screen.click("adapter.close");
+        assert!(!screen.has_button("adapter.start"), "what was wrong has been read");
+        screen.click("adapter.open");
+        screen.click("adapter.use_virtual");
+        screen.click("adapter.start");
+        let began = Instant::now();
+        screen.until("it is measured", |studio| {
+            assert!(began.elapsed() < LONG);
+            studio.signals.measurement().is_some_and(|own| matches!(own.origin, Origin::Adapter { .. }))
+        });
+        assert!(!screen.has_button("adapter.start"), "the card is closed when the adapter runs");
+        assert!(screen.shows(&screen.say("signals.virtual_adapter")) && screen.shows(&screen.say("shell.virtual")));
+        assert!(screen.shows(&screen.say("virtual.running")));
+        screen.look_at_signals();
+        screen.click("virtual.hold");
+        assert!(screen.studio().signals.source().is_held());
+        screen.click("shell.stop");
+        assert!(screen.shows(&screen.say("virtual.stopped")));
+        assert!(screen.has_button("virtual.again"));
+        screen.act(Action::Signals(Signals::Source(SourceAction::StartAdapter)));
+        assert_eq!(screen.studio().signals.source().kind(), SourceKind::Adapter);
+        assert!(screen.studio().signals.source().is_running());
+    }
+}
