@@ -19,6 +19,7 @@ fn survey(bench: &mut Bench) -> Result<Survey, Error> {
         Ok(BissOutput::Surveyed(survey)) => Ok(*survey),
         Ok(other) => panic!("{other:?}"),
         Err(JobError::Device(error)) => Err(error),
+        Err(other) => panic!("{other}"),
     }
 }
 

@@ -46,6 +46,7 @@ fn save(bench: &mut Bench) -> Result<BissProfile, JobError> {
 fn device_error(error: JobError) -> Error {
     match error {
         JobError::Device(error) => error,
+        other => panic!("{other}"),
     }
 }
 

@@ -2,8 +2,11 @@
 
 mod adapter;
 mod faults;
+mod hands;
 mod jobs;
 mod master;
+mod procedures;
 mod streams;
 mod support;
 mod unknown;
+mod writing;

@@ -4,17 +4,18 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 pub(crate) use encoder_studio::device::biss::Way;
+use encoder_studio::device::biss::procedure::News;
 use encoder_studio::device::biss::{Master, Station};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
 use encoder_studio::protocol::bridge::{Operation, Receiver};
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::biss::{Config, Motor, Port};
+use encoder_studio::sim::biss::{Config, Encoder, Motor, Port};
 use encoder_studio::sim::bridge::{self, Adapter};
-
 use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
-use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, JobError};
+use encoder_studio::units::Moment;
+use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError};
+use encoder_studio::worker::{Event, JobId, Progress, Session};
 
 use crate::support::{MARGIN, Tap, TestLink};
 
@@ -110,16 +111,33 @@ impl<D: ByteDevice + 'static> Rig<D> {
     }
 }
 
+/// The encoder of a bench.
+pub(crate) struct Handle {
+    end: End,
+    clock: Arc<VirtualClock>,
+}
+
+impl Handle {
+    pub(crate) fn with<T>(&self, look: impl FnOnce(&mut Encoder, Moment) -> T) -> T {
+        let now = self.clock.now();
+        match &self.end {
+            End::Pin(port) => look(port.lock().unwrap().encoder_mut(), now),
+            End::Bus(adapter) => look(adapter.lock().unwrap().encoder_mut(), now),
+        }
+    }
+}
+
 /// A virtual encoder with a session to it.
 pub(crate) struct Bench {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) session: Session<Biss>,
     tap: Arc<Mutex<Tap>>,
     end: End,
-    _folder: tempfile::TempDir,
+    folder: Arc<tempfile::TempDir>,
 }
 
 /// The virtual device of a session.
+#[derive(Clone)]
 enum End {
     Pin(Arc<Mutex<Port>>),
     Bus(Arc<Mutex<Adapter>>),
@@ -138,25 +156,117 @@ impl Bench {
     }
 
     fn made(way: Way, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
-        let clock = Arc::new(VirtualClock::default());
-        let tap = Arc::<Mutex<Tap>>::default();
-        let (end, link, motor) = match way {
-            Way::ConfigPin => {
-                let port = Port::new(&Config::from_pairs(&pairs(query)).unwrap());
-                let motor = port.encoder().motor();
-                let port = Arc::new(Mutex::new(port));
-                (End::Pin(port.clone()), TestLink::new(port, clock.clone(), tap.clone()), motor)
-            }
+        let end = match way {
+            Way::ConfigPin => End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap())))),
             Way::Adapter => {
-                let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap());
-                let motor = adapter.encoder().motor();
-                let adapter = Arc::new(Mutex::new(adapter));
-                (End::Bus(adapter.clone()), TestLink::new(adapter, clock.clone(), tap.clone()), motor)
+                End::Bus(Arc::new(Mutex::new(Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap()))))
             }
         };
-        let station = Station::new(way, MARGIN);
+        Self::plugged(end, way, Arc::new(VirtualClock::default()), store, Arc::new(folder))
+    }
+
+    fn plugged(end: End, way: Way, clock: Arc<VirtualClock>, store: Store, folder: Arc<tempfile::TempDir>) -> Self {
+        Self::with_station(end, Station::new(way, MARGIN), clock, store, folder)
+    }
+
+    fn with_station(
+        end: End,
+        station: Station,
+        clock: Arc<VirtualClock>,
+        store: Store,
+        folder: Arc<tempfile::TempDir>,
+    ) -> Self {
+        let tap = Arc::<Mutex<Tap>>::default();
+        let (link, motor) = match &end {
+            End::Pin(port) => {
+                let motor = port.lock().unwrap().encoder().motor();
+                (TestLink::new(port.clone(), clock.clone(), tap.clone()), motor)
+            }
+            End::Bus(adapter) => {
+                let motor = adapter.lock().unwrap().encoder().motor();
+                (TestLink::new(adapter.clone(), clock.clone(), tap.clone()), motor)
+            }
+        };
         let session = Session::over(Box::new(link), clock.clone(), station, store, Some(motor));
-        Bench { clock, session, tap, end, _folder: folder }
+        Bench { clock, session, tap, end, folder }
+    }
+
+    /// The same device at the same time in a new session: a cable that was plugged in again.
+    pub(crate) fn reconnected(&self) -> Bench {
+        let (store, folder) = (Store::at(self.folder.path()), self.folder.clone());
+        Self::plugged(self.end.clone(), self.session.station().way, self.clock.clone(), store, folder)
+    }
+
+    /// As [`reconnected`](Self::reconnected), knowing already who is there.
+    pub(crate) fn reconnected_knowing(&self) -> Bench {
+        let known = self.session.station();
+        let mut station = Station::new(known.way, MARGIN);
+        station.description.clone_from(&known.description);
+        station.firmware = known.firmware;
+        station.layout.clone_from(&known.layout);
+        Self::with_station(self.end.clone(), station, self.clock.clone(), self.store(), self.folder.clone())
+    }
+
+    /// A copy of all this, the device and its time included, with nothing kept on disk.
+    pub(crate) fn copied(&self) -> Bench {
+        let clock = Arc::new(VirtualClock::default());
+        clock.sleep_until(self.clock.now());
+        // Thousands are made: in memory, where there is room for files in it.
+        let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
+        let folder = Arc::new(folder);
+        let end = match &self.end {
+            End::Pin(port) => End::Pin(Arc::new(Mutex::new(port.lock().unwrap().clone()))),
+            End::Bus(adapter) => End::Bus(Arc::new(Mutex::new(adapter.lock().unwrap().clone()))),
+        };
+        Self::plugged(end, self.session.station().way, clock, Store::at(folder.path()), folder)
+    }
+
+    /// Looks into the encoder, or does something to it.
+    pub(crate) fn encoder<T>(&self, look: impl FnOnce(&mut Encoder, Moment) -> T) -> T {
+        self.handle().with(look)
+    }
+
+    /// The tap, for whoever turns it while a job runs.
+    pub(crate) fn tap_handle(&self) -> Arc<Mutex<Tap>> {
+        self.tap.clone()
+    }
+
+    /// How many frames were sent, for whoever counts while a job runs.
+    pub(crate) fn counter(&self) -> impl Fn() -> usize + use<> {
+        let tap = self.tap.clone();
+        move || tap.lock().unwrap().sent.len()
+    }
+
+    /// The encoder, for whoever looks at it while a job runs.
+    pub(crate) fn handle(&self) -> Handle {
+        Handle { end: self.end.clone(), clock: self.clock.clone() }
+    }
+
+    /// Waits until so long after the beginning.
+    pub(crate) fn clock_to(&self, elapsed: Duration) {
+        self.clock.sleep_until(Moment::after_start(elapsed));
+    }
+
+    /// Carries out a job, and shows what is told of the operations of a plan.
+    pub(crate) fn run_watched(
+        &mut self,
+        job: BissJob,
+        told: &mut dyn FnMut(&News),
+    ) -> Result<BissOutput, Box<JobError>> {
+        let event = self.session.run(JobId::default(), job, &mut |event| {
+            if let Event::Progress(_, Progress { what: Doing::Operation { news, .. }, .. }) = event {
+                told(&news);
+            }
+        });
+        match event {
+            Event::Finished(_, output) => Ok(*output),
+            Event::Failed(_, error) | Event::Cancelled(_, error) => Err(error),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn store(&self) -> Store {
+        Store::at(self.folder.path())
     }
 
     pub(crate) fn run(&mut self, job: BissJob) -> Result<BissOutput, JobError> {
@@ -177,18 +287,11 @@ impl Bench {
 
     /// A register, looked at in the encoder.
     pub(crate) fn encoder_reads(&self, address: RegisterAddress) -> Option<u8> {
-        let now = self.clock.now();
-        match &self.end {
-            End::Pin(port) => port.lock().unwrap().encoder_mut().read(now, address),
-            End::Bus(adapter) => adapter.lock().unwrap().encoder_mut().read(now, address),
-        }
+        self.encoder(|encoder, now| encoder.read(now, address))
     }
 
     /// How often the encoder's flash was written.
     pub(crate) fn flash_cycles(&self) -> u32 {
-        match &self.end {
-            End::Pin(port) => port.lock().unwrap().encoder().flash().cycles(),
-            End::Bus(adapter) => adapter.lock().unwrap().encoder().flash().cycles(),
-        }
+        self.encoder(|encoder, _| encoder.flash().cycles())
     }
 }

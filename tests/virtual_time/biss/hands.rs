@@ -1,0 +1,222 @@
+//! A person at the motor of a virtual encoder, who does what is asked and presses Start when it is possible; and the
+//! changes that the tests of procedures carry out.
+
+use std::time::Duration;
+
+use encoder_studio::device::biss::procedure::{Answer, Demand, Detail, News, Seat, Step, Task, Unattended};
+use encoder_studio::device::biss::write::{Interrupted, Left};
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::biss::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
+use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
+use encoder_studio::sim::biss::Motor;
+use encoder_studio::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Committed, JobError, Prepared};
+
+use super::support::{Bench, at};
+
+/// Does what is asked, and remembers it.
+pub(crate) struct Hands {
+    motor: Motor,
+    pub(crate) seat: Seat,
+    /// Revolutions a minute in the calibration and in the Wiegand test.
+    pub(crate) rpm: (f64, f64),
+    /// What was told: operation and step, each when it began.
+    pub(crate) steps: Vec<(usize, Step)>,
+    /// The last demand for each task, in the order in which they were made.
+    pub(crate) demands: Vec<Demand>,
+    /// What is answered instead of Start.
+    pub(crate) instead: Vec<(Task, Answer)>,
+}
+
+impl Hands {
+    pub(crate) fn on(bench: &Bench) -> Self {
+        Hands {
+            motor: bench.motor(),
+            seat: Seat::default(),
+            rpm: (500.0, 1000.0),
+            steps: Vec::new(),
+            demands: Vec::new(),
+            instead: Vec::new(),
+        }
+    }
+
+    pub(crate) fn hear(&mut self, news: &News) {
+        match &news.detail {
+            Detail::Begins => self.steps.push((news.op, news.step)),
+            Detail::Demand(demand) => self.follow(demand),
+            Detail::Count { .. } | Detail::Lasts { .. } => {}
+        }
+    }
+
+    /// Carrying this plan out, with this person at the motor.
+    pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
+        let attendance = Attendance::Seat(self.seat.clone());
+        let consent = Consent::to(prepared.plan.id());
+        BissJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear: false, attendance }))
+    }
+
+    fn follow(&mut self, demand: &Demand) {
+        let rpm = match demand.task {
+            Task::Turn(run) => {
+                let (calibration, wiegand) = self.rpm;
+                let speed = if run.calibrates() { calibration } else { wiegand };
+                if run.is_clockwise() { speed } else { -speed }
+            }
+            Task::Stand | Task::StandAtPlace => 0.0,
+        };
+        self.motor.set_rpm(rpm);
+        if demand.is_ready() {
+            let instead = self.instead.iter().find(|(task, _)| *task == demand.task);
+            self.seat.answer(demand.task, instead.map_or(Answer::Go, |(_, answer)| *answer));
+        }
+        self.demands.retain(|other| other.task != demand.task);
+        self.demands.push(demand.clone());
+    }
+}
+
+pub(crate) fn calibration() -> Change {
+    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    Change::Guided { run, motor: MotorSource::Other }
+}
+
+pub(crate) fn wiegand_test(save: bool) -> Change {
+    let run = MountingRun { wiegand: Some(save), ..MountingRun::default() };
+    Change::Guided { run, motor: MotorSource::Other }
+}
+
+pub(crate) fn preset(singleturn: u32, multiturn: u32) -> Change {
+    let value = PresetValue::new(singleturn, multiturn);
+    Change::Preset { value, parts: Some(PresetParts::Both) }
+}
+
+pub(crate) fn filter() -> Change {
+    Change::SelectFilter(Filter::Dynamic)
+}
+
+/// Three bytes of OEM data, in two runs and two banks.
+pub(crate) fn data() -> Change {
+    let edit = |place: &str, bytes: &[u8]| (place.parse().unwrap(), bytes.to_vec());
+    Change::Write(vec![
+        edit("0x24:0x10", &[0xA1, 0xA2].as_slice()[..1]),
+        edit("0x24:0x3F", &[0xA3]),
+        edit("0x25:0x00", &[0xA4]),
+    ])
+}
+
+pub(crate) fn restore_of(profile: &BissProfile) -> Change {
+    Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
+}
+
+impl Bench {
+    pub(crate) fn prepare(&mut self, change: Change) -> Result<Prepared, JobError> {
+        match self.run(BissJob::Prepare(change))? {
+            BissOutput::Prepared(prepared) => Ok(*prepared),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Carries a plan out with this person at the motor.
+    pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut Hands) -> Result<Committed, Box<JobError>> {
+        match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
+            BissOutput::Committed(committed) => Ok(*committed),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Carries a plan out with nobody at the motor.
+    pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
+        let attendance = Attendance::Nobody(Unattended { patience });
+        let consent = Consent::to(prepared.plan.id());
+        let commit = Commit { prepared: prepared.clone(), consent, force_wear: false, attendance };
+        match self.run(BissJob::Commit(Box::new(commit)))? {
+            BissOutput::Committed(committed) => Ok(*committed),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
+        let prepared = self.prepare(change)?;
+        let mut hands = Hands::on(self);
+        self.commit(&prepared, &mut hands).map_err(|error| *error)
+    }
+
+    pub(crate) fn save(&mut self) -> BissProfile {
+        match self.run(BissJob::Save).unwrap() {
+            BissOutput::Saved(profile) => *profile,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn lead_back(&mut self) -> Result<DeviceMode, JobError> {
+        match self.run(BissJob::LeadBack)? {
+            BissOutput::LedBack(mode) => Ok(mode),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Mode and password, looked at in the encoder.
+    pub(crate) fn mode_and_password(&self) -> (DeviceMode, u8) {
+        (self.encoder(|encoder, _| encoder.mode()), self.encoder_reads(at("0x6B")).unwrap())
+    }
+
+    /// A bank, looked at in the encoder's flash.
+    pub(crate) fn flash_bank(&self, bank: u8) -> Vec<u8> {
+        self.encoder(|encoder, _| {
+            let (data, first) = match bank {
+                0x04..=0x23 => (encoder.flash().motor_data(), 0x04),
+                _ => (encoder.flash().oem_data(), 0x24),
+            };
+            data[usize::from(bank - first) * 64..][..64].to_vec()
+        })
+    }
+}
+
+/// The exchanges of an undisturbed run at which a cut makes a difference: all but those before the first operation, which
+/// only read, and those that ask the same again and again, the position while a person is waited for and the status while
+/// a run goes on. Of these every eighth is enough.
+pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
+    let mut bench = original.copied();
+    let mut hands = Hands::on(&bench);
+    hands.rpm = (500.0, 2000.0);
+    let sent = bench.counter();
+    let mut begun: Vec<(usize, Step)> = Vec::new();
+    let commit = hands.commit_of(prepared);
+    let told = &mut |news: &News| {
+        hands.hear(news);
+        if news.detail == Detail::Begins {
+            begun.push((sent(), news.step));
+        }
+    };
+    bench.run_watched(commit, told).unwrap();
+    let asks_again = |at: usize| {
+        let now = begun.iter().rfind(|(from, _)| *from <= at);
+        let next = begun.iter().any(|(from, _)| *from == at + 1);
+        let same = match now {
+            None => true,
+            Some((from, step)) => matches!(step, Step::Await(_) | Step::Run(_)) && *from + 1 < at,
+        };
+        same && !next
+    };
+    (0..=sent()).filter(|at| !asks_again(*at) || at % 8 == 0).collect()
+}
+
+/// The interruption, where it is one.
+pub(crate) fn interrupted(error: JobError) -> Interrupted {
+    match error {
+        JobError::Interrupted { interrupted, .. } => *interrupted,
+        other => panic!("{other}"),
+    }
+}
+
+pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
+
+/// The state that was told is the one in which the encoder is.
+pub(crate) fn assert_told(left: &Left, bench: &Bench, context: &str) {
+    let (mode, password) = bench.mode_and_password();
+    match left {
+        Left::Operation => assert_eq!((mode, password), IN_OPERATION, "{context}"),
+        Left::Unknown(standing) => {
+            assert!(standing.mode.may_be(mode), "{context}: {mode} is not in {standing:?}");
+            assert!(standing.password.may_be(password != 0), "{context}: {password:02X}h is not in {standing:?}");
+        }
+    }
+}

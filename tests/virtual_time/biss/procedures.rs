@@ -1,0 +1,483 @@
+//! The five procedures and the mounting run on the virtual encoder: their steps, what they measure and refuse, what their
+//! failures say, and that every end is operation with the password cleared.
+
+use std::time::Duration;
+
+use encoder_studio::device::biss::Error;
+use encoder_studio::device::biss::procedure::{
+    Advice, Answer, Blocker, Failure, Outcome, Run, Step, Task, WiegandReport, steps_of,
+};
+use encoder_studio::device::biss::write::Left;
+use encoder_studio::profile::biss::{MotorSource, MountingRun, PlanError, PresetParts};
+use encoder_studio::protocol::biss::{
+    CalibrationStatus, DeviceMode, Filter, PresetValue, ProcedureKind, WiegandResult, WiegandStatus,
+};
+use encoder_studio::worker::biss::{Change, JobError};
+
+use super::hands::{Hands, IN_OPERATION, calibration, data, filter, interrupted, preset, wiegand_test};
+use super::support::{Bench, Way, at};
+
+const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+
+/// The steps that were told are those that were listed beforehand, in their order; the way back is told where there is
+/// something to lead back.
+#[track_caller]
+fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
+    let prepared = bench.prepare(change).unwrap();
+    let mut hands = Hands::on(bench);
+    bench.commit(&prepared, &mut hands).unwrap();
+    let listed: Vec<(usize, Step)> = prepared
+        .plan
+        .ops
+        .iter()
+        .enumerate()
+        .flat_map(|(number, op)| steps_of(op).into_iter().map(move |step| (number, step)))
+        .collect();
+    assert_eq!(hands.steps, listed);
+    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    hands
+}
+
+/// Manual 6.4: counterclockwise first, about five seconds each, saved by itself.
+#[test]
+fn a_calibration_runs_both_ways_and_is_one_flash_cycle() {
+    for way in WAYS {
+        for silent in ["on", "off"] {
+            let mut bench = Bench::new(way, &format!("calibration-silent={silent}&temperature=30"));
+            let before = bench.flash_cycles();
+            let prepared = bench.prepare(calibration()).unwrap();
+            assert_eq!(prepared.plan.write_cycles(), 1);
+            let mut hands = Hands::on(&bench);
+            let committed = bench.commit(&prepared, &mut hands).unwrap();
+            let written = committed.written;
+            assert_eq!((written.ops, written.write_cycles, written.written), (1, 1, 1));
+            assert_eq!(bench.flash_cycles() - before, 1);
+            let [Outcome::Calibrated(report)] = written.outcomes.as_slice() else { panic!("{:?}", written.outcomes) };
+            assert_eq!(report.celsius, Some(30));
+            let (first, second) = (report.counterclockwise.unwrap(), report.clockwise.unwrap());
+            assert!((first.rpm + 500.0).abs() < 0.5 && (second.rpm - 500.0).abs() < 0.5, "{report:?}");
+            let tasks: Vec<Task> = hands.demands.iter().map(|demand| demand.task).collect();
+            assert_eq!(tasks, [Task::Turn(Run::CalibrationCounterclockwise), Task::Turn(Run::CalibrationClockwise)]);
+            assert!(hands.demands[1].advice.contains(&Advice::TableAtRisk));
+            assert!(!hands.demands[0].advice.contains(&Advice::TableAtRisk));
+            assert_eq!(bench.mode_and_password(), IN_OPERATION, "{way:?} {silent}");
+        }
+    }
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), calibration());
+}
+
+/// Manual 6.3: 515 revolutions at 1000 rpm are 30.9 s.
+#[test]
+fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
+    for way in WAYS {
+        for save in [false, true] {
+            let mut bench = Bench::new(way, "pulses=6.3,5.8");
+            let (before, from) = (bench.flash_cycles(), bench.now());
+            let prepared = bench.prepare(wiegand_test(save)).unwrap();
+            assert_eq!(prepared.plan.write_cycles(), u64::from(save));
+            let mut hands = Hands::on(&bench);
+            let written = bench.commit(&prepared, &mut hands).unwrap().written;
+            assert_eq!(bench.flash_cycles() - before, u32::from(save));
+            assert_eq!((written.write_cycles, written.written), (u64::from(save), u64::from(save)));
+            let [Outcome::Tested(report)] = written.outcomes.as_slice() else { panic!("{:?}", written.outcomes) };
+            let WiegandReport { result, saved, .. } = report;
+            assert_eq!((*result, *saved), (WiegandResult::parse([63, 58, 63, 58]), save));
+            assert!(result.passes());
+            let took = bench.now() - from;
+            assert!((2.0 * 30.9..75.0).contains(&took.as_secs_f64()), "{took:?}");
+            assert_eq!(bench.mode_and_password(), IN_OPERATION);
+            // It shows after a restart.
+            bench.encoder(|encoder, now| encoder.power_cycle(now));
+            bench.run(encoder_studio::worker::biss::BissJob::LeadBack).unwrap();
+            assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
+        }
+    }
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), wiegand_test(true));
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), wiegand_test(false));
+    let weak = Bench::new(Way::ConfigPin, "pulses=6.3,5.3").change(wiegand_test(false)).unwrap().written;
+    let [Outcome::Tested(report)] = weak.outcomes.as_slice() else { panic!() };
+    assert!(!report.result.passes(), "5.3 V is not above 5.3 V");
+}
+
+/// Manual 6.5.
+#[test]
+fn data_are_written_register_by_register_and_saved_once() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        let before = bench.flash_cycles();
+        let written = bench.change(data()).unwrap().written;
+        assert_eq!((written.ops, written.written, written.verified, written.write_cycles), (1, 3, 3, 1));
+        assert_eq!(bench.flash_cycles() - before, 1);
+        assert_eq!(
+            (bench.flash_bank(0x24)[0x10], bench.flash_bank(0x24)[0x3F], bench.flash_bank(0x25)[0]),
+            (0xA1, 0xA3, 0xA4)
+        );
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert!(bench.prepare(data()).unwrap().plan.is_empty(), "{way:?}");
+    }
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), data());
+}
+
+/// Manual 6.6: the encoder restarts with it.
+#[test]
+fn a_filter_is_selected_with_a_restart() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        let (before, from) = (bench.flash_cycles(), bench.now());
+        let written = bench.change(filter()).unwrap().written;
+        assert_eq!(written.outcomes, [Outcome::FilterSelected(Filter::Dynamic)]);
+        assert_eq!((bench.flash_cycles() - before, written.write_cycles, written.verified), (1, 1, 1));
+        assert_eq!(bench.encoder(|encoder, _| encoder.flash().filter()), Filter::Dynamic);
+        assert!(bench.now() - from >= Duration::from_millis(500));
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    }
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), filter());
+}
+
+/// Manual 6.7: 270° are 18000h, its registers 00 80 01.
+#[test]
+fn a_preset_is_stored_and_carried_out_with_two_restarts() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "position=0x20007");
+        let before = bench.flash_cycles();
+        let written = bench.change(preset(98_304, 2)).unwrap().written;
+        assert_eq!((bench.flash_cycles() - before, written.write_cycles, written.verified), (2, 2, 2));
+        let [Outcome::PresetStored(value), Outcome::PresetFired { parts, from, to }] = written.outcomes.as_slice()
+        else {
+            panic!("{:?}", written.outcomes)
+        };
+        assert_eq!((*value, *parts), (PresetValue::new(98_304, 2).unwrap(), PresetParts::Both));
+        assert_eq!(((from.turns, from.steps), (to.turns, to.steps)), ((1, 7), (2, 98_304)));
+        let stored: Vec<u8> = (2..8).map(|at_| bench.encoder_reads(at(&format!("0x01:0x0{at_}"))).unwrap()).collect();
+        assert_eq!(stored, [0x00, 0x80, 0x01, 0x02, 0x00, 0x00]);
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        for (parts, place) in [(PresetParts::Singleturn, (2, 98_304)), (PresetParts::Multiturn, (2, 98_304))] {
+            let only = Change::Preset { value: None, parts: Some(parts) };
+            let written = bench.change(only).unwrap().written;
+            let [Outcome::PresetFired { to, .. }] = written.outcomes.as_slice() else { panic!() };
+            assert_eq!(((to.turns, to.steps), written.write_cycles), (place, 1), "{parts:?}");
+        }
+    }
+    assert_steps(&mut Bench::new(Way::ConfigPin, ""), preset(1, 1));
+}
+
+/// Temperature, calibration, Wiegand test, preset and OEM data, with the motor turned and stopped in between.
+#[test]
+fn a_mounting_is_one_run_with_a_report() {
+    let mut bench = Bench::new(Way::ConfigPin, "temperature=33");
+    let mut wanted = bench.save();
+    let listed = encoder_studio::profile::biss::Bank { number: 0x24, bytes: [7; 64] };
+    wanted.data[1].listed.push(listed.into());
+    let run = MountingRun {
+        calibrate: true,
+        wiegand: Some(true),
+        preset: PresetValue::new(0, 0).map(|value| (value, PresetParts::Both)),
+        data: Some(Box::new(wanted)),
+    };
+    let before = bench.flash_cycles();
+    let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
+    let cost = prepared.plan.write_cycles();
+    assert_eq!(cost, 4, "the preset value is stored already");
+    let mut hands = Hands::on(&bench);
+    let written = bench.commit(&prepared, &mut hands).unwrap().written;
+    assert_eq!((written.ops, written.write_cycles, written.written), (4, 4, 1 + 1 + 1 + 64));
+    assert_eq!(u64::from(bench.flash_cycles() - before), cost);
+    assert!(matches!(
+        written.outcomes.as_slice(),
+        [
+            Outcome::Calibrated(_),
+            Outcome::Tested(WiegandReport { saved: true, .. }),
+            Outcome::PresetFired { .. },
+            Outcome::Stored { registers: 64 },
+        ]
+    ));
+    assert_eq!(bench.flash_bank(0x24), [7; 64]);
+    assert_eq!(bench.encoder(|encoder, now| encoder.reading(now).unwrap().singleturn), 0);
+    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    let tasks: Vec<Task> = hands.demands.iter().map(|demand| demand.task).collect();
+    let expected = [
+        Task::Turn(Run::CalibrationCounterclockwise),
+        Task::Turn(Run::CalibrationClockwise),
+        Task::Turn(Run::WiegandClockwise),
+        Task::Turn(Run::WiegandCounterclockwise),
+        Task::StandAtPlace,
+        Task::Stand,
+    ];
+    assert_eq!(tasks, expected);
+}
+
+#[test]
+fn a_part_of_a_run_can_be_left_out() {
+    for task in [Task::Turn(Run::CalibrationCounterclockwise), Task::Turn(Run::CalibrationClockwise)] {
+        let mut bench = Bench::new(Way::ConfigPin, "");
+        let run = MountingRun { calibrate: true, wiegand: Some(false), ..MountingRun::default() };
+        let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
+        let before = bench.flash_cycles();
+        let mut hands = Hands::on(&bench);
+        hands.instead.push((task, Answer::Skip));
+        let written = bench.commit(&prepared, &mut hands).unwrap().written;
+        assert!(matches!(written.outcomes.as_slice(), [Outcome::Skipped, Outcome::Tested(_)]), "{task:?}");
+        assert_eq!((written.ops, written.write_cycles), (1, 0));
+        assert_eq!(bench.flash_cycles(), before);
+        assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    }
+}
+
+#[test]
+fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
+    for (change, task) in [
+        (calibration(), Task::Turn(Run::CalibrationCounterclockwise)),
+        (calibration(), Task::Turn(Run::CalibrationClockwise)),
+        (wiegand_test(true), Task::Turn(Run::WiegandCounterclockwise)),
+        (preset(1, 1), Task::StandAtPlace),
+        (data(), Task::Stand),
+    ] {
+        let mut bench = Bench::new(Way::ConfigPin, "");
+        let prepared = bench.prepare(change).unwrap();
+        let mut hands = Hands::on(&bench);
+        hands.instead.push((task, Answer::Cancel));
+        let told = interrupted(*bench.commit(&prepared, &mut hands).unwrap_err());
+        assert_eq!(
+            (told.cause, told.at, told.left),
+            (Failure::Device(Error::Cancelled), Step::Await(task), Left::Operation)
+        );
+        assert_eq!(bench.mode_and_password(), IN_OPERATION, "{task:?}");
+        assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
+    }
+}
+
+/// Nobody is there: what does not fit is told after the patience, and nothing was begun.
+#[test]
+fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
+    let cases = [
+        ("rpm=0", calibration(), Blocker::Standing),
+        ("rpm=500", calibration(), Blocker::WrongDirection),
+        ("rpm=-1000", wiegand_test(false), Blocker::WrongDirection),
+        ("rpm=-500&temperature=20", calibration(), Blocker::Temperature { celsius: 20 }),
+        ("rpm=-500&temperature=41", calibration(), Blocker::Temperature { celsius: 41 }),
+    ];
+    for (query, change, blocker) in cases {
+        let mut bench = Bench::new(Way::ConfigPin, query);
+        let prepared = bench.prepare(change).unwrap();
+        let (before, from) = (bench.flash_cycles(), bench.now());
+        let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
+        let Failure::NotReady { blockers, .. } = &told.cause else { panic!("{query}: {told}") };
+        assert_eq!((blockers.contains(&blocker), &told.left), (true, &Left::Operation), "{query}: {blockers:?}");
+        assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
+        assert!(bench.now() - from < Duration::from_secs(7), "{query}");
+    }
+    // A motor that turns round where the encoder waits for it.
+    let mut bench = Bench::new(Way::ConfigPin, "rpm=-500&motor=reverse");
+    let prepared = bench.prepare(calibration()).unwrap();
+    let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
+    assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
+    // One that does not: the second direction never comes.
+    let mut bench = Bench::new(Way::ConfigPin, "rpm=1000");
+    let prepared = bench.prepare(wiegand_test(true)).unwrap();
+    let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
+    assert_eq!(told.at, Step::Await(Task::Turn(Run::WiegandCounterclockwise)));
+    assert_eq!((told.left, bench.mode_and_password()), (Left::Operation, IN_OPERATION));
+    // Outside of the speeds: too slow for the test, too fast for the calibration.
+    for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
+        let mut bench = Bench::new(Way::ConfigPin, query);
+        let prepared = bench.prepare(change).unwrap();
+        let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(3)).unwrap_err());
+        assert!(
+            matches!(&told.cause, Failure::NotReady { blockers, .. }
+            if matches!(blockers.as_slice(), [Blocker::Speed { .. }])),
+            "{told}"
+        );
+    }
+}
+
+/// Manual 6.4: what the calibration's status may say. The second run loses the table.
+#[test]
+fn a_calibration_that_fails_says_why() {
+    // Speed and direction change when the run has been started; waver and temperature are there from the beginning.
+    let cases = [
+        (Run::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
+        (Run::CalibrationCounterclockwise, "", Some(-600.0), CalibrationStatus::Failed),
+        (Run::CalibrationClockwise, "", Some(600.0), CalibrationStatus::Failed),
+    ];
+    for (run, query, disturbed, status) in cases {
+        let mut bench = Bench::new(Way::ConfigPin, &format!("{query}&calibration-silent=off"));
+        let prepared = bench.prepare(calibration()).unwrap();
+        let before = bench.flash_cycles();
+        let (mut hands, motor) = (Hands::on(&bench), bench.motor());
+        let (told, seat) = (&mut hands, &motor);
+        let commit = told.commit_of(&prepared);
+        let error = bench
+            .run_watched(commit, &mut |news| {
+                told.hear(news);
+                let lasts = matches!(news.detail, encoder_studio::device::biss::procedure::Detail::Lasts { .. });
+                if let (Some(rpm), true) = (disturbed, lasts && news.step == Step::Run(run)) {
+                    seat.set_rpm(rpm);
+                }
+            })
+            .unwrap_err();
+        let told = interrupted(*error);
+        assert_eq!(told.cause, Failure::Calibration { run, status });
+        assert_eq!((told.at, told.left), (Step::Run(run), Left::Operation));
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+        assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, 0));
+        let lost = run == Run::CalibrationClockwise;
+        assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
+    }
+}
+
+/// What the encoder itself finds wrong although it was measured otherwise a moment before.
+#[test]
+fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
+    type Spoil = fn(&mut encoder_studio::sim::biss::Encoder, encoder_studio::units::Moment);
+    let cases: [(Spoil, CalibrationStatus); 3] = [
+        (|encoder, now| encoder.set_rpm(now, 500.0), CalibrationStatus::WrongDirection),
+        (|encoder, now| encoder.set_rpm(now, -900.0), CalibrationStatus::Speed),
+        (|encoder, _| encoder.set_temperature(60), CalibrationStatus::Temperature),
+    ];
+    for (spoil, status) in cases {
+        let mut bench = Bench::new(Way::ConfigPin, "calibration-silent=off");
+        let prepared = bench.prepare(calibration()).unwrap();
+        let mut hands = Hands::on(&bench);
+        let commit = hands.commit_of(&prepared);
+        let encoder = bench.handle();
+        let error = bench
+            .run_watched(commit, &mut |news| {
+                hands.hear(news);
+                if hands.steps.last() == Some(&(0, Step::Run(Run::CalibrationCounterclockwise)))
+                    && matches!(news.detail, encoder_studio::device::biss::procedure::Detail::Begins)
+                {
+                    encoder.with(spoil);
+                }
+            })
+            .unwrap_err();
+        let run = Run::CalibrationCounterclockwise;
+        assert_eq!(interrupted(*error).cause, Failure::Calibration { run, status });
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    }
+    // A Wiegand sensor that gives no pulses, and a motor that turns on as it did.
+    let mut dead = Bench::new(Way::ConfigPin, "pulses=0,0");
+    let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
+    let (run, status) = (Run::WiegandClockwise, WiegandStatus::Failed);
+    assert_eq!(told.cause, Failure::Wiegand { run, status, code: 1 });
+    assert_eq!(dead.mode_and_password(), IN_OPERATION);
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let prepared = bench.prepare(wiegand_test(true)).unwrap();
+    let mut hands = Hands::on(&bench);
+    let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
+    let error = bench
+        .run_watched(commit, &mut |news| {
+            hands.hear(news);
+            if news.step == Step::Run(Run::WiegandCounterclockwise) {
+                motor.set_rpm(1000.0);
+            }
+        })
+        .unwrap_err();
+    let (run, status) = (Run::WiegandCounterclockwise, WiegandStatus::WrongDirection);
+    assert_eq!(interrupted(*error).cause, Failure::Wiegand { run, status, code: 0 });
+    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+}
+
+#[test]
+fn a_run_that_never_ends_is_given_up() {
+    // The motor stops, and the revolutions never come together.
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let prepared = bench.prepare(wiegand_test(false)).unwrap();
+    let mut hands = Hands::on(&bench);
+    let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
+    let error = bench
+        .run_watched(commit, &mut |news| {
+            hands.hear(news);
+            if news.step == Step::Run(Run::WiegandClockwise) {
+                motor.set_rpm(0.0);
+            }
+        })
+        .unwrap_err();
+    let told = interrupted(*error);
+    assert!(matches!(told.cause, Failure::TooLong { run: Run::WiegandClockwise, seconds: 71..=73 }), "{told}");
+    assert_eq!((told.left, bench.mode_and_password()), (Left::Operation, IN_OPERATION));
+}
+
+/// What is known before a procedure begins is refused before anything is written.
+#[test]
+fn what_cannot_be_done_is_refused_beforehand() {
+    let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
+    for run in [run(true, None), run(false, Some(true))] {
+        let change = Change::Guided { run, motor: MotorSource::ThisEncoder };
+        let error = Bench::new(Way::ConfigPin, "").prepare(change).unwrap_err();
+        assert!(matches!(error, JobError::Plan(PlanError::DrivenByThisEncoder)), "{error}");
+    }
+    let error = Bench::new(Way::ConfigPin, "filter=dynamic").prepare(calibration()).unwrap_err();
+    assert!(matches!(error, JobError::Plan(PlanError::NotBalanced { code: 4 })), "{error}");
+    let error = Bench::new(Way::ConfigPin, "firmware=1.0.0").prepare(filter()).unwrap_err();
+    let kind = ProcedureKind::FilterSelection;
+    assert!(matches!(error, JobError::Plan(PlanError::FirmwareTooOld { kind: own, .. }) if own == kind), "{error}");
+    let error = Bench::new(Way::ConfigPin, "firmware=1.1.0").prepare(preset(0, 0)).unwrap_err();
+    assert!(matches!(error, JobError::Plan(PlanError::FirmwareTooOld { .. })), "{error}");
+    for query in ["rpm=30", "rpm=-500"] {
+        let error = Bench::new(Way::ConfigPin, query).prepare(data()).unwrap_err();
+        assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
+    }
+    // The shaft begins to turn between the plan and its execution.
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let prepared = bench.prepare(data()).unwrap();
+    bench.motor().set_rpm(100.0);
+    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
+    assert_eq!(bench.flash_bank(0x24), [0; 64]);
+}
+
+/// An old firmware has one filter, and its register says nothing.
+#[test]
+fn an_encoder_without_a_choice_of_filter_is_calibrated() {
+    let mut bench = Bench::new(Way::ConfigPin, "firmware=1.0.0");
+    let written = bench.change(calibration()).unwrap().written;
+    assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
+}
+
+/// Somebody has left the encoder in a device mode, with the password set.
+#[test]
+fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
+    for mode in [1, 2, 4, 5, 7] {
+        for way in WAYS {
+            let mut bench = Bench::new(way, "");
+            bench.encoder(|encoder, now| {
+                assert!(encoder.write(now, at("0x6B"), 0x2A) && encoder.write(now, at("0x6A"), mode));
+            });
+            let error = bench.prepare(data()).unwrap_err();
+            let found = DeviceMode::new(mode);
+            assert!(matches!(error, JobError::Device(Error::NotInOperation { mode }) if mode == found), "{error}");
+            assert_eq!(bench.mode_and_password(), (found, 0x2A), "nothing was written");
+            assert_eq!(bench.lead_back().unwrap(), found);
+            assert_eq!(bench.mode_and_password(), IN_OPERATION);
+            bench.change(data()).unwrap();
+        }
+    }
+    // Only the password: whoever writes next clears it.
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
+    bench.change(data()).unwrap();
+    assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    assert_eq!(bench.lead_back().unwrap(), DeviceMode::OPERATION);
+}
+
+/// A clockwise run that somebody began is let finish: leaving it would lose the table.
+#[test]
+fn leading_back_waits_for_a_calibration() {
+    for silent in ["on", "off"] {
+        let mut bench = Bench::new(Way::ConfigPin, &format!("rpm=-500&calibration-silent={silent}"));
+        let start =
+            |bench: &Bench, place: &str, value| bench.encoder(|own, now| assert!(own.write(now, at(place), value)));
+        start(&bench, "0x6B", 0x2A);
+        start(&bench, "0x6A", 1);
+        start(&bench, "0x00:0x00", 1);
+        bench.clock_to(Duration::from_secs(6));
+        bench.motor().set_rpm(500.0);
+        start(&bench, "0x00:0x00", 2);
+        let before = bench.flash_cycles();
+        bench.lead_back().unwrap();
+        assert_eq!(bench.mode_and_password(), IN_OPERATION, "{silent}");
+        assert_eq!(bench.flash_cycles() - before, 1, "it was saved");
+        assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
+    }
+}

@@ -1,0 +1,318 @@
+//! Restoring and writing: the fewest registers and saves, told beforehand and noted afterwards; nothing that is not as it
+//! was; single answers lost at every exchange; wear.
+
+use std::time::Duration;
+
+use encoder_studio::device::biss::Error;
+use encoder_studio::device::biss::procedure::{Failure, Outcome};
+use encoder_studio::device::biss::write::Left;
+use encoder_studio::profile::biss::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
+use encoder_studio::profile::{Consent, Document};
+use encoder_studio::protocol::biss::{Filter, PresetValue};
+use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
+use encoder_studio::worker::biss::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
+use jiff::Timestamp;
+
+use super::hands::{
+    Hands, IN_OPERATION, calibration, data, exchanges, filter, interrupted, preset, restore_of, wiegand_test,
+};
+use super::support::{Bench, Way, at};
+
+const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+
+/// The profile with other bytes in a bank.
+fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
+    let mut wanted = profile.clone();
+    let mut bank = profile.bank(number).unwrap();
+    bytes.iter().for_each(|(place, byte)| bank.bytes[*place] = *byte);
+    let image = wanted.data.iter_mut().find(|image| (image.first..=image.last).contains(&number)).unwrap();
+    image.listed.retain(|listed| listed.bank.number != number);
+    image.listed.push(bank.into());
+    wanted
+}
+
+fn history(bench: &mut Bench) -> Vec<Entry> {
+    let prepared = bench.prepare(filter()).unwrap();
+    let logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
+    logbook.history(&device_key(&prepared.identity, true), 9).unwrap()
+}
+
+/// UBICOM writes to a bank: its global addresses, low byte first.
+fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8)> {
+    let is_write = |frame: &&Vec<u8>| frame[..3] == [0x80, 0x01, 0x02];
+    let tap = bench.tap();
+    let writes = tap.sent.iter().filter(is_write).map(|frame| (u16::from_le_bytes([frame[5], frame[6]]), frame[7]));
+    let range = 0x40 + 0x40 * u16::from(*banks.start())..0x80 + 0x40 * u16::from(*banks.end());
+    writes.filter(|(global, _)| range.contains(global)).collect()
+}
+
+/// The issue: three bytes of one bank are three registers and one save; the plan says so, and so does the logbook.
+#[test]
+fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let saved = bench.save();
+    let wanted = with_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
+    let prepared = bench.prepare(restore_of(&wanted)).unwrap();
+    assert_eq!((prepared.plan.ops.len(), prepared.plan.write_cycles()), (1, 1));
+    let Op::StoreData { registers, .. } = &prepared.plan.ops[0] else { panic!("{:?}", prepared.plan) };
+    assert_eq!(registers.len(), 3);
+    assert_eq!(prepared.unchanged, 1 + 6 + 64 * 64 - 3);
+    let before = bench.flash_cycles();
+    bench.tap().sent.clear();
+    let committed = bench.commit_alone(&prepared, Duration::ZERO).unwrap();
+    // Bank 24h begins at 0940h.
+    assert_eq!(writes_to(&bench, 0x04..=0x43), [(0x0950, 1), (0x0951, 2), (0x0970, 3)]);
+    let commands = writes_to(&bench, 0x00..=0x00);
+    assert_eq!(commands, [(0x005A, 2), (0x005A, 3)], "opened for OEM data, and saved once");
+    assert_eq!(bench.flash_cycles() - before, 1);
+    let written = committed.written;
+    assert_eq!((written.written, written.verified, written.write_cycles), (3, 3, 1));
+    assert_eq!(written.outcomes, [Outcome::Stored { registers: 3 }]);
+    let entry = &history(&mut bench)[0];
+    assert_eq!((entry.what.as_str(), entry.planned_cycles), ("0x24:0x10+2, 0x24:0x30", 1));
+    let conclusion = entry.conclusion.as_ref().unwrap();
+    assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Noted::Done, 1));
+    assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
+
+    // The before-image gives it back.
+    let text = read_text(&committed.backup.unwrap()).unwrap();
+    let kept = Document::parse(&text).unwrap();
+    assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
+    let kept = kept.body.into_biss().unwrap();
+    assert_eq!((kept.banks().count(), kept.bank(0x24).unwrap().bytes), (1, [0; 64]));
+    bench.change(restore_of(&kept)).unwrap();
+    assert_eq!(bench.save(), saved);
+}
+
+#[test]
+fn everything_that_differs_is_restored_and_nothing_else() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "position=0x20007");
+        let saved = bench.save();
+        let mut wanted = with_bytes(&with_bytes(&saved, 0x05, &[(0, 9)]), 0x43, &[(0x3F, 8)]);
+        wanted.filter = Some(Filter::Dynamic);
+        let value = PresetValue::new(0x18000, 3).unwrap();
+        wanted.preset = Some(PresetSetting { value, unknown: Default::default() });
+        let prepared = bench.prepare(restore_of(&wanted)).unwrap();
+        assert_eq!(prepared.plan.write_cycles(), 4, "motor data, OEM data, filter, preset value");
+        let before = bench.flash_cycles();
+        let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
+        assert_eq!((written.ops, written.written, written.verified, written.write_cycles), (4, 4, 4, 4));
+        assert_eq!(bench.flash_cycles() - before, 4);
+        let now = bench.save();
+        assert_eq!((&now.data, now.filter, &now.preset), (&wanted.data, wanted.filter, &wanted.preset));
+        let place = bench.encoder(|encoder, now| encoder.reading(now)).map(|own| (own.multiturn, own.singleturn));
+        assert_eq!(place, Some((1, 7)), "the preset was stored and not carried out");
+        assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
+        bench.change(restore_of(&saved)).unwrap();
+        assert_eq!(bench.save(), saved, "{way:?}");
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    }
+}
+
+#[test]
+fn another_encoder_is_refused_and_keeps_its_mounting() {
+    let mut from = Bench::new(Way::ConfigPin, "serial=1");
+    from.change(preset(0x8000, 1)).unwrap();
+    let profile = with_bytes(&from.save(), 0x24, &[(0, 1)]);
+    let mut bench = Bench::new(Way::ConfigPin, "serial=2");
+    let error = bench.prepare(restore_of(&profile)).unwrap_err();
+    assert!(matches!(error, JobError::Plan(PlanError::OtherDevice { .. })), "{error}");
+    let restore = |with_mounting| {
+        let options = RestoreOptions { allow_other_device: true, with_mounting };
+        Change::Restore { profile: Box::new(profile.clone()), options }
+    };
+    let prepared = bench.prepare(restore(false)).unwrap();
+    let left: Vec<String> = prepared.mounting_left.iter().map(ToString::to_string).collect();
+    assert_eq!((prepared.plan.write_cycles(), left), (1, vec!["0x01:0x02+6".to_owned()]));
+    assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
+}
+
+/// What was read before the plan has changed until it is carried out: nothing is written.
+#[test]
+fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
+    type Case = (fn() -> Change, fn(&mut Bench), &'static str);
+    let cases: [Case; 4] = [
+        (data, |bench| drop(bench.change(Change::Write(vec![("0x24:0x00".parse().unwrap(), vec![9])]))), "bank 0x24"),
+        (filter, |bench| drop(bench.change(filter())), "0x6E"),
+        (|| preset(5, 5), |bench| drop(bench.change(preset(6, 6))), "0x01:0x02+6"),
+        (calibration, |bench| drop(bench.change(filter())), "0x6E"),
+    ];
+    for (change, meddle, item) in cases {
+        let mut bench = Bench::new(Way::ConfigPin, "");
+        let prepared = bench.prepare(change()).unwrap();
+        meddle(&mut bench);
+        let before = bench.flash_cycles();
+        let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+        assert!(matches!(&error, JobError::Device(Error::Changed { item: own }) if own == item), "{error}");
+        assert_eq!(bench.flash_cycles(), before);
+    }
+    // Another encoder with the same memory on the same cable.
+    let prepared = Bench::new(Way::ConfigPin, "serial=1").prepare(data()).unwrap();
+    let mut other = Bench::new(Way::ConfigPin, "serial=2");
+    let error = other.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    assert!(matches!(&error, JobError::Device(Error::Changed { item }) if item == "the encoder itself"), "{error}");
+    assert_eq!(other.flash_bank(0x24), [0; 64]);
+}
+
+#[test]
+fn a_consent_covers_one_plan() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let shown = bench.prepare(filter()).unwrap();
+    let prepared = bench.prepare(data()).unwrap();
+    let consent = Consent::to(shown.plan.id());
+    let attendance = Attendance::Seat(Default::default());
+    let commit = Commit { prepared, consent, force_wear: false, attendance };
+    let error = bench.run(BissJob::Commit(Box::new(commit))).unwrap_err();
+    assert_eq!(error.to_string(), "the consent is for another plan");
+    assert_eq!(bench.flash_bank(0x24), [0; 64]);
+}
+
+/// Manual 6.1: 1000 write cycles. The logbook counts; what a plan would exceed is refused, and done where that is wished.
+#[test]
+fn a_worn_encoder_is_written_only_where_that_is_wished() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let prepared = bench.prepare(preset(1, 1)).unwrap();
+    assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
+    let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
+    let id = logbook.intend(Timestamp::now(), &device_key(&prepared.identity, true), "long ago", 999, None).unwrap();
+    logbook.conclude(id, Timestamp::now(), Noted::Done, 999).unwrap();
+    let prepared = bench.prepare(preset(1, 1)).unwrap();
+    assert_eq!(prepared.cycles_seen, Some(999));
+    let before = bench.flash_cycles();
+    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    assert!(matches!(error, JobError::Worn { used: 999, cost: 2, limit: 1000 }), "{error}");
+    assert_eq!(bench.flash_cycles(), before);
+    // One is left.
+    let one = bench.prepare(filter()).unwrap();
+    bench.commit_alone(&one, Duration::ZERO).unwrap();
+    let prepared = bench.prepare(preset(1, 1)).unwrap();
+    let consent = Consent::to(prepared.plan.id());
+    let attendance =
+        Attendance::Nobody(encoder_studio::device::biss::procedure::Unattended { patience: Duration::ZERO });
+    bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
+    assert_eq!(bench.flash_cycles() - before, 3);
+}
+
+/// One answer is lost, or one request, at every exchange: a write is never repeated where that would spend a cycle, and
+/// what is told is what has happened.
+#[test]
+fn one_lost_answer_or_request_at_every_exchange() {
+    type Scene = (&'static str, fn() -> Change, u32);
+    let scenes: [Scene; 3] = [("data", data, 1), ("filter", filter, 1), ("preset", || preset(7, 7), 2)];
+    for (name, change, cost) in scenes {
+        for lost in ["answer", "request"] {
+            let mut original = Bench::new(Way::ConfigPin, "");
+            let prepared = original.prepare(change()).unwrap();
+            let before = original.flash_cycles();
+            let mut failures = 0;
+            for exchange in exchanges(&original, &prepared) {
+                let context = format!("{name}, {lost} {exchange} lost");
+                let mut bench = original.copied();
+                match lost {
+                    "answer" => bench.tap().swallow_reply = Some(exchange),
+                    _ => bench.tap().swallow_request = Some(exchange),
+                }
+                let ended = bench.commit_alone(&prepared, Duration::ZERO);
+                let spent = bench.flash_cycles() - before;
+                assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                match ended {
+                    Ok(committed) => {
+                        assert_eq!(spent, cost, "{context}");
+                        assert_eq!(committed.written.verified, committed.written.written, "{context}");
+                    }
+                    // A command that was not heard, and cannot be given twice.
+                    Err(error) => {
+                        failures += 1;
+                        assert_eq!(lost, "request", "{context}: {error}");
+                        let told = interrupted(error);
+                        let unheard = matches!(told.cause, Failure::Status { .. } | Failure::NotVerified { .. });
+                        assert!(unheard, "{context}: {told}");
+                        assert_eq!(told.left, Left::Operation, "{context}");
+                        assert!(told.done.write_cycles >= u64::from(spent) && spent < cost, "{context}");
+                    }
+                }
+            }
+            assert_eq!(failures > 0, lost == "request", "{name}");
+        }
+    }
+}
+
+/// A Wiegand result that may not have been saved: nothing tells, so it is told so.
+#[test]
+fn what_cannot_be_read_back_is_unclear() {
+    let mut original = Bench::new(Way::ConfigPin, "");
+    let prepared = original.prepare(wiegand_test(true)).unwrap();
+    for lost in ["answer", "request"] {
+        let mut bench = original.copied();
+        let mut hands = Hands::on(&bench);
+        let (tap, counter) = (bench.tap_handle(), bench.counter());
+        let commit = hands.commit_of(&prepared);
+        let error = bench
+            .run_watched(commit, &mut |news| {
+                hands.hear(news);
+                if news.step == encoder_studio::device::biss::procedure::Step::Save {
+                    let next = Some(counter());
+                    match lost {
+                        "answer" => tap.lock().unwrap().swallow_reply = next,
+                        _ => tap.lock().unwrap().swallow_request = next,
+                    }
+                }
+            })
+            .unwrap_err();
+        let told = interrupted(*error);
+        assert!(matches!(told.cause, Failure::Device(Error::Unclear { value: 5, .. })), "{lost}: {told}");
+        assert_eq!((told.left, told.done.write_cycles), (Left::Operation, 1));
+        assert_eq!(bench.mode_and_password(), IN_OPERATION);
+    }
+}
+
+#[test]
+fn a_noisy_line_writes_right_or_tells() {
+    let (mut right, mut told) = (0, 0);
+    for noise in ["drop:0.005", "flip:0.005", "garbage:0.005"] {
+        for seed in 0..6 {
+            let mut quiet = Bench::new(Way::ConfigPin, &format!("seed={seed}"));
+            let prepared = quiet.prepare(data()).unwrap();
+            let mut bench = Bench::new(Way::ConfigPin, &format!("seed={seed}&fault={noise}"));
+            match bench.commit_alone(&prepared, Duration::ZERO) {
+                Ok(_) => {
+                    right += 1;
+                    assert_eq!(bench.flash_bank(0x25)[0], 0xA4, "{noise}, seed {seed}");
+                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{noise}, seed {seed}");
+                }
+                Err(JobError::Interrupted { interrupted, .. }) => {
+                    told += 1;
+                    super::hands::assert_told(&interrupted.left, &bench, &format!("{noise}, seed {seed}"));
+                }
+                Err(_) => told += 1,
+            }
+        }
+    }
+    assert!(right >= 12, "{right} right, {told} told");
+}
+
+/// Registers that no procedure guards are written one by one; what they cost is what the description says.
+#[test]
+fn a_single_register_is_written_and_read_back() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let write = |place: &str, byte| Change::Write(vec![(place.parse().unwrap(), vec![byte])]);
+    let prepared = bench.prepare(write("0x40", 5)).unwrap();
+    assert_eq!(prepared.plan.write_cycles(), 0);
+    let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
+    assert_eq!((written.verified, written.write_cycles, bench.encoder_reads(at("0x40"))), (1, 0, Some(5)));
+    // The kit encoder has nothing there and refuses.
+    let prepared = bench.prepare(write("0x50", 1)).unwrap();
+    let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
+    assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");
+    assert_eq!((told.done.write_cycles, told.left), (0, Left::Operation));
+    for place in ["0x6A", "0x6B", "0x00:0x1A", "0x01:0x02"] {
+        let error = bench.prepare(write(place, 1)).unwrap_err();
+        assert!(matches!(error, JobError::Plan(PlanError::Guarded { .. })), "{place}: {error}");
+    }
+    let error = bench.prepare(write("0x66", 1)).unwrap_err();
+    assert!(matches!(error, JobError::Plan(PlanError::ReadOnly { .. })), "{error}");
+    let nothing = bench.prepare(Change::Write(Vec::new())).unwrap();
+    assert!(nothing.plan.is_empty());
+    assert!(bench.commit_alone(&nothing, Duration::ZERO).unwrap().backup.is_none());
+}
