@@ -1,6 +1,7 @@
 //! A BiSS encoder at the end of its line.
 
 mod adapter;
+mod cuts;
 mod faults;
 mod hands;
 mod jobs;

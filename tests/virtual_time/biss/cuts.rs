@@ -1,0 +1,311 @@
+//! Every procedure with its link cut at every single exchange, its encoder robbed of power there, and the user's wish to
+//! end there: what is told of the encoder's state is the state that it is in, the way back leads to operation with the
+//! password cleared, and the procedure can then be carried out.
+
+use encoder_studio::device::biss::Error;
+use encoder_studio::device::biss::procedure::{Activity, Failure, Run, Step, steps_of};
+use encoder_studio::device::biss::write::{Interrupted, Left};
+use encoder_studio::link::{Cancel, Direction};
+use encoder_studio::profile::biss::{Bank, MotorSource, MountingRun, PresetParts};
+use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
+use encoder_studio::worker::biss::{Change, JobError, Prepared};
+
+use super::hands::{Hands, IN_OPERATION, assert_told, calibration, data, exchanges, filter, preset, wiegand_test};
+use super::support::{Bench, Way};
+
+const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+
+/// A procedure, and what it has done when it is done.
+struct Scene {
+    name: &'static str,
+    change: fn() -> Change,
+    is_done: fn(&Bench) -> bool,
+}
+
+const SCENES: [Scene; 5] = [
+    Scene { name: "data", change: data, is_done: |bench| bench.flash_bank(0x25)[0] == 0xA4 },
+    Scene {
+        name: "filter",
+        change: filter,
+        is_done: |bench| bench.encoder(|encoder, _| encoder.flash().filter()) == Filter::Dynamic,
+    },
+    Scene {
+        name: "preset",
+        change: || preset(0x18000, 2),
+        is_done: |bench| {
+            let place = bench.encoder(|encoder, now| encoder.reading(now)).map(|own| (own.multiturn, own.singleturn));
+            place == Some((2, 0x18000))
+        },
+    },
+    Scene {
+        name: "calibration",
+        change: calibration,
+        is_done: |bench| bench.encoder(|encoder, _| encoder.flash().is_calibrated()),
+    },
+    Scene { name: "Wiegand test", change: || wiegand_test(true), is_done: |bench| bench.flash_cycles() > 0 },
+];
+
+/// All of them in one.
+fn mounting() -> Change {
+    let bytes = [7; 64];
+    let mut profile = Bench::new(Way::ConfigPin, "").save();
+    profile.data[1].empty = None;
+    profile.data[0].empty = None;
+    profile.data[1].listed = vec![Bank { number: 0x24, bytes }.into()];
+    let run = MountingRun {
+        calibrate: true,
+        wiegand: Some(true),
+        preset: PresetValue::new(0x18000, 2).map(|value| (value, PresetParts::Both)),
+        data: Some(Box::new(profile)),
+    };
+    Change::Guided { run, motor: MotorSource::Other }
+}
+
+/// How a commit went that was disturbed.
+enum Ended {
+    /// To its end.
+    Done,
+    /// Before the first operation; nothing was written.
+    Refused(Error),
+    /// In the middle.
+    Interrupted(Interrupted),
+}
+
+/// Carries the change out on a copy of the bench; `disturb` is called when the plan stands.
+fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
+    let mut bench = original.copied();
+    disturb(&mut bench);
+    let mut hands = Hands::on(&bench);
+    // The shortest test: the fewest exchanges.
+    hands.rpm = (500.0, 2000.0);
+    let ended = match bench.commit(prepared, &mut hands).map_err(|error| *error) {
+        Ok(_) => Ended::Done,
+        Err(JobError::Device(error)) => Ended::Refused(error),
+        Err(JobError::Interrupted { interrupted, .. }) => Ended::Interrupted(*interrupted),
+        Err(other) => panic!("{other}"),
+    };
+    (bench, ended)
+}
+
+/// Reconnected, the encoder is led back; and, once for each step, the change carried out once more.
+fn assert_can_be_led_back(bench: &Bench, scene: &Scene, told: &Interrupted, steps: &mut Vec<Step>, context: &str) {
+    let first = !steps.contains(&told.at);
+    let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
+    again.motor().set_rpm(0.0);
+    again.lead_back().unwrap_or_else(|error| panic!("{context}: {error}"));
+    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+    if !first {
+        return;
+    }
+    steps.push(told.at);
+    let prepared = again.prepare((scene.change)()).unwrap_or_else(|error| panic!("{context}: {error}"));
+    let mut hands = Hands::on(&again);
+    hands.rpm = (500.0, 2000.0);
+    again.commit(&prepared, &mut hands).unwrap_or_else(|error| panic!("{context}: {error}"));
+    assert!((scene.is_done)(&again), "{context}");
+    assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
+}
+
+/// Flash cycles told are those that were spent, or one more where the last is not known.
+fn assert_cycles(told: &Interrupted, spent: u32, context: &str) {
+    let told = told.done.write_cycles;
+    assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
+}
+
+fn cut_at_every_exchange(scene: &Scene, way: Way) {
+    type Cut = fn(&mut Bench, usize);
+    let cuts: [(&str, Cut); 3] = [
+        ("lost", |bench, at| bench.tap().lost_from = Some(at)),
+        ("deaf", |bench, at| bench.tap().deaf_from = Some(at)),
+        ("mute", |bench, at| bench.tap().mute_from = Some(at)),
+    ];
+    let mut original = Bench::new(way, "");
+    let prepared = original.prepare((scene.change)()).unwrap();
+    let before = original.flash_cycles();
+    let exchanges = exchanges(&original, &prepared);
+    for (name, cut) in cuts {
+        let mut steps = Vec::new();
+        for at in exchanges.iter().copied() {
+            let context = format!("{} over {way:?}, {name} after {at}", scene.name);
+            let (bench, ended) = disturbed(&original, &prepared, |bench| cut(bench, at));
+            match ended {
+                Ended::Done => {
+                    assert_eq!(Some(&at), exchanges.last(), "{context}: it was not cut off");
+                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                }
+                Ended::Refused(error) => {
+                    assert!(error.is_lost(), "{context}: {error}");
+                    assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+                    assert_eq!(bench.flash_cycles(), before, "{context}");
+                }
+                Ended::Interrupted(told) => {
+                    assert!(told.cause.is_lost(), "{context}: {told}");
+                    assert_told(&told.left, &bench, &context);
+                    assert_cycles(&told, bench.flash_cycles() - before, &context);
+                    assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
+                }
+            }
+        }
+        assert_all_steps(&prepared, &steps, name, scene.name);
+    }
+}
+
+/// The cuts have hit every step in which anything is sent.
+fn assert_all_steps(prepared: &Prepared, hit: &[Step], name: &str, context: &str) {
+    let mut missed: Vec<Step> = prepared.plan.ops.iter().flat_map(steps_of).collect();
+    if missed.contains(&Step::Restart) && name != "lost" {
+        // An encoder that restarts owes no answer: that it has heard nothing shows when it is looked for.
+        missed.retain(|step| !matches!(step, Step::Save | Step::Fire));
+    }
+    missed.retain(|step| !hit.contains(step));
+    assert_eq!(missed, [], "{context}");
+}
+
+#[test]
+fn data_cut_at_every_exchange() {
+    WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[0], *way));
+}
+
+#[test]
+fn filter_cut_at_every_exchange() {
+    WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[1], *way));
+}
+
+#[test]
+fn preset_cut_at_every_exchange() {
+    WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[2], *way));
+}
+
+#[test]
+fn calibration_cut_at_every_exchange() {
+    WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[3], *way));
+}
+
+#[test]
+fn wiegand_test_cut_at_every_exchange() {
+    WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
+}
+
+/// The encoder loses its power before an exchange: it starts in operation, and nothing is stored by halves.
+#[test]
+fn power_lost_before_every_exchange() {
+    for scene in &SCENES {
+        let mut original = Bench::new(Way::ConfigPin, "");
+        let prepared = original.prepare((scene.change)()).unwrap();
+        let before = original.flash_cycles();
+        let mut steps = Vec::new();
+        for at in exchanges(&original, &prepared) {
+            let context = format!("{}, power lost before {at}", scene.name);
+            let (bench, ended) = disturbed(&original, &prepared, |bench| {
+                let (encoder, mut sent) = (bench.handle(), 0);
+                // The trace is told of a request before it is on the line.
+                bench.session.watch(move |entry| {
+                    if entry.direction == Direction::Sent {
+                        if sent == at {
+                            encoder.with(|encoder, _| encoder.disconnect());
+                        }
+                        sent += 1;
+                    }
+                });
+            });
+            let spent = bench.flash_cycles() - before;
+            match ended {
+                Ended::Done => assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}"),
+                Ended::Refused(error) => assert!(error.is_lost() && spent == 0, "{context}: {error}"),
+                Ended::Interrupted(told) => {
+                    assert!(told.cause.is_lost(), "{context}: {told}");
+                    assert_cycles(&told, spent, &context);
+                    let lost = !bench.encoder(|encoder, _| encoder.flash().is_calibrated());
+                    let running = Activity::Running(Run::CalibrationClockwise);
+                    let warned = matches!(&told.left, Left::Unknown(standing) if standing.activity == running);
+                    assert!(!lost || warned, "{context}: {told:?}");
+                    // Power is back, and with it operation.
+                    let mut again = bench.reconnected_knowing();
+                    assert_eq!(again.lead_back().unwrap(), DeviceMode::OPERATION, "{context}");
+                    assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
+                }
+            }
+        }
+    }
+}
+
+/// Power is lost in the middle of the flash being written.
+#[test]
+fn power_lost_in_every_store() {
+    for scene in &SCENES {
+        let mut original = Bench::new(Way::ConfigPin, "");
+        let prepared = original.prepare((scene.change)()).unwrap();
+        let stores = prepared.plan.write_cycles();
+        for store in 1..=stores {
+            let context = format!("{}, power lost in store {store}", scene.name);
+            let (bench, ended) = disturbed(&original, &prepared, |bench| {
+                bench.encoder(|encoder, _| encoder.set_faults(&format!("die-in-store:{store}").parse().unwrap()));
+            });
+            let Ended::Interrupted(told) = ended else { panic!("{context}") };
+            assert!(told.cause.is_lost() && matches!(told.left, Left::Unknown(_)), "{context}: {told:?}");
+            assert_eq!(told.done.write_cycles, store, "{context}");
+            bench.encoder(|encoder, _| encoder.set_faults(&Default::default()));
+            assert_can_be_led_back(&bench, scene, &told, &mut Vec::new(), &context);
+        }
+    }
+}
+
+/// The user's wish to end, at every exchange: the encoder is in operation, and what was written is what was told.
+#[test]
+fn cancelled_at_every_exchange() {
+    for scene in &SCENES {
+        let mut original = Bench::new(Way::ConfigPin, "");
+        let prepared = original.prepare((scene.change)()).unwrap();
+        let before = original.flash_cycles();
+        let mut done = false;
+        for steps in exchanges(&original, &prepared) {
+            let context = format!("{}, cancelled after {steps}", scene.name);
+            let cancel = Cancel::after(steps as u64);
+            let (bench, ended) = disturbed(&original, &prepared, |bench| bench.session.set_cancel(cancel));
+            assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+            let spent = u64::from(bench.flash_cycles() - before);
+            assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), "{context}");
+            match ended {
+                Ended::Done => {
+                    assert!((scene.is_done)(&bench), "{context}");
+                    done = true;
+                }
+                Ended::Refused(error) => assert_eq!((error, spent), (Error::Cancelled, 0), "{context}"),
+                Ended::Interrupted(told) => {
+                    assert_eq!(told.cause, Failure::Device(Error::Cancelled), "{context}");
+                    assert_eq!((told.left, told.done.write_cycles), (Left::Operation, spent), "{context}");
+                    assert!(!done, "{context}");
+                }
+            }
+        }
+        assert!(done, "{}", scene.name);
+    }
+}
+
+/// The whole mounting, cut at some exchanges of each of its operations: what was done before is told as done.
+#[test]
+fn a_mounting_that_is_cut_off_tells_what_was_done() {
+    let mut original = Bench::new(Way::ConfigPin, "");
+    let prepared = original.prepare(mounting()).unwrap();
+    assert_eq!(prepared.plan.write_cycles(), 5);
+    let before = original.flash_cycles();
+    let mut ops = Vec::new();
+    for at in (0..).step_by(23) {
+        let context = format!("mute after {at}");
+        let (bench, ended) = disturbed(&original, &prepared, |bench| bench.tap().mute_from = Some(at));
+        match ended {
+            Ended::Done => break,
+            Ended::Refused(error) => assert!(error.is_lost(), "{context}"),
+            Ended::Interrupted(told) => {
+                assert_told(&told.left, &bench, &context);
+                assert_cycles(&told, bench.flash_cycles() - before, &context);
+                assert_eq!(told.done.outcomes.len(), told.done.ops, "{context}");
+                ops.push(told.done.ops);
+                assert!(bench.reconnected().lead_back().is_ok(), "{context}");
+                assert_eq!(bench.mode_and_password(), IN_OPERATION, "{context}");
+            }
+        }
+    }
+    ops.dedup();
+    assert_eq!(ops, [0, 1, 2, 3, 4]);
+}
