@@ -17,6 +17,10 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
         end_ui(ui, skin, encoder, end, actions);
         ui.add_space(skin.space.groups);
     }
+    if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
+        super::encoder::motor_ui(ui, skin, encoder, motor, actions);
+        ui.add_space(skin.space.groups);
+    }
     card(ui, skin, "guide.title", |ui| {
         let list: Vec<Step> =
             guide.steps().iter().map(|own| step(skin, guide, own.op, own.is_first, own.step, own.reached)).collect();
@@ -50,10 +54,6 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
             _ => {}
         }
     });
-    if let Some(motor) = &encoder.motor {
-        ui.add_space(skin.space.groups);
-        super::encoder::motor_ui(ui, skin, encoder, motor, actions);
-    }
 }
 
 #[allow(clippy::too_many_arguments, reason = "a step is told what it is of")]
@@ -100,7 +100,9 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
     if let Task::Turn(run) = demand.task {
         let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
         let allowed = run.allowed();
-        let (rpm, unit) = (demand.motion.map(|own| own.rpm * sign), skin.say("unit.revolutions_per_minute"));
+        // Standing is 0, whichever way it is looked at.
+        let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
+        let unit = skin.say("unit.revolutions_per_minute");
         let limits = Text::new("guide.rpm_range").with_number("least", allowed.least, 0).with_number(
             "greatest",
             allowed.greatest,

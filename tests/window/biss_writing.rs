@@ -1,0 +1,196 @@
+//! Writing into a BiSS encoder from the window: edits with their review, and procedures that a person leads.
+
+use std::time::Duration;
+
+use encoder_studio::app::biss::{Action as Biss, Encoder, End, ReviewState};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
+use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
+use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
+use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue, RegisterAddress};
+use encoder_studio::worker::biss::Change;
+
+use crate::support::Desk;
+
+fn at(text: &str) -> RegisterAddress {
+    text.parse().unwrap()
+}
+
+fn is_ready(studio: &Studio) -> bool {
+    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
+}
+
+fn open(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.studio.begin(Some(link.parse().unwrap()), None);
+    desk.until("the encoder is read", is_ready);
+    desk.settle();
+    desk
+}
+
+fn encoder(desk: &Desk) -> &Encoder {
+    desk.studio.biss().expect("a BiSS encoder is shown")
+}
+
+fn ask(desk: &mut Desk, action: Biss) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Biss(id, action));
+}
+
+#[track_caller]
+fn until_planned(desk: &mut Desk) {
+    let planned =
+        |own: &Encoder| own.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Ready(_)));
+    desk.until("the plan is there", |studio| is_ready(studio) && studio.biss().is_some_and(planned));
+}
+
+/// Consents to the plan that is shown.
+fn write(desk: &mut Desk) {
+    let own = encoder(desk);
+    let plan = own.review.as_ref().and_then(|review| review.prepared()).expect("a plan is shown").plan.id();
+    let id = own.session.id;
+    desk.act(Action::Review(id, ReviewAction::Write(plan)));
+}
+
+fn plan(desk: &mut Desk, change: Change) {
+    ask(desk, Biss::Plan(Box::new(change)));
+    until_planned(desk);
+}
+
+/// Polls until the procedure asks for this.
+#[track_caller]
+fn until_asked(desk: &mut Desk, task: Task, ready: bool) {
+    desk.until("it is asked", |studio| {
+        let guide = studio.biss().and_then(|own| own.guide.as_ref());
+        let demand = guide.and_then(|guide| guide.demand());
+        demand.is_some_and(|own| own.task == task && own.is_ready() == ready)
+    });
+}
+
+#[test]
+fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
+    for link in ["sim:?bridge=on", "sim:"] {
+        let mut desk = open(link);
+        ask(&mut desk, Biss::ReadBank(Some(0x24)));
+        desk.until("the bank is read", |studio| {
+            is_ready(studio) && studio.biss().unwrap().memory.read(at("0x24:0x3F")).is_some()
+        });
+        for (place, byte) in [("0x24:0x00", 0x11), ("0x24:0x10", 0x22), ("0x24:0x3F", 0x33)] {
+            ask(&mut desk, Biss::Put { start: at(place), bytes: vec![byte] });
+        }
+        ask(&mut desk, Biss::Review);
+        until_planned(&mut desk);
+        let prepared = encoder(&desk).review.as_ref().unwrap().prepared().unwrap();
+        let [Op::StoreData { registers, .. }] = prepared.plan.ops.as_slice() else { panic!("{:?}", prepared.plan.ops) };
+        assert_eq!((registers.len(), prepared.plan.write_cycles()), (3, 1), "{link}");
+        write(&mut desk);
+        desk.until("it is written and read again", |studio| is_ready(studio) && !studio.biss().unwrap().is_dirty());
+        assert_eq!(encoder(&desk).memory.read(at("0x24:0x10")), Some(0x22), "{link}");
+        let status = encoder(&desk).status.as_ref().unwrap();
+        assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)), "{link}");
+        desk.until(
+            "the logbook is read",
+            |studio| matches!(&studio.biss().unwrap().session.writes, Some(Ok(writes)) if writes.len() == 1),
+        );
+        let writes = encoder(&desk).session.writes.as_ref().unwrap().as_ref().unwrap();
+        assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
+    }
+}
+
+#[test]
+fn another_filter_is_selected_after_a_review() {
+    let mut desk = open("sim:?bridge=on");
+    plan(&mut desk, Change::SelectFilter(Filter::Dynamic));
+    write(&mut desk);
+    desk.until("it is in force", |studio| {
+        let status = studio.biss().and_then(|own| own.status.as_ref());
+        is_ready(studio) && status.is_some_and(|status| status.filter == Some(Filter::Dynamic))
+    });
+}
+
+fn calibration() -> Change {
+    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    Change::Guided { run, motor: MotorSource::Other }
+}
+
+fn turn_of(studio: &Studio) -> Option<Task> {
+    Some(studio.biss()?.guide.as_ref()?.demand()?.task)
+}
+
+#[test]
+fn a_calibration_is_led_step_by_step() {
+    let mut desk = open("sim:?bridge=on&calibration=0.2");
+    plan(&mut desk, calibration());
+    write(&mut desk);
+    desk.until("it waits", |studio| turn_of(studio).is_some());
+    let first = turn_of(&desk.studio).unwrap();
+    until_asked(&mut desk, first, false);
+    // Too early: nothing starts.
+    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    ask(&mut desk, Biss::Turn(-500.0));
+    until_asked(&mut desk, first, true);
+    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    desk.until("the second run is asked for", |studio| turn_of(studio).is_some_and(|task| task != first));
+    let second = turn_of(&desk.studio).unwrap();
+    ask(&mut desk, Biss::Turn(500.0));
+    until_asked(&mut desk, second, true);
+    ask(&mut desk, Biss::Answer(second, Answer::Go));
+    desk.until("it is over", |studio| is_ready(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
+    let End::Done(outcomes) = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else { panic!() };
+    assert!(matches!(outcomes.as_slice(), [Outcome::Calibrated(_)]), "{outcomes:?}");
+    desk.until("it is read", is_ready);
+    let status = encoder(&desk).status.as_ref().unwrap();
+    assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
+    ask(&mut desk, Biss::CloseGuide);
+    assert!(encoder(&desk).guide.is_none());
+}
+
+#[test]
+fn stopping_a_procedure_leads_the_encoder_back() {
+    let mut desk = open("sim:?bridge=on&rpm=-500");
+    plan(&mut desk, calibration());
+    write(&mut desk);
+    desk.until("it waits", |studio| turn_of(studio).is_some());
+    let first = turn_of(&desk.studio).unwrap();
+    until_asked(&mut desk, first, true);
+    ask(&mut desk, Biss::Answer(first, Answer::Go));
+    desk.until("it runs", |studio| turn_of(studio).is_none());
+    std::thread::sleep(Duration::from_millis(200));
+    desk.act(Action::Stop);
+    desk.until("it is over", |studio| studio.biss().unwrap().guide.as_ref().is_some_and(|own| !own.is_running()));
+    desk.until("it is read", is_ready);
+    let status = encoder(&desk).status.as_ref().unwrap();
+    assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
+    let End::Failed { may_lead_back, .. } = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else {
+        panic!()
+    };
+    assert!(!may_lead_back, "it is in operation");
+}
+
+#[test]
+fn a_drive_on_this_encoder_is_refused() {
+    let mut desk = open("sim:?bridge=on");
+    let run = MountingRun { calibrate: true, ..MountingRun::default() };
+    ask(&mut desk, Biss::Plan(Box::new(Change::Guided { run, motor: MotorSource::ThisEncoder })));
+    desk.until("it is refused", |studio| {
+        let review = studio.biss().and_then(|own| own.review.as_ref());
+        review.is_some_and(|review| matches!(review.state, ReviewState::Failed { begun: false, .. }))
+    });
+}
+
+#[test]
+fn the_position_is_preset_where_the_shaft_stands() {
+    let mut desk = open("sim:?bridge=on");
+    let value = PresetValue::new(0x8000, 7);
+    plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });
+    write(&mut desk);
+    until_asked(&mut desk, Task::StandAtPlace, true);
+    ask(&mut desk, Biss::Answer(Task::StandAtPlace, Answer::Go));
+    desk.until("it is over", |studio| is_ready(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
+    ask(&mut desk, Biss::ReadPosition);
+    desk.until("it is read", |studio| {
+        let last = studio.biss().and_then(|own| own.record.last());
+        is_ready(studio) && last.is_some_and(|own| (own.turns, own.steps) == (7, 0x8000))
+    });
+    assert!(desk.told(Severity::Error).is_empty());
+}
