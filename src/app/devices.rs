@@ -161,6 +161,14 @@ impl AnyDevice {
         each!(self, own => own.session.is_ready())
     }
 
+    /// Its positions can come as a stream, thousands a second.
+    pub fn streams(&self) -> bool {
+        match self {
+            AnyDevice::Hiperface(_) => false,
+            AnyDevice::Biss(own) => own.streams(),
+        }
+    }
+
     /// Samples that were taken and dropped before they were recorded.
     pub fn dropped(&self) -> u64 {
         each!(self, own => own.record.dropped())

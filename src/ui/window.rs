@@ -29,7 +29,7 @@ pub struct Views {
     pub(super) plot: super::plot::View,
     /// The analogue channel that is typed, to be watched.
     pub(super) channel: String,
-    /// How often the position is read, in milliseconds.
+    /// Microseconds from one reading of the position to the next.
     pub(super) rate: u64,
 }
 
@@ -67,7 +67,7 @@ impl Window {
     /// A window on a studio.
     pub fn new(studio: Studio, look: &'static Look) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
-        let views = Views { rate: 50, plot: super::plot::View::in_panel(), ..Views::default() };
+        let views = Views { rate: 50_000, plot: super::plot::View::in_panel(), ..Views::default() };
         Window { studio, views, docks, look, dressed: None, notice_since: None }
     }
 

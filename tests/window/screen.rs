@@ -6,7 +6,8 @@ use egui::{Key, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder};
-use encoder_studio::app::{Action, Language, Look, Studio, Text};
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
 
@@ -32,11 +33,26 @@ impl Screen {
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.begin(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
+        Self::of(outside, studio, size)
+    }
+
+    /// A window on a studio of that world.
+    pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
             Shown(Window::new(studio, Look::built_in().unwrap()))
         });
         Screen { harness, outside }
+    }
+
+    /// A window that begins with this link in this tab.
+    pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
+        let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
+        screen.act(Action::ShowTab(tab));
+        screen.act(Action::Connect(Connect::Open));
+        screen.act(Action::Connect(Connect::Use(link.to_owned())));
+        screen.act(Action::Connect(Connect::Connect));
+        screen
     }
 
     /// A window in which the virtual encoder is connected and read.

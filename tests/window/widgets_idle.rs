@@ -11,7 +11,6 @@ use crate::screen::Screen;
 use crate::support::PORT;
 
 const SIZE: [f32; 2] = [1280.0, 800.0];
-const PAGES: [&str; 5] = ["page.encoder", "page.memory", "page.values", "page.setup", "page.backups"];
 
 /// When the window wants to be drawn again by itself.
 fn next_picture(screen: &Screen) -> Duration {
@@ -21,7 +20,7 @@ fn next_picture(screen: &Screen) -> Duration {
 #[test]
 fn a_window_with_nothing_to_show_asks_for_no_picture() {
     let mut screen = Screen::begun(SIZE);
-    for page in PAGES {
+    for page in encoder_studio::ui::pages(encoder_studio::app::Tab::Hiperface) {
         screen.click(page);
         for _ in 0..30 {
             screen.harness.step();

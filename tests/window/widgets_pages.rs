@@ -5,15 +5,13 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, FileQuestion, Language, Theme};
+use encoder_studio::app::{Action, FileQuestion, Language, Tab, Theme};
 
 use crate::screen::Screen;
 use crate::support::{HANGING, Outside, PORT};
 
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
-const PAGES: [&str; 6] =
-    ["page.encoder", "page.memory", "page.values", "page.setup", "page.commutation", "page.backups"];
 const PANELS: [&str; 4] = ["panel.live", "panel.trace", "panel.jobs", "panel.log"];
 const ALWAYS: [&str; 5] = ["shell.stop", "shell.connect", "shell.open", "shell.help", "shell.language"];
 
@@ -24,7 +22,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
         for theme in [Theme::Dark, Theme::Light] {
             screen.act(Action::SetLanguage(language));
             screen.act(Action::SetTheme(theme));
-            for page in PAGES {
+            for page in encoder_studio::ui::pages(screen.studio().settings.tab) {
                 screen.click(page);
                 screen.check_language();
                 for id in ALWAYS {
@@ -48,6 +46,26 @@ fn every_page_is_drawn_with_the_virtual_encoder() {
     for size in [LARGE, SMALL] {
         look_at_everything(&mut Screen::begun(size), size);
     }
+}
+
+#[test]
+fn every_page_is_drawn_with_a_virtual_biss_encoder() {
+    for (link, size) in [("sim:?bridge=on", LARGE), ("sim:?errors=0x12&temperature=120", SMALL)] {
+        let mut screen = Screen::opened_in(Tab::Biss, link, size);
+        screen.until("it is read", |studio| {
+            studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
+        });
+        look_at_everything(&mut screen, size);
+    }
+}
+
+#[test]
+fn every_page_is_drawn_with_a_biss_encoder_that_is_not_there() {
+    let mut screen = Screen::opened_in(Tab::Biss, "serial:/dev/nothing", SMALL);
+    screen.until("it is told", |studio| {
+        studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_)))
+    });
+    look_at_everything(&mut screen, SMALL);
 }
 
 #[test]
@@ -153,7 +171,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
 #[test]
 fn f1_helps_and_escape_closes_it() {
     let mut screen = Screen::begun(SMALL);
-    for (page, help) in PAGES.into_iter().zip([
+    for (page, help) in encoder_studio::ui::pages(Tab::Hiperface).into_iter().zip([
         "help.encoder",
         "help.memory",
         "help.values",
@@ -176,10 +194,11 @@ fn f1_helps_and_escape_closes_it() {
 #[test]
 fn the_language_and_the_theme_are_a_click_away() {
     let mut screen = Screen::begun(LARGE);
-    let english: Vec<String> = PAGES.map(|page| screen.say(page)).to_vec();
+    let pages = encoder_studio::ui::pages(Tab::Hiperface);
+    let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
     screen.click("shell.language");
     assert_eq!(screen.studio().settings.language, Language::German);
-    for (page, english) in PAGES.into_iter().zip(english) {
+    for (page, english) in pages.into_iter().zip(english) {
         assert!(screen.has_button(page));
         assert_ne!(screen.say(page), english);
     }

@@ -47,8 +47,9 @@ impl Encoder {
             Action::Watch(register, on) => self.watch(*register, on),
             Action::ReadBank(bank) => self.read_bank(bank, services),
             Action::SeeBank(bank) => {
-                // Only when nothing else is to be done, and only once.
-                if self.session.is_ready() && self.seen.insert(bank) {
+                // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
+                let free = self.session.is_ready() && self.record.streamed_hz().is_none();
+                if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
                 }
             }

@@ -133,6 +133,11 @@ impl Encoder {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
+    /// An adapter is in between, which can stream positions.
+    pub fn streams(&self) -> bool {
+        self.identity().is_some_and(|own| own.adapter.is_some())
+    }
+
     /// Who it was, where this is a profile.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)

@@ -26,6 +26,16 @@ pub struct Record {
     last: Option<PositionReading>,
     crc_errors: u64,
     lost: u64,
+    /// The stream that came last.
+    stream: Option<Streamed>,
+}
+
+/// A stream of frames.
+#[derive(Clone, Copy, Debug)]
+struct Streamed {
+    /// Number of the next frame.
+    next: u64,
+    period_ns: i64,
 }
 
 impl Record {
@@ -47,10 +57,17 @@ impl Record {
     /// Positions are wished at this interval from now on.
     pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         self.track.poll(interval, begins);
+        if interval.is_none() {
+            self.stream = None;
+        }
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
-        self.track.lose(dropped);
+        match self.stream {
+            // Whatever was dropped, the numbers of the frames tell how many there were.
+            Some(_) if dropped > 0 => self.track.gap(),
+            _ => self.track.lose(dropped),
+        }
         // Thousands a second, with the same widths: recorded together.
         let mut batch = Batch::default();
         for sample in samples {
@@ -77,6 +94,7 @@ impl Record {
     }
 
     fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
+        self.stream = None;
         self.add_crc_errors(reading.crc_errors);
         let widths = (reading.multiturn_bits, reading.singleturn_bits);
         if batch.widths.is_some_and(|own| own != widths) {
@@ -95,11 +113,14 @@ impl Record {
 
     /// What an adapter streams; frames that are missing are told and never joined.
     fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
-        if run.is_broken_off() {
+        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let missing = before.unwrap_or(run.lost);
+        if run.begins() || missing > 0 {
             self.keep(batch);
             self.track.gap();
         }
-        self.lost += run.lost;
+        self.lost += missing;
+        self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns: run.period_ns });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
         let widths = (run.multiturn_bits, run.singleturn_bits);
         if batch.widths.is_some_and(|own| own != widths) {
@@ -176,6 +197,11 @@ impl Record {
         self.crc_errors
     }
 
+    /// Frames a second that an adapter streams; `None` where it does not.
+    pub fn streamed_hz(&self) -> Option<f64> {
+        self.stream.map(|stream| 1e9 / stream.period_ns.max(1) as f64)
+    }
+
     /// Samples that came too fast to be recorded, and frames that an adapter could not send.
     pub fn dropped(&self) -> u64 {
         self.track.dropped().saturating_add(self.lost)
@@ -217,5 +243,43 @@ impl Watchable for Register {
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {name}", self.address);
         Line::of(group, 0, plain(&name), heading, vec![Scale { unit, factor: 1.0, decimals }])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::biss::Reading;
+    use crate::units::Moment;
+
+    fn run(first: u64, count: u64, lost: u64) -> FrameRun {
+        let frame = |at| Ok(Reading { multiturn: 0, singleturn: at as u32, error: false, warning: false });
+        FrameRun {
+            first,
+            at: Moment::after_start(Duration::from_micros(50 * first)),
+            period_ns: 50_000,
+            lost,
+            frames: (first..first + count).map(frame).collect(),
+            multiturn_bits: 16,
+            singleturn_bits: 17,
+        }
+    }
+
+    #[test]
+    fn frames_that_are_missing_are_counted_wherever_they_were_lost() {
+        let mut record = Record::default();
+        let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
+        add(&mut record, run(0, 100, 0), 0);
+        assert_eq!((record.positions(), record.dropped(), record.streamed_hz()), (100, 0, Some(20_000.0)));
+        add(&mut record, run(110, 90, 10), 0);
+        assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
+        add(&mut record, run(500, 10, 0), 3);
+        assert_eq!((record.positions(), record.dropped()), (200, 310), "nobody took three runs of them");
+        // Another stream begins at zero.
+        let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
+        add(&mut record, later, 0);
+        assert_eq!((record.positions(), record.dropped()), (205, 315));
+        record.poll(None, false);
+        assert_eq!(record.streamed_hz(), None);
     }
 }

@@ -53,9 +53,9 @@ impl FrameRun {
         FrameRun { first, at, period_ns, lost, frames, multiturn_bits, singleturn_bits }
     }
 
-    /// It does not join what was there before: a stream begins, or frames are missing.
-    pub const fn is_broken_off(&self) -> bool {
-        self.first == self.lost || self.lost > 0
+    /// A stream begins.
+    pub const fn begins(&self) -> bool {
+        self.first == self.lost
     }
 
     /// Each frame with the moment in which it was taken.

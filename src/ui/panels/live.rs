@@ -14,9 +14,13 @@ use crate::device::hiperface::Watch;
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::{Skin, Views, icons, plot};
 
-/// How often the position may be read; back to back first.
+/// Microseconds from one reading of the position to the next; back to back first.
 const RATES: [(u64, &str); 4] =
-    [(0, "live.fastest"), (50, "live.every_50"), (200, "live.every_200"), (1000, "live.every_1000")];
+    [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
+/// Likewise where an adapter streams them.
+const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
+/// What is read where nothing that can be read is chosen.
+const USUAL: u64 = 50_000;
 
 /// Height in points below which the numbers beside the position stand in one line.
 const LOW: f32 = 460.0;
@@ -131,13 +135,16 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
 fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
+    let streams = if device.streams() { &STREAMS[..] } else { &[] };
+    let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, skin.say(id))).collect();
+    let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
     ui.horizontal_wrapped(|ui| {
         if polling {
             if enabled_button(ui, true, icons::PAUSE, &skin.say("live.pause")).clicked() {
                 actions.push(device.wish(Wish::Poll(None)));
             }
         } else if enabled_button(ui, connected, icons::PLAY, &skin.say("live.start")).clicked() {
-            actions.push(device.wish(Wish::Poll(Some(Duration::from_millis(views.rate)))));
+            actions.push(device.wish(Wish::Poll(Some(Duration::from_micros(rate)))));
         }
         if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
             actions.push(device.wish(Wish::ReadPosition));
@@ -146,9 +153,11 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
             AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
             AnyDevice::Biss(encoder) => biss::watch_menu(ui, skin, encoder, actions),
         }
-        let rates = RATES.map(|(milliseconds, id)| (milliseconds, skin.say(id)));
-        if choice(ui, &skin.say("live.rate"), &mut views.rate, rates) && polling {
-            actions.push(device.wish(Wish::Poll(Some(Duration::from_millis(views.rate)))));
+        if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
+            views.rate = rate;
+            if polling {
+                actions.push(device.wish(Wish::Poll(Some(Duration::from_micros(rate)))));
+            }
         }
     });
 }

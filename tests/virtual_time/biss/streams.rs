@@ -103,7 +103,7 @@ fn what_is_wished_closer_than_one_can_ask_is_streamed() {
     stand.session.pace(Some(FAST));
     let runs = stand.runs(Duration::from_secs(3));
     check(&runs);
-    assert!(runs[0].is_broken_off() && runs[1..].iter().all(|run| !run.is_broken_off()));
+    assert!(runs[0].begins() && runs[1..].iter().all(|run| !run.begins()));
     // What was sampled last may still be on its way.
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
@@ -122,7 +122,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         let runs = stand.runs(Duration::from_millis(200));
         check(&runs);
         let begin = runs[0].at;
-        assert!(runs[0].is_broken_off() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
+        assert!(runs[0].begins() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
         last = runs.last().and_then(|run| run.timed().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
         let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
@@ -163,7 +163,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
     stand.tap.lock().unwrap().mute_from = None;
     // The stream is told to end with HELLO.
-    assert!(stand.run().is_broken_off());
+    assert!(stand.run().begins());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));

@@ -1,0 +1,100 @@
+//! The position of a BiSS encoder as its adapter streams it: 20 000 frames a second, shown without loss.
+
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::biss::{Action as Biss, Encoder};
+use encoder_studio::app::{Action, Severity, Studio, Tab};
+use encoder_studio::signal::history::Flags;
+use encoder_studio::ui::pages;
+
+use crate::screen::Screen;
+use crate::support::{Desk, Outside};
+
+/// A frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting; the shaft turns five times a second.
+const LINK: &str = "sim:?bridge=on&clock=2000000&rpm=300";
+const FAST: Duration = Duration::from_micros(50);
+
+fn is_read(studio: &Studio) -> bool {
+    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
+}
+
+fn poll(studio: &Studio, interval: Option<Duration>) -> Action {
+    Action::Biss(studio.biss().unwrap().session.id, Biss::Poll(interval))
+}
+
+/// Positions by their times, and which of them do not join the one before.
+fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
+    let recorder = encoder.record.recorder();
+    let line = &recorder.lines()[0];
+    let history = recorder.history(line).unwrap();
+    let samples: Vec<_> = history.all().filter_map(|at| history.sample(line.column(), at)).collect();
+    let breaks = samples.iter().filter(|own| own.flags != Flags::NONE).count();
+    (samples.iter().map(|own| (own.time.nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
+}
+
+/// All of them 50 µs apart and as the shaft turns: 655 360 steps a second are 32.768 a frame.
+#[track_caller]
+fn check(encoder: &Encoder, seconds: f64) {
+    let (samples, breaks) = recorded(encoder);
+    // One reading on its own before, to which the stream is not joined.
+    let streamed = &samples[samples.len() - (encoder.record.positions() as usize - 2)..];
+    assert!(streamed.windows(2).all(|pair| pair[1].0 - pair[0].0 == 50_000));
+    assert!(streamed.windows(2).all(|pair| (32..=33).contains(&(pair[1].1 - pair[0].1))));
+    assert!(breaks <= 2, "{breaks}");
+    assert_eq!((encoder.record.dropped(), encoder.record.crc_errors()), (0, 0));
+    let expected = seconds * 20_000.0;
+    assert!((streamed.len() as f64 - expected).abs() < 0.2 * expected, "{} frames in {seconds} s", streamed.len());
+}
+
+#[test]
+fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.studio.begin(Some(LINK.parse().unwrap()), None);
+    desk.until("the encoder is read", is_read);
+    desk.act(poll(&desk.studio, Some(FAST)));
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.record.streamed_hz().is_some()));
+    let began = Instant::now();
+    desk.until("two seconds pass", |_| began.elapsed() > Duration::from_secs(2));
+    desk.act(poll(&desk.studio, None));
+    let seconds = began.elapsed().as_secs_f64();
+    desk.settle();
+    let encoder = desk.studio.biss().unwrap();
+    check(encoder, seconds);
+    assert_eq!(encoder.record.streamed_hz(), None);
+    assert!(desk.told(Severity::Warning).is_empty());
+    // A job in between is a gap, and nothing worse.
+    desk.act(poll(&desk.studio, Some(FAST)));
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.record.streamed_hz().is_some()));
+    let before = desk.studio.biss().unwrap().record.positions();
+    let id = desk.studio.biss().unwrap().session.id;
+    desk.act(Action::Biss(id, Biss::ReadStatus));
+    desk.until("it goes on", |studio| {
+        studio.biss().is_some_and(|own| own.session.is_ready() && own.record.positions() > before + 2_000)
+    });
+    assert_eq!(desk.studio.biss().unwrap().record.dropped(), 0);
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn the_window_shows_a_stream_without_loss() {
+    let outside = Outside::new("");
+    let mut studio = outside.studio();
+    studio.act(Action::ShowTab(Tab::Biss));
+    studio.begin(Some(LINK.parse().unwrap()), None);
+    let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
+    screen.until("the encoder is read", is_read);
+    let action = poll(screen.studio(), Some(FAST));
+    screen.act(action);
+    screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.record.streamed_hz().is_some()));
+    let began = Instant::now();
+    for page in pages(Tab::Biss) {
+        screen.click(page);
+    }
+    screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));
+    assert!(screen.shows("The adapter streams 20000 frames a second"));
+    assert_eq!(screen.studio().biss().unwrap().record.dropped(), 0);
+    let action = poll(screen.studio(), None);
+    screen.act(action);
+    check(screen.studio().biss().unwrap(), began.elapsed().as_secs_f64());
+}
