@@ -62,9 +62,7 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
 #[test]
 fn every_page_is_drawn_with_a_biss_encoder_that_is_not_there() {
     let mut screen = Screen::opened_in(Tab::Biss, "serial:/dev/nothing", SMALL);
-    screen.until("it is told", |studio| {
-        studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_)))
-    });
+    screen.until("it is told", |studio| studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_))));
     look_at_everything(&mut screen, SMALL);
 }
 

@@ -47,11 +47,14 @@ pub(in crate::ui) fn connect_ui(
     let height = (ctx.content_rect().height() - 190.0).min(560.0);
     let (mut form, mut biss) = (dialog.form.clone(), dialog.biss.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
-        ui.label(skin.heading(skin.say("connect.title")));
+        ui.horizontal(|ui| {
+            ui.label(skin.heading(skin.say("connect.title")));
+            ui.add_space(skin.space.groups);
+            devices(ui, skin, dialog.device, actions);
+        });
         ui.add_space(skin.space.inside);
         // Always as high: nothing jumps away under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-            devices(ui, skin, dialog.device, actions);
             used_before(ui, skin, studio.settings.links(dialog.device), actions);
             match dialog.device {
                 Tab::Biss => biss::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
@@ -84,17 +87,14 @@ pub(in crate::ui) fn connect_ui(
 
 /// The kinds of devices.
 fn devices(ui: &mut Ui, skin: &Skin, device: Tab, actions: &mut Vec<Action>) {
-    ui.horizontal(|ui| {
-        for own in Tab::DEVICES {
-            let word = own.bus().unwrap_or_default();
-            let response =
-                ui.add(egui::Button::selectable(device == own, RichText::new(word).font(skin.strong(skin.sizes.body))));
-            if name(response, true, word).clicked() && own != device {
-                actions.push(Action::Connect(Connect::Device(own)));
-            }
+    for own in Tab::DEVICES {
+        let word = own.bus().unwrap_or_default();
+        let text = RichText::new(word).font(skin.strong(skin.sizes.body));
+        let response = ui.add(egui::Button::selectable(device == own, text));
+        if name(response, true, word).clicked() && own != device {
+            actions.push(Action::Connect(Connect::Device(own)));
         }
-    });
-    ui.add_space(skin.space.between);
+    }
 }
 
 fn hiperface(
