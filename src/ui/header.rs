@@ -87,8 +87,9 @@ fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.shown().map_or_else(|| skin.say("shell.no_session"), AnyDevice::name);
-    let text =
-        RichText::new(format!("{}  {}", shortened(&shown), icons::CARET_DOWN)).font(skin.strong(skin.sizes.section));
+    let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
+    let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
+        .font(skin.strong(skin.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
         ui.label(skin.caption(skin.say("shell.sessions")));
@@ -121,17 +122,16 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
 }
 
 /// A name that leaves room for the rest of the header. Of a device the serial number stays: it tells two of a kind apart.
-fn shortened(name: &str) -> String {
-    const MOST: usize = 28;
+fn shortened(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
         _ => text.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
     };
     match name.rsplit_once(" · ") {
-        Some((kind, serial)) if serial.chars().count() + 8 < MOST => {
-            format!("{} · {serial}", cut(kind, MOST - 3 - serial.chars().count()))
+        Some((kind, serial)) if serial.chars().count() + 8 < most => {
+            format!("{} · {serial}", cut(kind, most - 3 - serial.chars().count()))
         }
-        _ => cut(name, MOST),
+        _ => cut(name, most),
     }
 }
 
