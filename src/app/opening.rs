@@ -6,6 +6,7 @@ use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::leaving::{Leaver, same_wire};
 use super::services::{JobEnd, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
+use super::signals::{self, SourceAction};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
@@ -55,6 +56,46 @@ impl Studio {
         self.open_for(id, url);
     }
 
+    /// Lets the session on this wire go for something else, unless it writes; one whose link is still being opened is over
+    /// when what is given tells so.
+    ///
+    /// # Errors
+    /// It writes: which one.
+    pub(super) fn free_wire(&mut self, url: &LinkUrl, why: &'static str) -> Result<Option<Receiver<()>>, Text> {
+        let holds = |device: &&mut AnyDevice| {
+            let held = device.is_connected() || device.is_opening();
+            held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
+        };
+        let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(holds)) else {
+            return Ok(None);
+        };
+        let name = device.name();
+        if device.is_writing() {
+            return Err(Text::new("session.writes_there").with("name", name));
+        }
+        device.let_go(JobEnd::Cancelled, &mut self.services);
+        let why = Text::new(why);
+        *device.phase_mut() = Phase::Lost(why.clone());
+        let earlier = device.opening_mut().take().map(|opening| opening.over);
+        self.services.tell(Severity::Note, vec![why], Some(&name));
+        Ok(earlier)
+    }
+
+    /// An action of the Signals tab; an adapter gets its wire first.
+    pub(super) fn act_signals(&mut self, action: signals::Action) {
+        if !matches!(action, signals::Action::Source(SourceAction::StartAdapter)) {
+            return self.signals.act(action, &mut self.services);
+        }
+        let earlier = match self.signals.source.adapter_url() {
+            Some(url) => self.free_wire(&url, "session.let_go_for_signals"),
+            None => Ok(None),
+        };
+        match earlier {
+            Ok(earlier) => self.signals.start_adapter(earlier, &mut self.services),
+            Err(why) => self.signals.source.refuse(why),
+        }
+    }
+
     pub(super) fn reconnect(&mut self, id: SessionId) {
         let Some(device) = self.devices.iter_mut().find(|own| own.id() == id && !own.is_writing()) else { return };
         let Source::Link(url) = device.source().clone() else { return };
@@ -90,7 +131,7 @@ impl Studio {
     /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
     /// its end that the wire is free again, or in use.
     pub(super) fn open_task<D: Kind>(
-        &self,
+        &mut self,
         url: LinkUrl,
         earlier: Option<Receiver<()>>,
         prepare: impl FnOnce(&mut Session<D>) + Send + 'static,
@@ -98,6 +139,7 @@ impl Studio {
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.services.world.clone(), self.services.tasks.wake());
+        self.signals.source.free_wire(&url, &mut self.services);
         let endings = self.services.endings_on(&url);
         self.services.tasks.run("open", move || {
             if let Some(earlier) = earlier {

@@ -131,7 +131,7 @@ impl Studio {
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Biss(id, action) => self.act_biss(id, action),
-            Action::Signals(action) => self.signals.act(action, &mut self.services),
+            Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
                 let text = Text::new("session.no_thread").with("why", why);

@@ -184,7 +184,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.connect(Connect::Open);
     desk.connect(Connect::Use(link));
     desk.connect(Connect::Search(FindOptions::default()));
-    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("find.writing"));
+    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("session.writes_there"));
     assert!(dialog(&desk).search.is_none() && desk.encoder().session.is_writing());
     desk.wire().release();
     desk.until_written();

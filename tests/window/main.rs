@@ -17,6 +17,7 @@ mod profiles;
 mod recording;
 mod remembering;
 mod screen;
+mod served;
 mod signals;
 mod signals_adapter;
 mod signals_beside;

@@ -1,87 +1,16 @@
 //! Sine and cosine through an adapter: the virtual one and one behind a network, what is shown of them, and what is said
 //! where there is none.
 
-use std::io::{ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction, SourceKind};
 use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
-use encoder_studio::protocol::bridge::{Receiver, Request};
+use encoder_studio::protocol::bridge::Request;
 use encoder_studio::signal::history::Flags;
-use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::{Adapter, Config};
-use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
+use crate::served::Served;
 use crate::support::{Desk, HANGING, LONG, Outside};
-
-/// An adapter behind a TCP port, one connection after the other.
-struct Served {
-    port: u16,
-    /// What it was asked.
-    heard: Arc<Mutex<Vec<Request>>>,
-    /// The connection is to be closed.
-    cut: Arc<Mutex<bool>>,
-}
-
-impl Served {
-    fn new(query: &str) -> Self {
-        let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
-        let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
-        let mut adapter = Adapter::new(&Config::from_pairs(&pairs).unwrap());
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let served = Served { port: listener.local_addr().unwrap().port(), heard: Arc::default(), cut: Arc::default() };
-        let (heard, cut) = (served.heard.clone(), served.cut.clone());
-        std::thread::spawn(move || {
-            let began = Instant::now();
-            for stream in listener.incoming() {
-                let now = || Moment::after_start(began.elapsed());
-                serve(stream.unwrap(), &mut adapter, &heard, &cut, &now);
-            }
-        });
-        served
-    }
-
-    fn link(&self) -> String {
-        format!("bridge:tcp:127.0.0.1:{}", self.port)
-    }
-
-    fn asked(&self, request: &Request) -> usize {
-        self.heard.lock().unwrap().iter().filter(|own| *own == request).count()
-    }
-}
-
-fn serve(
-    mut stream: TcpStream,
-    adapter: &mut Adapter,
-    heard: &Mutex<Vec<Request>>,
-    cut: &Mutex<bool>,
-    now: &dyn Fn() -> Moment,
-) {
-    stream.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
-    adapter.connect(now());
-    let mut receiver = Receiver::default();
-    let mut buffer = [0; 512];
-    while !std::mem::take(&mut *cut.lock().unwrap()) {
-        match stream.read(&mut buffer) {
-            Ok(0) => return,
-            Ok(count) => {
-                adapter.on_bytes(now(), &buffer[..count]);
-                receiver.push(&buffer[..count]);
-                let requests =
-                    std::iter::from_fn(|| receiver.next_packet()).filter_map(|own| Request::parse(&own).ok());
-                heard.lock().unwrap().extend(requests);
-            }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-            Err(_) => return,
-        }
-        if stream.write_all(&adapter.poll(now())).is_err() {
-            return;
-        }
-    }
-}
 
 fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
     desk.signals(Signals::Source(SourceAction::SetLink(link.to_owned())));
@@ -157,7 +86,7 @@ fn a_connection_that_is_closed_is_told_and_can_be_begun_again() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
-    *served.cut.lock().unwrap() = true;
+    served.cut();
     desk.until("it is told", |studio| !studio.signals.source().is_running());
     assert_eq!(desk.told(Severity::Error), ["link.lost"]);
     assert_eq!(desk.studio.signals.source().adapter_problem().map(|text| text.id()), Some("link.lost"));

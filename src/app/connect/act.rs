@@ -4,12 +4,10 @@ use crossbeam_channel::Receiver;
 
 use super::{Action, BissForm, Connect, LinkForm, Search, list_ports};
 use crate::app::action::Done;
-use crate::app::leaving::{Leaver, same_wire};
-use crate::app::services::JobEnd;
-use crate::app::session::{Phase, Source};
+use crate::app::leaving::Leaver;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
-use crate::app::{AnyDevice, Severity, Text, explain};
+use crate::app::{AnyDevice, Text, explain};
 use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 use crate::worker::hiperface::Hiperface;
@@ -99,7 +97,7 @@ impl Studio {
                 return;
             }
         };
-        let earlier = match self.free_for_search(&url) {
+        let earlier = match self.free_wire(&url, "session.let_go_for_search") {
             Ok(earlier) => self.end_search().or(earlier),
             Err(problem) => return self.refuse(problem),
         };
@@ -110,28 +108,6 @@ impl Studio {
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);
         }
-    }
-
-    /// Lets the session on this wire go, unless it writes; one whose link is still being opened is over when what is given
-    /// tells so.
-    fn free_for_search(&mut self, url: &LinkUrl) -> Result<Option<Receiver<()>>, Text> {
-        let holds = |device: &&mut AnyDevice| {
-            let held = device.is_connected() || device.is_opening();
-            held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
-        };
-        let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(holds)) else {
-            return Ok(None);
-        };
-        let name = device.name();
-        if device.is_writing() {
-            return Err(Text::new("find.writing").with("name", name));
-        }
-        device.let_go(JobEnd::Cancelled, &mut self.services);
-        let why = Text::new("session.let_go_for_search");
-        *device.phase_mut() = Phase::Lost(why.clone());
-        let earlier = device.opening_mut().take().map(|opening| opening.over);
-        self.services.tell(Severity::Note, vec![why], Some(&name));
-        Ok(earlier)
     }
 
     /// Closes the dialog; its search ends.

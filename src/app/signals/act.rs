@@ -20,7 +20,7 @@ pub struct Signals {
     family: Family,
     periods: u32,
     /// The virtual encoder, or an adapter.
-    pub(super) source: Source,
+    pub(in crate::app) source: Source,
     synchronise: Synchronise,
     /// The signals over time.
     pub(super) scope: Scope,

@@ -3,6 +3,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use crossbeam_channel::Receiver;
+
 use crate::app::services::Services;
 use crate::app::{Text, explain};
 use crate::device::bridge::{Streaming, TapError};
@@ -84,10 +86,19 @@ impl AdapterLink {
     ///
     /// # Errors
     /// No thread is left.
-    pub(super) fn start(self, sample_hz: u32, services: &Services) -> Result<Feed, Text> {
+    pub(super) fn start(
+        self,
+        sample_hz: u32,
+        earlier: Option<Receiver<()>>,
+        services: &Services,
+    ) -> Result<Feed, Text> {
         let AdapterLink { url, clock, margin, open } = self;
-        let before = services.endings_on(&url);
+        let (before, patience) = (services.endings_on(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
+            if let Some(earlier) = earlier {
+                // Nothing is ever sent: it ends, or hangs for ever.
+                let _ = earlier.recv_timeout(patience);
+            }
             // Whoever had the wire before gives it back first; where he does not, it cannot be opened.
             for (ending, patience) in before {
                 ending.wait(patience);

@@ -6,9 +6,13 @@ use std::sync::Arc;
 use super::feed::{AdapterLink, Feed};
 use super::recent::{MOST, Recent};
 use super::{Done, Failed, Measurement, Origin, Scope, Signals, promise};
+use crossbeam_channel::Receiver;
+
+use crate::app::leaving::same_wire;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::device::bridge::Streaming;
+use crate::link::LinkUrl;
 use crate::signal::Time;
 use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
@@ -221,8 +225,27 @@ impl Source {
         }
     }
 
+    /// Where the link of the adapter leads; `None` while it is none.
+    pub(in crate::app) fn adapter_url(&self) -> Option<LinkUrl> {
+        self.link.parse().ok()
+    }
+
+    /// The adapter cannot be asked now.
+    pub(in crate::app) fn refuse(&mut self, why: Text) {
+        self.adapter_problem = Some(why);
+    }
+
+    /// Lets the adapter go where an encoder is looked for on its wire.
+    pub(in crate::app) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
+        let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
+        if self.live.as_ref().is_some_and(holds) {
+            self.stop(services);
+            self.refuse(Text::new("adapter.let_go"));
+        }
+    }
+
     /// Whether the adapter is being asked now. What is wrong with the link is told where that stands.
-    fn start_adapter(&mut self, services: &mut Services) -> bool {
+    fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,
             Err(why) => {
@@ -232,7 +255,7 @@ impl Source {
         };
         // What runs gives its wire back first.
         self.stop(services);
-        match link.start(self.sample_hz, services) {
+        match link.start(self.sample_hz, earlier, services) {
             Ok(feed) => {
                 self.adapter_problem = None;
                 self.run(SourceKind::Adapter, feed, services);
@@ -278,12 +301,8 @@ impl Signals {
                     self.set_periods(settings.periods as u32, services);
                 }
             }
-            SourceAction::StartAdapter => {
-                if self.source.start_adapter(services) {
-                    self.forget_reading();
-                    self.replace_scope(Scope::live(false), services);
-                }
-            }
+            // The studio knows who else is on its wire.
+            SourceAction::StartAdapter => {}
             SourceAction::SetLink(link) => {
                 self.source.link = link;
                 self.source.adapter_problem = None;
@@ -313,6 +332,14 @@ impl Signals {
                 self.source.window_ms = milliseconds.clamp(*WINDOWS.start(), *WINDOWS.end());
             }
             SourceAction::Reset => self.set_source(Settings::default(), true, services),
+        }
+    }
+
+    /// Lets the adapter of the link sample, after what is still on its wire has ended.
+    pub(in crate::app) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
+        if self.source.start_adapter(earlier, services) {
+            self.forget_reading();
+            self.replace_scope(Scope::live(false), services);
         }
     }
 
