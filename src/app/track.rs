@@ -231,6 +231,11 @@ impl<W: Watchable> Track<W> {
         self.gap();
     }
 
+    /// What positions mean; `None` until the first.
+    pub(super) fn meaning(&self) -> Option<&Meaning> {
+        self.follower.as_ref().map(|own| &own.meaning)
+    }
+
     /// Positions are wished at this interval from now on; when that begins, what was before is not joined to what comes.
     pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;
+mod biss_exchange;
 mod biss_stream;
 mod biss_writing;
 mod blocking;

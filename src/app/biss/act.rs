@@ -48,7 +48,7 @@ impl Encoder {
             Action::ReadBank(bank) => self.read_bank(bank, services),
             Action::SeeBank(bank) => {
                 // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
-                let free = self.session.is_ready() && self.record.streamed_hz().is_none();
+                let free = self.session.is_ready() && self.streamed_hz().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
                 }
@@ -130,9 +130,11 @@ impl Encoder {
         }
     }
 
-    /// A bank is worth being read when it comes in sight: it was not, nothing runs, and it was not tried in vain.
+    /// A bank is worth being read when it comes in sight: it was not, nothing runs, no
+    /// stream would be interrupted, and it was not tried in vain.
     pub fn wants(&self, group: &Group) -> bool {
-        self.session.is_ready() && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
+        let free = self.session.is_ready() && self.streamed_hz().is_none();
+        free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
     /// Why an area cannot be edited now; `None`: it can.

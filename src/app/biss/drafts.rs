@@ -4,18 +4,21 @@ use super::encoder::Encoder;
 use crate::app::services::Services;
 use crate::app::session::{DraftDone, DraftKey, Source};
 use crate::protocol::biss::KIND;
+use crate::store::DeviceKey;
 
 /// Edited bytes: global address, byte.
 pub(in crate::app) type Edits = Vec<(u16, u8)>;
 
 impl Encoder {
-    /// Whose draft it is; `None` for an encoder that does not say who it is.
+    /// Whose draft it is: a profile's, or an encoder's by manufacturer, device and serial number, because another device
+    /// may have the same; `None` for an encoder that does not say who it is.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session.source {
             Source::File { key, .. } => Some(DraftKey::of_file(KIND, key)),
             Source::Link(_) => {
-                let serial = self.serial_number()?;
-                (!serial.is_empty()).then(|| DraftKey::of_device(KIND, self.session.is_virtual(), serial.to_owned()))
+                let DeviceKey { device_type, serial_number, is_virtual, .. } = self.key()?;
+                let name = || format!("{device_type}-{serial_number}");
+                (!serial_number.is_empty()).then(|| DraftKey::of_device(KIND, is_virtual, name()))
             }
         }
     }

@@ -138,6 +138,11 @@ impl Encoder {
         self.identity().is_some_and(|own| own.adapter.is_some())
     }
 
+    /// Frames a second that an adapter streams now; `None` where it does not.
+    pub fn streamed_hz(&self) -> Option<f64> {
+        self.record.streamed_hz().filter(|_| self.session.is_polling())
+    }
+
     /// Who it was, where this is a profile.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
@@ -169,9 +174,8 @@ impl Encoder {
 
     /// A profile was read again from its file; edits stay.
     pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        if let Body::Biss(profile) = &document.body {
-            self.take_profile(profile);
-        }
+        let Body::Biss(profile) = &document.body else { return };
+        self.take_profile(profile);
         self.session.take_document(path, key, document);
     }
 
@@ -195,8 +199,10 @@ impl Encoder {
 
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
-        self.session.just_connected = false;
-        if self.is_another(&survey.identity) {
+        let fresh = std::mem::take(&mut self.session.just_connected);
+        // Without a serial number, it may be any of its type.
+        let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
+        if unproven || self.is_another(&survey.identity) {
             if self.memory.is_dirty() {
                 let kept = self.serial_number().is_some_and(|serial| !serial.is_empty());
                 let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
@@ -225,7 +231,7 @@ impl Encoder {
     }
 
     /// Another encoder than the one that was read before.
-    fn is_another(&self, identity: &Identity) -> bool {
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))
     }
@@ -240,7 +246,9 @@ impl Encoder {
         self.session.backups = None;
         self.session.writes = None;
         self.seen.clear();
+        self.read_after.clear();
         self.review = None;
+        self.guide = None;
     }
 
     /// Reads the list of backups and writes again, on a thread.

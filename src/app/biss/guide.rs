@@ -68,6 +68,11 @@ impl Guide {
         self.end.is_none()
     }
 
+    /// What it carries out.
+    pub(super) fn ops(&self) -> &[Op] {
+        &self.ops
+    }
+
     pub(super) fn tell(&mut self, news: News) {
         self.news = Some(news);
     }

@@ -2,6 +2,7 @@
 
 use super::encoder::Encoder;
 use super::review::Review;
+use super::write::told;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
 use crate::app::services::{JobEnd, Opener, Services, World};
@@ -30,7 +31,8 @@ impl Kind for Biss {
         let (job, end, severity, texts) = match event {
             Event::Finished(job, output) => match &**output {
                 BissOutput::Committed(committed) => {
-                    (job, JobEnd::Done, Severity::Good, vec![explain::biss::written(&committed.written)])
+                    let (severity, texts) = told(committed);
+                    (job, JobEnd::Done, severity, texts)
                 }
                 _ => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),
             },
@@ -91,7 +93,8 @@ impl Encoder {
         match event {
             Event::Started(_) => {}
             Event::Progress(_, progress) => {
-                if let (Doing::Operation { news, .. }, Some(guide)) = (progress.what, &mut self.guide) {
+                let running = self.guide.as_mut().filter(|guide| guide.is_running());
+                if let (Doing::Operation { news, .. }, Some(guide)) = (progress.what, running) {
                     guide.tell(*news);
                 }
             }
@@ -161,9 +164,15 @@ impl Encoder {
                 }
             }
             BissOutput::Saved(profile) => self.saved(*profile, services),
+            BissOutput::Prepared(prepared) if self.is_another(&prepared.identity) => {
+                // Exchanged behind our adapter: what was edited for the one before is not for it.
+                self.review = None;
+                self.submit(BissJob::Survey, services);
+            }
             BissOutput::Prepared(prepared) => self.planned(prepared),
             BissOutput::Committed(committed) => self.committed(*committed, services),
             BissOutput::LedBack(mode) => {
+                self.led_back();
                 let text = Text::new("guide.led_back").with("mode", mode);
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);

@@ -50,7 +50,7 @@ impl Record {
 
     /// A session has begun; what was recorded before stays.
     pub(super) fn begin(&mut self, began: &Zoned) {
-        (self.last, self.crc_errors) = (None, 0);
+        (self.last, self.crc_errors, self.stream) = (None, 0, None);
         self.track.begin(began);
     }
 
@@ -158,7 +158,9 @@ impl Record {
             return;
         }
         let before = self.last.as_ref().map(|own| (own.multiturn_bits, own.singleturn_bits));
-        let meaning = batch.widths.or(before).map_or_else(|| Meaning::of_steps(None), meaning);
+        // Where nothing was read in this session, it goes on as what it was in the one before.
+        let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
+        let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
         self.track.add(&batch.sightings, &meaning);
         *batch = Batch::default();
     }
@@ -197,8 +199,8 @@ impl Record {
         self.crc_errors
     }
 
-    /// Frames a second that an adapter streams; `None` where it does not.
-    pub fn streamed_hz(&self) -> Option<f64> {
+    /// Frames a second of the stream that came last; `None` where positions came one by one since.
+    pub(super) fn streamed_hz(&self) -> Option<f64> {
         self.stream.map(|stream| 1e9 / stream.period_ns.max(1) as f64)
     }
 
@@ -215,7 +217,7 @@ impl Record {
     /// Another encoder: nothing of what was recorded is about it.
     pub(super) fn forget(&mut self) {
         self.track.forget();
-        (self.last, self.crc_errors) = (None, 0);
+        (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
     }
 }
 

@@ -8,9 +8,10 @@ use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
+use crate::device::biss::Error;
 use crate::device::biss::procedure::{Answer, Task, Unattended};
 use crate::device::biss::write::Left;
-use crate::profile::biss::{BissProfile, RegisterRange, RestoreOptions};
+use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions};
 use crate::profile::{Consent, PlanId};
 use crate::worker::biss::{Attendance, BissJob, Change, Commit, Committed, JobError, Prepared};
 
@@ -130,30 +131,50 @@ impl Encoder {
 
     /// A plan was carried out.
     pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
-        let mut texts = vec![explain::biss::written(&committed.written)];
-        texts.extend(committed.logbook_warning.as_ref().map(explain::logbook));
-        let severity = if texts.len() > 1 { Severity::Warning } else { Severity::Good };
+        let (severity, texts) = told(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         self.memory.forget_steps();
+        self.read_what_was_written();
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
             guide.end = Some(End::Done(committed.written.outcomes));
         } else if let Some(review) = &mut self.review
             && let ReviewState::Writing(prepared) = &review.state
         {
-            self.read_after = prepared.plan.base.banks.iter().map(|bank| bank.number).collect();
             review.state = ReviewState::Done(prepared.clone(), committed);
         }
         self.submit(BissJob::Survey, services);
     }
 
+    /// Whatever the plan that is being carried out changes is read again, however it ends.
+    fn read_what_was_written(&mut self) {
+        let ops: &[Op] = match (&self.guide, self.review.as_ref().map(|review| &review.state)) {
+            (Some(guide), _) if guide.is_running() => guide.ops(),
+            (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,
+            _ => return,
+        };
+        let banks = ops.iter().flat_map(Op::ranges).filter_map(|range| range.start().bank());
+        self.read_after.extend(banks);
+    }
+
+    /// The encoder was led back into operation: nothing is left to be done about it.
+    pub(super) fn led_back(&mut self) {
+        if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
+            *may_lead_back = false;
+        }
+    }
+
     /// A plan, or carrying it out, has failed or was ended; true where that stands where it was asked for.
     pub(super) fn write_failed(&mut self, error: &JobError, texts: &[Text]) -> bool {
         let begun = matches!(error, JobError::Interrupted { .. });
+        if begun {
+            self.read_what_was_written();
+        }
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
             let (before, may_lead_back) = match error {
                 JobError::Interrupted { interrupted, .. } => {
                     (interrupted.done.outcomes.clone(), interrupted.left != Left::Operation)
                 }
+                JobError::Device(Error::NotInOperation { .. }) => (Vec::new(), true),
                 _ => (Vec::new(), false),
             };
             guide.end = Some(End::Failed { texts: texts.to_vec(), before, may_lead_back });
@@ -176,5 +197,14 @@ impl Encoder {
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
             guide.end = Some(End::Failed { texts: vec![why.clone()], before: Vec::new(), may_lead_back: true });
         }
+    }
+}
+
+/// What a write came to.
+pub(super) fn told(committed: &Committed) -> (Severity, Vec<Text>) {
+    let text = explain::biss::written(&committed.written);
+    match &committed.logbook_warning {
+        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
+        None => (Severity::Good, vec![text]),
     }
 }

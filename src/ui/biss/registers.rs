@@ -67,7 +67,7 @@ fn head(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &mut 
         if let Some(row) = row {
             let on = watched.iter().any(|own| own.address == row.register.address);
             let word = skin.say(if on { "registers.unwatch" } else { "registers.watch" });
-            if enabled_button(ui, row.register.access.reads(), icons::EYE, &word).clicked() {
+            if enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word).clicked() {
                 let register = Box::new(row.register.clone());
                 actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
             }

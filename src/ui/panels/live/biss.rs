@@ -38,7 +38,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         row(ui, skin, &skin.say("live.step"), skin.mono(reading.steps.to_string()));
         row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:X}h", reading.raw)));
     }
-    if let Some(hz) = encoder.record.streamed_hz() {
+    if let Some(hz) = encoder.streamed_hz() {
         ui.label(skin.caption(skin.words(&Text::new("live.streamed").with_number("count", hz, 0))));
     }
     let errors = encoder.record.crc_errors();
