@@ -173,7 +173,7 @@ impl Encoder {
             BissOutput::Committed(committed) => self.committed(*committed, services),
             BissOutput::LedBack(mode) => {
                 self.led_back();
-                let text = Text::new("guide.led_back").with("mode", mode);
+                let text = Text::new("guide.led_back").with_text("mode", explain::biss::mode(mode));
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }

@@ -5,7 +5,7 @@ mod guide;
 mod write;
 
 pub use damage::damage;
-pub use guide::{advice, blocker, outcome, procedure, step, task};
+pub use guide::{advice, blocker, mode, outcome, procedure, step, task};
 pub use write::{change, failure, op, plan, written};
 
 use super::{adapter, file, link, store};
@@ -98,7 +98,7 @@ pub fn encoder(error: &Error) -> Text {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
             Text::new("encoder.moving").with("readings", words.join(", "))
         }
-        Error::NotInOperation { mode } => Text::new("biss.not_in_operation").with("mode", mode),
+        Error::NotInOperation { mode } => Text::new("biss.not_in_operation").with_text("mode", self::mode(*mode)),
         Error::Changed { item } => Text::new("biss.changed").with("item", item),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }

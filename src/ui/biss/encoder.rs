@@ -121,7 +121,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
             row(ui, skin, &skin.say("biss_status.temperature"), skin.mono(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, skin, &skin.say("biss_status.mode"), mode.to_string());
+            row(ui, skin, &skin.say("biss_status.mode"), skin.words(&explain::biss::mode(mode)));
         }
         if let Some(filter) = status.filter {
             row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));

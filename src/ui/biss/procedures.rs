@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use super::run;
 use crate::app::biss::{Action as Biss, Encoder, forms::PresetForm, words};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, SessionId, Studio, Text};
+use crate::app::{Action, AnyDevice, SessionId, Studio, Text, explain};
 use crate::profile::biss::{MotorSource, MountingRun, PresetParts};
 use crate::protocol::biss::{DeviceMode, Filter, ProcedureKind};
 use crate::ui::controls::{
@@ -97,8 +97,8 @@ fn left_behind(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Ac
         return;
     }
     card(ui, skin, "lead_back_card.title", |ui| {
-        let mode = status.mode.map(|mode| mode.to_string()).unwrap_or_default();
-        let text = Text::new("lead_back_card.words").with("mode", mode);
+        let mode = explain::biss::mode(status.mode.unwrap_or_default());
+        let text = Text::new("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
         let word = skin.say("lead_back_card.button");
         if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {

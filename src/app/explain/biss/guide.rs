@@ -5,7 +5,7 @@ use crate::device::biss::procedure::{
     Advice, Blocker, CalibrationReport, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
 };
 use crate::profile::biss::{Op, PresetParts};
-use crate::protocol::biss::PulseVoltage;
+use crate::protocol::biss::{DeviceMode, PulseVoltage};
 
 /// The heading of an operation.
 pub fn procedure(op: &Op) -> Text {
@@ -30,7 +30,7 @@ pub fn step(step: Step) -> Text {
             Run::WiegandClockwise => "guide.run_wiegand_cw",
             Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
         }),
-        Step::Enter(mode) => Text::new("guide.enter").with("mode", mode),
+        Step::Enter(mode) => Text::new("guide.enter").with_text("mode", self::mode(mode)),
         Step::Conditions => Text::new("guide.conditions"),
         Step::Open => Text::new("guide.open"),
         Step::Write => Text::new("guide.write"),
@@ -41,6 +41,20 @@ pub fn step(step: Step) -> Text {
         Step::LeadBack => Text::new("guide.lead_back"),
         Step::ReadBack => Text::new("guide.read_back"),
     }
+}
+
+/// A device mode.
+pub fn mode(mode: DeviceMode) -> Text {
+    let id = match mode {
+        DeviceMode::OPERATION => "biss_mode.operation",
+        DeviceMode::CALIBRATION => "biss_mode.calibration",
+        DeviceMode::WIEGAND_TEST => "biss_mode.wiegand_test",
+        DeviceMode::DATA_WRITE => "biss_mode.data_write",
+        DeviceMode::FILTER => "biss_mode.filter",
+        DeviceMode::PRESET => "biss_mode.preset",
+        _ => "biss_mode.unknown",
+    };
+    Text::new(id).with("code", format!("{:02X}h", mode.byte()))
 }
 
 /// What a person is to do.
@@ -149,8 +163,17 @@ fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::Language::English;
+    use crate::app::Language::{English, German};
     use crate::protocol::biss::WiegandResult;
+
+    #[test]
+    fn modes_are_called_as_the_protocol_calls_them_and_have_german_names() {
+        for byte in 0..=255 {
+            let own = DeviceMode::new(byte);
+            assert_eq!(mode(own).words(English), own.to_string());
+            assert_ne!(mode(own).words(German), own.to_string());
+        }
+    }
 
     /// Manual 6.3: the average less four standard deviations has to be above 5.3 V.
     #[test]

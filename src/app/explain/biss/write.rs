@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::encoder;
-use super::guide::{blocker, task};
+use super::guide::{blocker, mode, step, task};
 use crate::app::Text;
 use crate::app::biss::words::filter;
 use crate::app::explain::plain;
@@ -136,6 +136,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", failure(&interrupted.cause))
     }];
+    texts.push(Text::new("biss_left.at").with_text("step", step(interrupted.at)));
     texts.extend(match &interrupted.left {
         Left::Operation => vec![Text::new("biss_left.operation")],
         Left::Unknown(standing) => left(standing),
@@ -153,14 +154,17 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
 
 /// In which state an encoder was left that could not be led back.
 fn left(standing: &Standing) -> Vec<Text> {
-    let modes: Vec<String> = standing.mode.values().iter().map(ToString::to_string).collect();
-    let mut texts = vec![Text::new("biss_left.mode").with_list("modes", modes.iter().map(plain))];
+    let mut texts = vec![match standing.mode.values() {
+        [certain] => Text::new("biss_left.mode").with_text("mode", mode(*certain)),
+        several => Text::new("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
+    }];
     if standing.password.may_be(true) {
         texts.push(Text::new("biss_left.password"));
     }
     texts.extend(match standing.activity {
         Activity::Nothing => None,
-        Activity::Running(run) if run.calibrates() => Some(Text::new("biss_left.calibrating")),
+        Activity::Running(Run::CalibrationCounterclockwise) => Some(Text::new("biss_left.calibrating_ccw")),
+        Activity::Running(Run::CalibrationClockwise) => Some(Text::new("biss_left.calibrating_cw")),
         Activity::Running(_) => Some(Text::new("biss_left.testing")),
         Activity::Entered => Some(Text::new("biss_left.entered")),
         Activity::Saving => Some(Text::new("biss_left.saving")),
@@ -177,15 +181,21 @@ pub fn failure(failure: &Failure) -> Text {
         Failure::Calibration { run, status } => calibration(*run, *status),
         Failure::Wiegand { status, code, .. } => wiegand(*status, *code),
         Failure::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
-        Failure::Mode { wanted, found } => Text::new("biss_failure.mode").with("wanted", wanted).with("found", found),
+        Failure::Mode { wanted, found } => {
+            Text::new("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
+        }
         Failure::Status { kind, expected, found } => Text::new("biss_failure.status")
             .with_text("what", kind_of(*kind))
             .with("expected", format!("{expected:02X}h"))
             .with("found", format!("{found:02X}h")),
         Failure::TooLong { seconds, .. } => Text::new("biss_failure.too_long").with("seconds", seconds),
-        Failure::NotReady { task: asked, blockers } => Text::new("biss_failure.not_ready")
-            .with_text("task", task(*asked))
-            .with_list("why", blockers.iter().map(|own| blocker(*own))),
+        Failure::NotReady { task: asked, blockers } => {
+            let both =
+                |first, second| Text::new("biss_failure.both").with_text("first", first).with_text("second", second);
+            let why = blockers.iter().map(|own| blocker(*own)).reduce(both);
+            let text = Text::new("biss_failure.not_ready").with_text("task", task(*asked));
+            text.with_text("why", why.unwrap_or_else(|| plain("")))
+        }
         Failure::NotVerified { item, expected, got } => {
             Text::new("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
         }
@@ -199,7 +209,7 @@ fn calibration(run: Run, status: CalibrationStatus) -> Text {
         CalibrationStatus::Temperature => "biss_failure.temperature",
         CalibrationStatus::Speed => "biss_failure.speed",
         CalibrationStatus::Failed => "biss_failure.calibration",
-        _ => return Text::new("biss_failure.unknown").with("status", status),
+        other => return unknown(other.byte()),
     };
     let id = if run.is_clockwise() { "biss_failure.table_lost" } else { "biss_failure.table_kept" };
     Text::new(id).with_text("why", Text::new(why))
@@ -207,8 +217,125 @@ fn calibration(run: Run, status: CalibrationStatus) -> Text {
 
 fn wiegand(status: WiegandStatus, code: u8) -> Text {
     match status {
-        WiegandStatus::WrongDirection => Text::new("biss_failure.direction"),
+        WiegandStatus::WrongDirection => Text::new("biss_failure.wiegand_direction"),
         WiegandStatus::Failed => Text::new("biss_failure.wiegand").with("code", format!("{code:02X}h")),
-        _ => Text::new("biss_failure.unknown").with("status", status),
+        other => unknown(other.byte()),
+    }
+}
+
+/// A status that does not belong there.
+fn unknown(status: u8) -> Text {
+    Text::new("biss_failure.unknown").with("status", format!("{status:02X}h"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::device::biss::Error;
+    use crate::device::biss::procedure::{Blocker, Possible, Step, Task};
+    use crate::protocol::biss::DeviceMode;
+
+    fn told(cause: Failure, left: Left) -> (Vec<String>, Vec<String>) {
+        let done = Written { ops: 1, write_cycles: 1, ..Written::default() };
+        let at = Step::Run(Run::CalibrationClockwise);
+        let texts = interruption(&Interrupted { done, at, cause, left }, Path::new("b.ron"), 3, ChangeKind::Guided);
+        let words = |language| texts.iter().map(|text| text.words(language)).collect();
+        (words(English), words(German))
+    }
+
+    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Left {
+        let mut mode = Possible::known(modes[0]);
+        modes[1..].iter().for_each(|own| mode.or(*own));
+        Left::Unknown(Standing { mode, password: Possible::known(password), activity })
+    }
+
+    #[test]
+    fn a_write_that_was_cut_off_says_where_why_and_in_which_state() {
+        let mode = DeviceMode::CALIBRATION;
+        let activity = Activity::Running(Run::CalibrationClockwise);
+        let left = standing(&[mode, DeviceMode::OPERATION], true, activity);
+        let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+        let expected = [
+            ["1 of 3", "1 von 3"],
+            ["second run, clockwise", "zweiter Lauf, im Uhrzeigersinn"],
+            ["01h calibration, 00h operation", "01h Kalibrierung, 00h Betrieb"],
+            ["password", "Passwort"],
+            ["table", "Tabelle"],
+            ["Lead it back", "zurückführen"],
+            ["b.ron", "b.ron"],
+        ];
+        assert_eq!((english.len(), german.len()), (expected.len(), expected.len()), "{english:?}");
+        for (words, [own, deutsch]) in english.iter().zip(&german).zip(expected) {
+            assert!(words.0.contains(own) && words.1.contains(deutsch), "{words:?}");
+        }
+        let (english, _) = told(Failure::Device(Error::Cancelled), Left::Operation);
+        assert!(english[0].contains("1 of 3") && english[2].contains("in operation again"), "{english:?}");
+    }
+
+    /// What an encoder was doing, each in words of its own.
+    #[test]
+    fn every_activity_is_told() {
+        let activities = [
+            Activity::Running(Run::CalibrationCounterclockwise),
+            Activity::Running(Run::CalibrationClockwise),
+            Activity::Running(Run::WiegandClockwise),
+            Activity::Entered,
+            Activity::Saving,
+            Activity::Restarting,
+        ];
+        let mut seen = Vec::new();
+        for activity in activities {
+            let left = standing(&[DeviceMode::PRESET], false, activity);
+            let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+            assert!(!seen.contains(&english[3]) && english[3] != german[3], "{english:?}");
+            seen.push(english[3].clone());
+        }
+        let (idle, _) =
+            told(Failure::Device(Error::NeverSilent), standing(&[DeviceMode::PRESET], false, Activity::Nothing));
+        assert!(idle[3].contains("Lead it back"), "{idle:?}");
+    }
+
+    /// Manual 6.3 and 6.4, every code; what happened, and what to do.
+    #[test]
+    fn every_failure_says_what_happened_and_what_to_do() {
+        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let calibration = |run, byte| Failure::Calibration { run, status: CalibrationStatus::from_byte(byte) };
+        let wiegand =
+            |byte, code| Failure::Wiegand { run: Run::WiegandClockwise, status: WiegandStatus::from_byte(byte), code };
+        let cases = [
+            (calibration(first, 0x30), "other way"),
+            (calibration(first, 0x31), "25…40 °C"),
+            (calibration(first, 0x32), "300…700 rpm"),
+            (calibration(first, 0x33), "no reason"),
+            (calibration(second, 0x32), "lost"),
+            (calibration(second, 0x77), "77h"),
+            (wiegand(0x30, 0), "other way"),
+            (wiegand(0x07, 0x2A), "2Ah"),
+            (wiegand(0x99, 0), "99h"),
+            (Failure::NotBalanced { code: 4 }, "balanced"),
+            (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "07h preset"),
+            (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "00h"),
+            (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
+            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "stands"),
+            (
+                Failure::NotReady {
+                    task: Task::Stand,
+                    blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
+                },
+                "stands. The encoder is at 20 °C",
+            ),
+            (Failure::NotVerified { item: "0x6E".to_owned(), expected: "04".to_owned(), got: "03".to_owned() }, "0x6E"),
+            (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),
+        ];
+        for (cause, fact) in cases {
+            let (english, german) = (failure(&cause).words(English), failure(&cause).words(German));
+            assert!(english.contains(fact), "{english}");
+            for words in [&english, &german] {
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "what to do: {words}");
+                assert!(words.ends_with('.') && !words.starts_with(char::is_lowercase), "{words}");
+            }
+            assert_ne!(english, german);
+        }
     }
 }

@@ -56,7 +56,8 @@ impl<T: Copy + PartialEq> Possible<T> {
         self.0.contains(&value)
     }
 
-    fn or(&mut self, value: T) {
+    /// It may be this as well.
+    pub fn or(&mut self, value: T) {
         if !self.may_be(value) {
             self.0.push(value);
         }
