@@ -328,14 +328,16 @@ mod tests {
 
     #[test]
     fn the_profiles_that_ship_are_read() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
-        let mut count = 0;
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
-            let document = Document::parse(&text).unwrap();
-            assert_eq!(document.emit(), text, "as the program writes it");
-            count += 1;
+        for kind in Body::KINDS {
+            let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles").join(kind);
+            let mut count = 0;
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+                let document = Document::parse(&text).unwrap();
+                assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
+                count += 1;
+            }
+            assert_eq!(count, 3);
         }
-        assert_eq!(count, 3);
     }
 }

@@ -215,3 +215,31 @@ fn an_area_without_a_procedure_is_written_directly() {
     assert_eq!(ops(&restore), ["0x24:0x00 (1)", "0x24:0x01 (1)"]);
     assert_eq!(restore.plan.write_cycles(), 2);
 }
+
+/// What the ready-made profiles do to an encoder as delivered, with another serial number.
+#[test]
+fn the_ready_made_profiles_do_what_they_say() {
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/biss").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        crate::profile::Document::parse(&text).unwrap().body.into_biss().unwrap()
+    };
+    let now = device(&profile("7"));
+    let other = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+    let plan = |name: &str, options| plan_restore(&read(name), &now, options).unwrap();
+    assert_eq!(ops(&plan("kit-encoder-as-delivered.ron", other)), Vec::<String>::new());
+    assert_eq!(ops(&plan("dynamic-filter.ron", other)), ["0x6E (1)"]);
+    let restore = plan("servo-motor-data.ron", other);
+    assert_eq!(restore.plan.write_cycles(), 2);
+    let left: Vec<String> = restore.mounting_left.iter().map(ToString::to_string).collect();
+    assert!(
+        left.contains(&"0x04:0x20+3".to_owned()) && left.iter().any(|item| item.starts_with("0x25:0x0")),
+        "{left:?}"
+    );
+    let all = plan("servo-motor-data.ron", RestoreOptions { with_mounting: true, ..other });
+    assert_eq!((all.mounting_left, all.plan.write_cycles()), (vec![], 2));
+    assert_eq!(all.plan.base.banks.len(), 3, "nothing else is touched");
+    let record =
+        crate::profile::hiperface::CommutationRecord::parse(&read("servo-motor-data.ron").bank(4).unwrap().bytes[32..]);
+    assert_eq!(record.unwrap().unwrap().pole_pairs, 4);
+}
