@@ -27,6 +27,8 @@ const ASKING: Duration = Duration::from_millis(200);
 /// How long the speed of a motor is measured, and whether a shaft stands.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
+/// A device mode that is not there by then was not taken.
+const MODE: Duration = Duration::from_millis(500);
 /// A status that has not come about by then does not come.
 const STATUS: Duration = Duration::from_secs(5);
 
@@ -144,8 +146,17 @@ impl<'g, 'm> Guide<'g, 'm> {
         let Some(lock) = self.description.lock() else { return Err(Failure::NotDescribed { kind: procedure.kind }) };
         unlock(self.master, lock, &mut self.standing)?;
         set_mode(self.master, lock, mode, &mut self.standing)?;
-        let found = DeviceMode::new(self.master.read(lock.mode_at)?);
-        if found == mode { Ok(()) } else { Err(Failure::Mode { wanted: mode, found }) }
+        let end = self.master.now() + MODE;
+        loop {
+            let found = DeviceMode::new(self.master.read(lock.mode_at)?);
+            if found == mode {
+                return Ok(());
+            }
+            if self.master.now() >= end {
+                return Err(Failure::Mode { wanted: mode, found });
+            }
+            self.master.wait(GLANCE)?;
+        }
     }
 
     /// Gives a command. Where nothing tells whether it was heard, what comes next has to: the status, or what was
@@ -280,7 +291,12 @@ impl<'g, 'm> Guide<'g, 'm> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
         loop {
-            match self.master.position() {
+            // Between the runs of a calibration the encoder may still be silent.
+            let reading = match task {
+                Task::Turn(Run::CalibrationClockwise) => self.master.with_patience(SILENCE, Master::position),
+                _ => self.master.position(),
+            };
+            match reading {
                 Ok(reading) => {
                     measured.marked |= !reading.is_valid();
                     gauge.next(&reading);

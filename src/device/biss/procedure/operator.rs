@@ -236,13 +236,19 @@ pub struct Unattended {
     pub patience: Duration,
 }
 
+impl Unattended {
+    /// A measurement that is not there by then does not come.
+    const MEASURING: Duration = Duration::from_secs(5);
+}
+
 impl Operator for Unattended {
     fn attend(&mut self, demand: &Demand) -> Answer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, Blocker::Temperature { .. }));
-        let measures = demand.blockers == [Blocker::Measuring];
+        // So that it ends with a reason where there is one.
+        let measures = if demand.blockers == [Blocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
         if demand.is_ready() {
             Answer::Go
-        } else if hopeless || (demand.waited >= self.patience && !measures) {
+        } else if hopeless || demand.waited >= self.patience.saturating_add(measures) {
             Answer::GiveUp
         } else {
             Answer::Wait
@@ -365,6 +371,7 @@ mod tests {
         assert_eq!(ask(fits, 0), Answer::Go);
         assert_eq!((ask(stands, 9), ask(stands, 10)), (Answer::Wait, Answer::GiveUp));
         assert_eq!(ask(Measured::default(), 11), Answer::Wait, "it ends with a reason");
+        assert_eq!(ask(Measured::default(), 15), Answer::GiveUp, "and not never");
         assert_eq!(ask(Measured { celsius: Some(50), ..fits }, 0), Answer::GiveUp, "waiting does not cool it");
     }
 
