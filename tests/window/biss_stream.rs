@@ -92,7 +92,7 @@ fn the_window_shows_a_stream_without_loss() {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));
-    assert!(screen.shows("The adapter streams 20000 frames a second"));
+    assert!(screen.shows("Stream: 20000 frames/s"));
     assert_eq!(screen.studio().biss().unwrap().record.dropped(), 0);
     let action = poll(screen.studio(), None);
     screen.act(action);

@@ -39,7 +39,8 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:X}h", reading.raw)));
     }
     if let Some(hz) = encoder.streamed_hz() {
-        ui.label(skin.caption(skin.words(&Text::new("live.streamed").with_number("count", hz, 0))));
+        let words = skin.words(&Text::new("live.streamed").with_number("count", hz, 0));
+        ui.label(skin.caption(words)).on_hover_text(skin.say("live.streamed_hint"));
     }
     let errors = encoder.record.crc_errors();
     if errors > 0 {
