@@ -6,7 +6,6 @@ use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::leaving::{Leaver, same_wire};
 use super::services::{JobEnd, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
-use super::signals::{self, SourceAction};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
@@ -79,21 +78,6 @@ impl Studio {
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         self.services.tell(Severity::Note, vec![why], Some(&name));
         Ok(earlier)
-    }
-
-    /// An action of the Signals tab; an adapter gets its wire first.
-    pub(super) fn act_signals(&mut self, action: signals::Action) {
-        if !matches!(action, signals::Action::Source(SourceAction::StartAdapter)) {
-            return self.signals.act(action, &mut self.services);
-        }
-        let earlier = match self.signals.source.adapter_url() {
-            Some(url) => self.free_wire(&url, "session.let_go_for_signals"),
-            None => Ok(None),
-        };
-        match earlier {
-            Ok(earlier) => self.signals.start_adapter(earlier, &mut self.services),
-            Err(why) => self.signals.source.refuse(why),
-        }
     }
 
     pub(super) fn reconnect(&mut self, id: SessionId) {

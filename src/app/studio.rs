@@ -49,11 +49,11 @@ impl Studio {
         let mut services = Services::new(world, wake);
         let (settings, keeper) = Keeper::load(&mut services);
         Studio {
+            signals: Signals::at(settings.links(Tab::Signals)),
             settings,
             connect: None,
             question: None,
             services,
-            signals: Signals::default(),
             devices: Vec::new(),
             shown: Shown::default(),
             next_id: 0,

@@ -121,6 +121,18 @@ fn what_is_wrong_is_said_where_the_link_stands() {
 }
 
 #[test]
+fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
+    let mut desk = Desk::fresh("");
+    begin(&mut desk, "sim:?rpm=60", 10_000);
+    begin(&mut desk, "serial:/dev/ttyUSB0", 10_000);
+    desk.act(Action::Close);
+    desk.until("the window may close", Studio::may_close);
+    let desk = desk.crash();
+    assert_eq!(desk.studio.signals.source().link(), "sim:?rpm=60");
+    assert!(!desk.studio.signals.source().is_running());
+}
+
+#[test]
 fn what_runs_goes_on_while_another_link_is_refused_and_the_virtual_encoder_takes_its_place() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=6", 10_000);

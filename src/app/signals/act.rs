@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
-use super::{Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, Table, promise};
+use super::{
+    Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, SourceAction, Table, promise,
+};
 use crate::app::hiperface::Encoder;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder;
 use crate::app::services::Services;
-use crate::app::{Severity, Text, explain};
+use crate::app::{Severity, Studio, Tab, Text, explain};
 use crate::signal::capture::Wishes;
 use crate::signal::diagnosis::{Changes, Finding, compare};
 use crate::signal::quality::Family;
@@ -52,7 +54,33 @@ impl Default for Signals {
     }
 }
 
+impl Studio {
+    /// Does what is asked of the Signals tab. An adapter gets its wire first, and is remembered.
+    pub(in crate::app) fn act_signals(&mut self, action: Action) {
+        if action != Action::Source(SourceAction::StartAdapter) {
+            return self.signals.act(action, &mut self.services);
+        }
+        let earlier = match self.signals.source.adapter_url() {
+            Some(url) => self.free_wire(&url, "session.let_go_for_signals"),
+            None => Ok(None),
+        };
+        match earlier {
+            Ok(earlier) => self.signals.start_adapter(earlier, &mut self.services),
+            Err(why) => self.signals.source.refuse(why),
+        }
+        let source = &self.signals.source;
+        if source.adapter_problem().is_none() {
+            self.settings.use_link(Tab::Signals, source.link());
+        }
+    }
+}
+
 impl Signals {
+    /// With the links to adapters that were used, the latest first.
+    pub(in crate::app) fn at(links: &[String]) -> Self {
+        Signals { source: Source::at(links.first()), ..Signals::default() }
+    }
+
     /// By whose limits is judged.
     pub fn family(&self) -> Family {
         self.family

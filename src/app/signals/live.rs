@@ -108,6 +108,12 @@ impl Default for Source {
 }
 
 impl Source {
+    /// With the link to an adapter that was used last.
+    pub(super) fn at(link: Option<&String>) -> Self {
+        let usual = Source::default();
+        Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
+    }
+
     /// What is set of the virtual encoder.
     pub fn settings(&self) -> &Settings {
         &self.settings
