@@ -141,9 +141,9 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         Left::Operation => vec![Text::new("biss_left.operation")],
         Left::Unknown(standing) => left(standing),
     });
-    // An operation that may have been carried out counts as a write cycle.
+    // An operation that may have been carried out counts as a write cycle, where it costs one.
     let id = match kind {
-        _ if done.write_cycles == 0 => "write.untouched",
+        _ if done.write_cycles == 0 && done.written == 0 => "write.untouched",
         ChangeKind::Restore => "write.backup",
         ChangeKind::Bytes => "write.backup_bytes",
         ChangeKind::Guided | ChangeKind::Single => "write.backup_single",

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::guide::{Attended, Course, Guide};
 use super::{Failure, Motion, Outcome, Run, Step, Task};
+use crate::device::biss::Error;
 use crate::protocol::biss::{
     CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
 };
@@ -78,11 +79,9 @@ impl Guide<'_, '_> {
             return self.run(&course, procedure, explain);
         }
         let ended = self.shielded(|guide| guide.run(&course, procedure, explain));
-        match &ended {
-            // Its success is saved by itself; where that is not known, it may be.
-            Ok(()) => self.spend(),
-            Err(failure) if failure.is_lost() => self.spend(),
-            Err(_) => {}
+        // Its success is saved by itself, and its failure loses the table; only one that was never begun changes nothing.
+        if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
+            self.spend();
         }
         ended
     }
