@@ -146,6 +146,13 @@ pub enum Attendance {
 }
 
 impl Operator for Attendance {
+    fn begins(&mut self) {
+        match self {
+            Attendance::Seat(seat) => seat.begins(),
+            Attendance::Nobody(nobody) => nobody.begins(),
+        }
+    }
+
     fn attend(&mut self, demand: &Demand) -> Answer {
         match self {
             Attendance::Seat(seat) => seat.attend(demand),

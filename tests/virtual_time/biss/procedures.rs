@@ -7,7 +7,7 @@ use encoder_studio::app::Text;
 use encoder_studio::app::explain::biss::job;
 use encoder_studio::device::biss::Error;
 use encoder_studio::device::biss::procedure::{
-    Advice, Answer, Blocker, Failure, Outcome, Run, Step, Task, WiegandReport, steps_of,
+    Advice, Answer, Blocker, Detail, Failure, Outcome, Run, Step, Task, WiegandReport, steps_of,
 };
 use encoder_studio::device::biss::write::Left;
 use encoder_studio::profile::biss::{MotorSource, MountingRun, PlanError, PresetParts};
@@ -488,4 +488,32 @@ fn leading_back_waits_for_a_calibration() {
         assert_eq!(bench.flash_cycles() - before, 1, "it was saved");
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
     }
+}
+
+/// Start was pressed twice for the motor data: the second time is no answer for the OEM data, of which the same is asked.
+#[test]
+fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
+    let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
+    assert_eq!(prepared.plan.ops.len(), 2);
+    let hands = Hands::on(&bench);
+    let (commit, seat) = (hands.commit_of(&prepared), hands.seat);
+    let mut asked = 0;
+    let error = bench
+        .run_watched(commit, &mut |news| match &news.detail {
+            Detail::Demand(demand) if news.op == 0 && demand.is_ready() => seat.answer(demand.task, Answer::Go),
+            Detail::Begins if (news.op, news.step) == (0, Step::Save) => seat.answer(Task::Stand, Answer::Go),
+            Detail::Demand(demand) if news.op == 1 && demand.is_ready() => {
+                asked += 1;
+                if asked == 3 {
+                    seat.answer(demand.task, Answer::Cancel);
+                }
+            }
+            _ => {}
+        })
+        .unwrap_err();
+    let told = interrupted(*error);
+    assert_eq!((told.cause, told.done.ops), (Failure::Device(Error::Cancelled), 1));
+    assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }

@@ -272,8 +272,14 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step(Step::Await(task));
         let begun = self.master.now();
         let mut gauge = Gauge::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
+        let mut is_told = false;
         loop {
             let measured = self.measure(task, &mut gauge)?;
+            if !is_told {
+                // Nobody can have answered what nobody has seen.
+                self.operator.begins();
+                is_told = true;
+            }
             let demand = Demand::new(task, measured, self.master.now().since(begun));
             self.say(Detail::Demand(demand.clone()));
             match self.operator.attend(&demand) {

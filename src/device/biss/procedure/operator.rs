@@ -225,6 +225,9 @@ pub enum Answer {
 
 /// Whoever stands beside the motor.
 pub trait Operator {
+    /// Something is asked for the first time: whatever was answered before that belongs to something else.
+    fn begins(&mut self) {}
+
     /// Asked again and again, a few times a second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
@@ -261,7 +264,7 @@ impl Operator for Unattended {
 pub struct Seat(Arc<Mutex<Option<(Task, Answer)>>>);
 
 impl Seat {
-    /// Answers what is being asked; an answer to anything else is not taken.
+    /// Answers what is being asked; an answer to anything else, or from before it was asked, is not taken.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
     }
@@ -272,6 +275,10 @@ impl Seat {
 }
 
 impl Operator for Seat {
+    fn begins(&mut self) {
+        *self.slot() = None;
+    }
+
     fn attend(&mut self, demand: &Demand) -> Answer {
         match self.slot().take() {
             Some((task, answer)) if task == demand.task => answer,
@@ -387,5 +394,12 @@ mod tests {
         assert_eq!(ask(first), Answer::Wait, "and it does not wait there");
         seat.answer(first, Answer::Skip);
         assert_eq!((ask(first), ask(first)), (Answer::Skip, Answer::Wait));
+        seat.answer(first, Answer::Go);
+        operator.begins();
+        assert_eq!(
+            operator.attend(&demand(first, Measured::default())),
+            Answer::Wait,
+            "for the same of an operation before"
+        );
     }
 }
