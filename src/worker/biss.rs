@@ -174,6 +174,8 @@ impl Device for Biss {
     }
 
     fn watch(&mut self, desk: &mut Desk, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
+        // What is data, and not to be touched while the shaft turns.
+        self.know(desk)?;
         let reading = read_watched(&mut self.master(desk), *what)?;
         let refused = reading.value.is_err();
         let sample = Sample::Watched(reading);

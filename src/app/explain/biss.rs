@@ -76,6 +76,7 @@ pub fn encoder(error: &Error) -> Text {
             Text::new(if *moving { "biss.widths_unknown" } else { "biss.widths_at_rest" })
         }
         Error::NoSuchRegister { address } => Text::new("biss.no_such_register").with("address", address),
+        Error::NotWatched { address } => Text::new("biss.not_watched").with("address", address),
         Error::Refused { address, value, reads } => {
             let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
             let reads = reads.map(byte).unwrap_or_default();
@@ -173,6 +174,7 @@ mod tests {
             (Error::WidthsUnknown { moving: true }, vec!["10", "48"]),
             (Error::WidthsUnknown { moving: false }, vec![]),
             (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
+            (Error::NotWatched { address }, vec!["0x24:0x10"]),
             (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "07h"]),
             (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "07h", "01h"]),
             (Error::Unclear { address, value: 7, cause: Box::new(Error::NeverSilent) }, vec!["0x24:0x10", "07h"]),

@@ -103,6 +103,12 @@ pub enum Error {
         /// Where.
         address: RegisterAddress,
     },
+    /// Registers of an area of data are not watched: they are read at standstill only.
+    #[error("register {address} is data, which is not read while the shaft may turn")]
+    NotWatched {
+        /// Where.
+        address: RegisterAddress,
+    },
     /// The encoder did not take a value.
     #[error("the encoder refuses {value:02X}h for register {address}")]
     Refused {

@@ -85,7 +85,7 @@ pub struct WatchedReading {
     pub at: Moment,
     /// Which.
     pub what: RegisterRange,
-    /// Their values, in the order of their addresses, or why there are none: no such register.
+    /// Their values, in the order of their addresses, or why there are none: no such register, or data.
     pub value: Result<Vec<u8>, Error>,
 }
 
@@ -103,15 +103,20 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     }
 }
 
-/// Reads watched registers once; that there are none is an answer too.
+/// Reads watched registers once; that there are none, or that they are data, is an answer too.
 ///
 /// # Errors
 /// The line.
 pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
-    let value = match master.read_run(what.start(), what.count().into()) {
-        Ok(bytes) => Ok(bytes),
-        Err(error @ Error::NoSuchRegister { .. }) => Err(error),
-        Err(error) => return Err(error),
+    let description = master.station().description.clone();
+    let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
+    let value = match what.addresses().find(|address| of_area(*address)) {
+        // Manual 6.5: not while the shaft turns, and nobody lets it stand for this.
+        Some(address) => Err(Error::NotWatched { address }),
+        None => match master.read_run(what.start(), what.count().into()) {
+            Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),
+            value => value,
+        },
     };
     Ok(WatchedReading { at: master.now(), what, value })
 }

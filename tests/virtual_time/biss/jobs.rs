@@ -264,6 +264,15 @@ fn samples_and_watched_registers_come_one_by_one() {
         assert_eq!((reading.what.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
         assert!(matches!(refused, Watched::Refused(Sample::Watched(_))), "{refused:?}");
+        // Manual 6.5: data are not accessed while the shaft turns.
+        let sent = bench.tap().sent.len();
+        let refused = bench.session.watch_value(&"0x24:0x10".parse().unwrap()).unwrap();
+        let Watched::Refused(Sample::Watched(reading)) = refused else { panic!("{refused:?}") };
+        assert_eq!(
+            (reading.value, bench.tap().sent.len()),
+            (Err(Error::NotWatched { address: at("0x24:0x10") }), sent)
+        );
+        assert!(matches!(bench.session.sample(), Ok(Sample::Position(_))));
     }
 }
 
