@@ -47,7 +47,7 @@ impl Guide<'_, '_> {
             guide.step(Step::ReadBack);
             let to = guide.master.position()?;
             let expected = preset(&from, parts, value);
-            if distance(expected, &to) > (1 << to.singleturn_bits) / TREMBLE {
+            if distance(expected, &to) > ((1_u64 << to.singleturn_bits) / TREMBLE).max(1) {
                 return Err(Failure::NotVerified {
                     item: "position".to_owned(),
                     expected: expected.to_string(),
