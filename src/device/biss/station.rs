@@ -163,7 +163,16 @@ impl Station {
 
     /// The adapter is asked anew who it is, and set anew.
     pub(super) fn forget_adapter(&mut self) {
-        (self.adapter, self.bus, self.flow) = (AdapterState::default(), None, None);
+        (self.adapter, self.flow) = (AdapterState::default(), None);
+        self.forget_settings();
+    }
+
+    /// An adapter that says HELLO, or was reset, has neither a setting of its bus nor the supply switched on.
+    pub(super) fn forget_settings(&mut self) {
+        (self.bank, self.bus) = (None, None);
+        if let Some(supply) = &mut self.supply {
+            supply.measured = None;
+        }
     }
 
     /// Takes the number of frames with a wrong checksum since the last reading.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::biss::{Error, FrameRun, Sample, Station};
+use encoder_studio::device::biss::{Error, FrameRun, Sample, Station, Supply};
 use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::profile::biss::RegisterRange;
@@ -30,13 +30,18 @@ struct Stand {
 
 /// An encoder behind an adapter, whose bus is clocked fast enough for 20 000 frames a second.
 fn stand(query: &str) -> Stand {
+    stand_with(query, None)
+}
+
+/// As [`stand`], with the encoder's supply as the adapter is to give it.
+fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
     let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Way::Adapter, MARGIN);
-    station.clock_hz = 2_000_000;
+    (station.clock_hz, station.supply) = (2_000_000, supply);
     let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }
 }
@@ -167,4 +172,20 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
+}
+
+/// HELLO switches the supply off: the encoder gets it again, and the time that it needs to start.
+#[test]
+fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {
+    let supply = Supply { millivolt: 5_000, measured: None };
+    let mut stand = stand_with("supply=switched&rpm=60", Some(supply));
+    stand.session.pace(Some(FAST));
+    stand.run();
+    stand.tap.lock().unwrap().mute_from = Some(0);
+    assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));
+    stand.tap.lock().unwrap().mute_from = None;
+    assert!(stand.run().begins());
+    assert_eq!((stand.count(Operation::Hello), stand.count(Operation::Supply)), (2, 2));
+    let measured = Some(Supply { measured: Some((5_000, 60)), ..supply });
+    assert_eq!(stand.session.station().supply, measured);
 }

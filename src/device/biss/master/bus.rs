@@ -8,6 +8,7 @@ use crate::device::biss::error::{Asked, Damage, Error};
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::station::{Bus, Supply};
 use crate::device::bridge::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
+use crate::device::line::LineError;
 use crate::protocol::biss::{FrameError, RegisterAddress};
 use crate::protocol::bridge::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::units::Moment;
@@ -160,13 +161,21 @@ impl<'a> Master<'a> {
                 Trouble::Damage(Damage::ControlFrame)
             }
             Err(failure) => {
-                // An adapter that was reset has to be set again.
-                (self.station.bank, self.station.bus) = (None, None);
+                self.may_be_reset(&failure);
                 return Err(failure.into());
             }
         };
         self.station.bank = None;
         Ok(Err(trouble))
+    }
+
+    /// An adapter that was reset has to be set again. A wish to end says nothing of it.
+    fn may_be_reset(&mut self, failure: &Failure) {
+        if matches!(failure, Failure::Line(LineError::Cancelled)) {
+            (self.station.bank, self.station.bus) = (None, None);
+        } else {
+            self.station.forget_settings();
+        }
     }
 
     pub(super) fn bus_position_once(&mut self) -> Attempt<PositionReading> {
@@ -197,10 +206,7 @@ impl<'a> Master<'a> {
     /// A frame as it comes, unchecked, and when it was taken.
     pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
         let answered = self.adapter().ask(&Request::BissRead);
-        if answered.is_err() {
-            self.station.bus = None;
-        }
-        let answered = answered?;
+        let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
             return Err(unexpected("a frame", &answered.reply));
         };
