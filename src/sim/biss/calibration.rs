@@ -1,6 +1,7 @@
 //! The calibration of the singleturn (manual 6.4): two runs, counterclockwise first, each about five seconds. Chosen here
 //! (`U`): a condition that is not met ends a run after a second; a motor that changes its speed ends it at once; the
-//! second run is refused where the first was not done.
+//! second run is refused where the first was not done. One that keeps its status shows it until the next run has begun,
+//! over a change of the device mode too.
 
 use std::time::Duration;
 
@@ -24,11 +25,13 @@ pub(super) struct Calibration {
     pub(super) status: CalibrationStatus,
     run: Option<Run>,
     duration: Duration,
+    keeps_status: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Run {
     clockwise: bool,
+    begins: Moment,
     ends: Moment,
     outcome: CalibrationStatus,
 }
@@ -45,18 +48,19 @@ pub(super) enum Ended {
 }
 
 impl Calibration {
+    const BEGINS_AFTER: Duration = Duration::from_millis(300);
     const FAILS_AFTER: Duration = Duration::from_secs(1);
     /// Revolutions a minute, either way.
     const SPEED: std::ops::RangeInclusive<f64> = 300.0..=700.0;
     const MAX_WAVER: f64 = 2.0;
     const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
 
-    pub(super) fn new(duration: Duration) -> Self {
-        Calibration { command: 0, status: CalibrationStatus::Idle, run: None, duration }
+    pub(super) fn new(duration: Duration, keeps_status: bool) -> Self {
+        Calibration { command: 0, status: CalibrationStatus::Idle, run: None, duration, keeps_status }
     }
 
     pub(super) fn is_running(&self) -> bool {
-        self.run.is_some()
+        self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
     /// A command is written; `false`: it is refused.
@@ -66,7 +70,7 @@ impl Calibration {
             CalibrationCommand::StartClockwise if self.status == CalibrationStatus::CounterclockwiseDone => true,
             CalibrationCommand::StartClockwise | CalibrationCommand::Unknown(_) => return false,
         };
-        if self.is_running() {
+        if self.run.is_some() {
             return false;
         }
         self.command = value;
@@ -76,8 +80,9 @@ impl Calibration {
             Some(failure) => (failure, Self::FAILS_AFTER),
             None => (success, self.duration),
         };
-        self.status = CalibrationStatus::Running;
-        self.run = Some(Run { clockwise, ends: now + duration, outcome });
+        let begins = if self.keeps_status { now + Self::BEGINS_AFTER } else { now };
+        self.run = Some(Run { clockwise, begins, ends: begins + duration, outcome });
+        self.settle(now);
         true
     }
 
@@ -88,8 +93,11 @@ impl Calibration {
         }
     }
 
-    /// Ends a run whose time is over.
+    /// Begins a run that is due, and ends one whose time is over.
     pub(super) fn settle(&mut self, now: Moment) -> Ended {
+        if self.run.is_some_and(|run| run.begins <= now) {
+            self.status = CalibrationStatus::Running;
+        }
         let Some(run) = self.run.filter(|run| run.ends <= now) else { return Ended::No };
         self.run = None;
         self.status = run.outcome;
@@ -104,7 +112,10 @@ impl Calibration {
     /// The mode is left, or power is lost.
     pub(super) fn abandon(&mut self) -> Ended {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
-        (self.command, self.status) = (0, CalibrationStatus::Idle);
+        self.command = 0;
+        if !self.keeps_status || self.status == CalibrationStatus::Running {
+            self.status = CalibrationStatus::Idle;
+        }
         if lost { Ended::Lost } else { Ended::No }
     }
 }

@@ -27,6 +27,7 @@ pub struct Config {
     pub(super) pulses: Pulses,
     pub(super) calibration_time: Duration,
     pub(super) silent_calibration: bool,
+    pub(super) keeps_status: bool,
     pub(super) echo: bool,
     pub(super) order: ByteOrder,
 }
@@ -49,6 +50,7 @@ impl Default for Config {
             pulses: Pulses { average: 63, lowest: 58 },
             calibration_time: Duration::from_secs(5),
             silent_calibration: true,
+            keeps_status: false,
             echo: false,
             order: ByteOrder::LowFirst,
         }
@@ -57,7 +59,7 @@ impl Default for Config {
 
 impl Config {
     /// The keys that [`from_pairs`](Self::from_pairs) takes.
-    pub const KEYS: [&str; 17] = [
+    pub const KEYS: [&str; 18] = [
         "seed",
         "fault",
         "firmware",
@@ -73,6 +75,7 @@ impl Config {
         "pulses",
         "calibration",
         "calibration-silent",
+        "calibration-status",
         "echo",
         "order",
     ];
@@ -142,6 +145,9 @@ impl Config {
                 self.calibration_time = Duration::from_secs_f64(setting.decimal(0.1..=60.0, "0.1 to 60 seconds")?);
             }
             "calibration-silent" => self.silent_calibration = setting.switch()?,
+            "calibration-status" => {
+                self.keeps_status = setting.one_of(&[("fresh", false), ("kept", true)], "fresh or kept")?;
+            }
             "echo" => self.echo = setting.switch()?,
             "order" => {
                 let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
@@ -189,7 +195,7 @@ mod tests {
     fn every_key_is_read() {
         let config = read(
             "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&motor=reverse&waver=3&position=0x20000&temperature=-10&\
-             errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&echo=on&\
+             errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&calibration-status=kept&echo=on&\
              order=high-first",
         )
         .unwrap();
@@ -209,6 +215,7 @@ mod tests {
             pulses: Pulses { average: 61, lowest: 52 },
             calibration_time: Duration::from_millis(500),
             silent_calibration: false,
+            keeps_status: true,
             echo: true,
             order: ByteOrder::HighFirst,
         };
@@ -222,7 +229,8 @@ mod tests {
             (
                 "sed=1",
                 "a virtual encoder has no setting `sed`; allowed are seed, fault, firmware, serial, rpm, motor, \
-                 waver, position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, echo, order",
+                 waver, position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, \
+                 calibration-status, echo, order",
             ),
             ("filter=fast", "`filter=fast` cannot be used: allowed is balanced or dynamic"),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),

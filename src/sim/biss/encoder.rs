@@ -20,7 +20,8 @@ use super::motor::{Drive, Motor};
 use super::shaft::Shaft;
 use super::wiegand::{Pulses, Wiegand};
 use crate::protocol::biss::{
-    DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress, WiegandCommand, WiegandStatus,
+    CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress,
+    WiegandCommand, WiegandStatus,
 };
 use crate::sim::Faults;
 use crate::units::Moment;
@@ -98,7 +99,7 @@ impl Encoder {
             password: 0,
             mode: DeviceMode::OPERATION,
             saved_wiegand: flash.wiegand,
-            calibration: Calibration::new(config.calibration_time),
+            calibration: Calibration::new(config.calibration_time, config.keeps_status),
             wiegand: Wiegand::new(),
             data: DataEntry::default(),
             filter: FilterEntry::default(),
@@ -376,6 +377,7 @@ impl Encoder {
         self.abandon();
         self.power = Power::Starting { ready: now + Self::START };
         (self.bank, self.password, self.mode) = (0, 0, DeviceMode::OPERATION);
+        self.calibration.status = CalibrationStatus::Idle;
         self.wiegand = Wiegand::new();
         self.saved_wiegand = self.flash.wiegand;
     }

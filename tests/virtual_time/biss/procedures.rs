@@ -517,3 +517,25 @@ fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
     assert_eq!((told.cause, told.done.ops), (Failure::Device(Error::Cancelled), 1));
     assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }
+
+/// What the status says of an earlier run is neither the end nor the failure of this one.
+#[test]
+fn the_status_of_an_earlier_run_is_not_taken_for_this_one() {
+    for silent in ["on", "off"] {
+        let mut bench = Bench::new(Way::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));
+        let before = bench.flash_cycles();
+        // It leaves "clockwise done".
+        bench.change(calibration()).unwrap();
+        // It leaves "counterclockwise done", with which the first run is to end.
+        let prepared = bench.prepare(calibration()).unwrap();
+        let mut hands = Hands::on(&bench);
+        hands.instead.push((Task::Turn(Run::CalibrationClockwise), Answer::Skip));
+        assert_eq!(bench.commit(&prepared, &mut hands).unwrap().written.outcomes, [Outcome::Skipped]);
+        assert_eq!(bench.encoder_reads(at("0x00:0x01")), Some(CalibrationStatus::CounterclockwiseDone.byte()));
+        let from = bench.now();
+        let written = bench.change(calibration()).unwrap().written;
+        assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]), "{silent}");
+        assert!(bench.now() - from >= Duration::from_secs(10), "two runs of five seconds");
+        assert_eq!(bench.flash_cycles() - before, 2);
+    }
+}

@@ -56,6 +56,7 @@ impl Guide<'_, '_> {
     /// One run. The second is not given up half-way when the user wishes an end: that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(Step::Run(run));
+        let was = self.master.read(procedure.status)?;
         let (command, before, done) = if run.is_clockwise() {
             let (before, done) = (CalibrationStatus::CounterclockwiseDone, CalibrationStatus::ClockwiseDone);
             (CalibrationCommand::StartClockwise, before, done)
@@ -66,6 +67,7 @@ impl Guide<'_, '_> {
         let course = Course {
             run,
             command: command.byte(),
+            was,
             before: before.byte(),
             active: CalibrationStatus::Running.byte(),
             done: done.byte(),

@@ -31,6 +31,8 @@ const STANDING: Duration = Duration::from_millis(250);
 const MODE: Duration = Duration::from_millis(500);
 /// A status that has not come about by then does not come.
 const STATUS: Duration = Duration::from_secs(5);
+/// A calibrating encoder that says nothing for so long has begun (`U`): a damaged reply takes less.
+const BEGUN: Duration = Duration::from_secs(1);
 
 /// Leads an encoder through the operations of a plan.
 pub(in crate::device::biss) struct Guide<'g, 'm> {
@@ -49,6 +51,8 @@ pub(super) struct Course {
     pub(super) run: Run,
     /// What starts it.
     pub(super) command: u8,
+    /// The status that was there before the command: another run may have left it.
+    pub(super) was: u8,
     /// The status before it, while it goes on, and when it is done.
     pub(super) before: u8,
     pub(super) active: u8,
@@ -215,7 +219,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     /// Starts a run and looks at the status until it is done, telling how long it takes. `explain` is asked about any
-    /// other status.
+    /// other status. What was there before the command says nothing of this run until something else was.
     pub(super) fn run(
         &mut self,
         course: &Course,
@@ -228,17 +232,24 @@ impl<'g, 'm> Guide<'g, 'm> {
             self.does(Activity::Nothing);
         }
         ended?;
-        let begun = self.master.now();
+        let started = self.master.now();
+        let mut begun = false;
         loop {
+            let asked = self.master.now();
             let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
-            let elapsed = self.master.now().since(begun);
-            if status == course.done {
-                break;
-            } else if status == course.before && elapsed >= STATUS {
+            let elapsed = self.master.now().since(started);
+            begun |= status == course.active || status != course.was;
+            begun |= course.run.calibrates() && self.master.now().since(asked) >= BEGUN;
+            let waits = status == course.before || !begun;
+            if waits && elapsed < STATUS {
+                // Not begun yet.
+            } else if status == course.before || (waits && status == course.done) {
                 // The start was not heard.
                 let expected = course.active;
                 return Err(Failure::Status { kind: procedure.kind, expected, found: status });
-            } else if status != course.active && status != course.before {
+            } else if status == course.done {
+                break;
+            } else if status != course.active {
                 self.does(Activity::Nothing);
                 return Err(explain(self, status)?);
             } else if elapsed >= course.limit {

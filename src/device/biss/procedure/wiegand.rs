@@ -49,6 +49,7 @@ impl Guide<'_, '_> {
     /// One direction.
     fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
         self.step(Step::Run(run));
+        let was = self.master.read(procedure.status)?;
         let (command, [before, active, done]) = if run.is_clockwise() {
             let statuses = [WiegandStatus::Stopped, WiegandStatus::Clockwise, WiegandStatus::WaitForDirection];
             (WiegandCommand::StartClockwise, statuses)
@@ -62,6 +63,7 @@ impl Guide<'_, '_> {
         let course = Course {
             run,
             command: command.byte(),
+            was,
             before: before.byte(),
             active: active.byte(),
             done: done.byte(),
