@@ -22,6 +22,8 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 pub(super) trait Runs: Device<Doing: std::fmt::Display> {
     /// What is kept of a session when its thread has it.
     type Kept;
+    /// It asks for access codes.
+    const HAS_CODES: bool;
 
     /// Opens a link.
     ///
@@ -38,6 +40,11 @@ pub(super) trait Runs: Device<Doing: std::fmt::Display> {
 
     /// Says at once what the device said on the way.
     fn say(remark: &Self::Remark);
+
+    /// What somebody at a terminal should know of a step; told when it changes.
+    fn announce(_doing: &Self::Doing) -> Option<String> {
+        None
+    }
 
     /// A job that ended early, in words.
     fn failure(error: &Self::Error) -> Vec<Text>;
@@ -73,6 +80,9 @@ impl<D: Runs> Runner<D> {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
         let codes = codes(common)?;
+        if !D::HAS_CODES && !common.codes.is_empty() {
+            return Err(Failure::Usage("--code is for devices with access codes; this one has none".to_owned()));
+        }
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
@@ -111,9 +121,17 @@ impl<D: Runs> Runner<D> {
             self.worker.stop();
         }
         let bar = Bar::default();
+        let mut announced = None;
         loop {
             match self.worker.events().recv().map_err(|_| Ended::Worker)? {
-                Event::Progress(of, progress) if of == id => bar.show(progress.done, progress.total, &progress.what),
+                Event::Progress(of, progress) if of == id => {
+                    let words = D::announce(&progress.what);
+                    if let Some(words) = words.as_ref().filter(|_| words != announced) {
+                        bar.say(words);
+                    }
+                    announced = words;
+                    bar.show(progress.done, progress.total, &progress.what);
+                }
                 Event::Remark(remark) => {
                     D::say(&remark);
                     self.remarks.push(remark);
@@ -224,6 +242,13 @@ impl Bar {
         self.0.set_length(total);
         self.0.set_position(done);
         self.0.set_message(what.to_string());
+    }
+}
+
+impl Bar {
+    /// A line above the bar.
+    fn say(&self, words: &str) {
+        self.0.println(words);
     }
 }
 

@@ -131,7 +131,11 @@ impl Client for TcpStream {
     }
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.write_all(bytes)
+        match self.write_all(bytes) {
+            // A client that does not fetch what streams loses it.
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
+            ended => ended,
+        }
     }
 
     fn baud(&self) -> Option<Baud> {
@@ -160,6 +164,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
                 let _ = client
                     .set_nonblocking(false)
                     .and_then(|()| client.set_nodelay(true))
+                    .and_then(|()| client.set_write_timeout(Some(PATIENCE * 10)))
                     .and_then(|()| device.serve(&mut client, ended));
             }
             Err(_) => std::thread::sleep(PATIENCE),

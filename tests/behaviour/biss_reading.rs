@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran, ended, signal};
+use super::support::{Bench, Foreign, Ran, ended, finish, signal};
 
 const JSON: &str = "--json";
 
@@ -263,4 +263,14 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
         assert!(ran.out.ends_with('\n') && ran.out.lines().count() > 5, "{ran:?}");
         assert_eq!(ran.err.contains("crc errors: 0"), link.contains("bridge") && status == 0, "{ran:?}");
     }
+}
+
+#[test]
+fn access_codes_are_not_for_it() {
+    let bench = Bench::new();
+    bench.run(&["identify", "biss", "--link", "sim:", "--code", "0=66"]).fails(2, &["--code"]);
+    let mut command = bench.program(&["read", "biss", "0x66", "--link", "sim:", "--json"]);
+    // Those of the environment may be for other devices.
+    command.env("ENCODER_STUDIO_CODES", "0=66");
+    assert_eq!(finish(command).json()["value"], json!(80));
 }

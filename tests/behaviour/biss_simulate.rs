@@ -1,5 +1,7 @@
 //! `simulate biss`, examined by hosts that are not our program, with the frames and the rules of the references.
 
+use std::io::Write;
+use std::net::TcpStream;
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -199,6 +201,20 @@ fn faults_of_the_adapters_line_are_those_asked_for() {
         &["config:2000000:35:6:18", "reg:6B=2A", "reg:6A=07", "reg:40=01", "reg:00=01", "frame"],
     );
     assert_eq!((&died[4]["error"], &died[5]["status"]), (&json!(4), &json!(1)), "{died:?}");
+}
+
+/// Somebody starts a stream and fetches nothing of it.
+#[test]
+fn an_interrupt_ends_it_whatever_the_client_does() {
+    let bench = Bench::new();
+    let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
+    let mut client = TcpStream::connect(&port.place).unwrap();
+    // ANALOG_CONFIG and ANALOG_STREAM: a million samples a second, four bytes each.
+    client.write_all(b"\x06\x0B\x30\x40\x42\x0F\x03\x33\xCC\x00").unwrap();
+    client.write_all(b"\x06\x0C\x31\x01\x78\x9F\x00").unwrap();
+    std::thread::sleep(Duration::from_secs(5));
+    port.end("TERM");
+    drop(client);
 }
 
 #[test]

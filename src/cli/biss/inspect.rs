@@ -4,14 +4,14 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value as Json, json};
 
-use super::run::{Runner, crc_errors, identity};
+use super::run::{Runner, crc_errors, identity, registers};
 use super::words;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Position};
 use crate::cli::output::{Lines, Output, say};
 use crate::cli::positions::readings;
 use crate::cli::runner::{Ended, unexpected};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Done, Result};
 use crate::device::biss::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
 use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{KIND, Role};
@@ -277,16 +277,4 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let text = said.map_or_else(|| format!("{shown}\n"), |said| format!("{shown}  {said}\n"));
     output.show(&json, &text)?;
     Ok(Done::Well)
-}
-
-/// The registers of a run.
-fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
-    match runner.run(BissJob::Read(range))? {
-        BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read.bytes),
-        BissOutput::Registers(read) => {
-            let (wanted, came) = (range.count(), read.bytes.len());
-            Err(Failure::Failed(vec![format!("{range}: {came} registers came where {wanted} were asked for.")]))
-        }
-        other => Err(unexpected(&other)),
-    }
 }

@@ -1,12 +1,13 @@
 //! Running jobs on a BiSS encoder, and what they give beside their results.
 
 use crate::app::{Text, explain};
-use crate::cli::Result;
 use crate::cli::args::Code;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
+use crate::cli::{Failure, Result};
 use crate::device::biss::{Identity, Way};
 use crate::link::LinkUrl;
+use crate::profile::biss::RegisterRange;
 use crate::store::Store;
 use crate::worker::biss::{Biss, BissJob, BissOutput, JobError, Remark, open};
 use crate::worker::{OpenError, Session};
@@ -17,12 +18,13 @@ pub(super) type Runner = runner::Runner<Biss>;
 impl Runs for Biss {
     /// How the encoder is reached.
     type Kept = Way;
+    const HAS_CODES: bool = false;
 
     fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
         open(url, store)
     }
 
-    /// There are no access codes: those of the environment may be for other devices.
+    /// Access codes of the environment are for other devices.
     fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Way {
         session.station().way
     }
@@ -55,4 +57,16 @@ pub(super) fn crc_errors(runner: &Runner) -> u64 {
         _ => 0,
     };
     runner.remarks.iter().map(count).sum()
+}
+
+/// The registers of a run.
+pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
+    match runner.run(BissJob::Read(range))? {
+        BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read.bytes),
+        BissOutput::Registers(read) => {
+            let (wanted, came) = (range.count(), read.bytes.len());
+            Err(Failure::Failed(vec![format!("{range}: {came} registers came where {wanted} were asked for.")]))
+        }
+        other => Err(unexpected(&other)),
+    }
 }

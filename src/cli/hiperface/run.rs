@@ -17,6 +17,7 @@ pub(super) type Runner = runner::Runner<Hiperface>;
 impl Runs for Hiperface {
     /// How the line is set: for `identify`.
     type Kept = CharacterFormat;
+    const HAS_CODES: bool = true;
 
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
         open(url, store)
