@@ -15,6 +15,8 @@ use crate::units::{Baud, CharacterFormat, Moment};
 
 /// How long to wait for bytes when the device has nothing to say: also how late an interrupt is noticed.
 const PATIENCE: Duration = Duration::from_millis(20);
+/// A socket's own time-out comes only with the next tick of the system: what is due sooner is slept for.
+const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub(super) trait Simulated: ByteDevice {
@@ -117,17 +119,18 @@ trait Client {
 
 impl Client for TcpStream {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard> {
-        self.set_read_timeout(Some(wait.max(Duration::from_micros(100))))?;
-        match Read::read(self, buffer) {
-            Ok(0) => Ok(Heard::End),
-            Ok(count) => Ok(Heard::Bytes(count)),
-            Err(error)
-                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
-            {
-                Ok(Heard::Nothing)
-            }
-            Err(_) => Ok(Heard::End),
+        if wait >= SHORT {
+            self.set_read_timeout(Some(wait))?;
+            return Ok(heard(Read::read(self, buffer)));
         }
+        self.set_nonblocking(true)?;
+        let mut came = heard(Read::read(self, buffer));
+        if matches!(came, Heard::Nothing) {
+            std::thread::sleep(wait);
+            came = heard(Read::read(self, buffer));
+        }
+        self.set_nonblocking(false)?;
+        Ok(came)
     }
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
@@ -140,6 +143,17 @@ impl Client for TcpStream {
 
     fn baud(&self) -> Option<Baud> {
         None
+    }
+}
+
+fn heard(read: std::io::Result<usize>) -> Heard {
+    match read {
+        Ok(0) => Heard::End,
+        Ok(count) => Heard::Bytes(count),
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {
+            Heard::Nothing
+        }
+        Err(_) => Heard::End,
     }
 }
 

@@ -17,6 +17,9 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
+    /// A socket's own time-out comes only with the next tick of the system: what ends sooner is waited for in glances.
+    const SHORT: Duration = Duration::from_millis(10);
+    const GLANCE: Duration = Duration::from_micros(500);
 
     /// Connects to `host:port`.
     ///
@@ -39,6 +42,18 @@ impl TcpLink {
         Err(reason)
     }
 
+    /// Waits for bytes, but not where the wait is a short one.
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<usize> {
+        if wait >= Self::SHORT {
+            self.stream.set_read_timeout(Some(wait))?;
+            return self.stream.read(buffer);
+        }
+        self.stream.set_nonblocking(true)?;
+        let read = self.stream.read(buffer);
+        self.stream.set_nonblocking(false)?;
+        read
+    }
+
     fn lost(&self, error: &std::io::Error) -> LinkError {
         LinkError::during_use(&self.target, error)
     }
@@ -53,18 +68,19 @@ impl ByteLink for TcpLink {
         let mut buffer = [0; 512];
         loop {
             let left = until.since(self.clock.now());
-            // Zero would mean "wait for ever".
-            let patience = left.max(Duration::from_micros(100));
-            self.stream.set_read_timeout(Some(patience)).map_err(|error| self.lost(&error))?;
-            match self.stream.read(&mut buffer) {
+            match self.read(&mut buffer, left) {
                 Ok(0) => return Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
                 Ok(count) => {
                     into.extend(buffer.iter().take(count));
                     return Ok(());
                 }
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
-                    if self.clock.now() >= until {
+                    let now = self.clock.now();
+                    if now >= until {
                         return Ok(());
+                    }
+                    if left < Self::SHORT {
+                        self.clock.sleep_until(until.min(now + Self::GLANCE));
                     }
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
@@ -83,13 +99,47 @@ impl ByteLink for TcpLink {
 
     fn check(&mut self) -> Result<(), LinkError> {
         let mut byte = [0];
-        let peeked =
-            self.stream.set_read_timeout(Some(Duration::from_micros(100))).and_then(|()| self.stream.peek(&mut byte));
+        let peeked = self.stream.set_nonblocking(true).and_then(|()| self.stream.peek(&mut byte));
+        self.stream.set_nonblocking(false).map_err(|error| self.lost(&error))?;
         match peeked {
             Ok(0) => Err(LinkError::new(&self.target, LinkErrorKind::Lost)),
             Ok(_) => Ok(()),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
             Err(error) => Err(self.lost(&error)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::RealClock;
+    use std::net::TcpListener;
+
+    /// A tick of the system may be ten milliseconds: a hundred looks would take a second.
+    #[test]
+    fn a_look_does_not_wait_and_a_short_wait_is_short() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let clock = Arc::new(RealClock::start());
+        let target = listener.local_addr().unwrap().to_string();
+        let mut link = TcpLink::connect(&target, clock.clone()).unwrap();
+        let (mut peer, _) = listener.accept().unwrap();
+        let mut bytes = Vec::new();
+        let begun = clock.now();
+        for _ in 0..100 {
+            link.receive(clock.now(), &mut bytes).unwrap();
+            link.check().unwrap();
+        }
+        assert!(clock.now().since(begun) < Duration::from_millis(200), "{:?}", clock.now().since(begun));
+        let until = clock.now() + Duration::from_millis(5);
+        link.receive(until, &mut bytes).unwrap();
+        assert!(clock.now() >= until && bytes.is_empty());
+        peer.write_all(b"abc").unwrap();
+        link.receive(clock.now() + Duration::from_secs(5), &mut bytes).unwrap();
+        assert_eq!(bytes, b"abc");
+        link.send(b"x").unwrap();
+        drop(peer);
+        let lost = (0..100).find_map(|_| link.receive(clock.now() + Duration::from_millis(5), &mut bytes).err());
+        assert!(lost.is_some_and(|error| error.is_lost()));
     }
 }
