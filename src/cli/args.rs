@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::Failure;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 use crate::signal::capture::Columns;
@@ -117,7 +118,8 @@ pub(super) struct Position {
 #[derive(Args)]
 pub(super) struct Read {
     pub(super) device: DeviceKind,
-    /// What to name: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    /// What to name: hiperface field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings; biss 0x66,
+    /// 0x24:0x10 (bank:offset), either with +COUNT behind it.
     pub(super) item: String,
 }
 
@@ -179,9 +181,10 @@ pub(super) struct Consenting {
 #[derive(Args)]
 pub(super) struct Write {
     pub(super) device: DeviceKind,
-    /// What to name: field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings.
+    /// What to name: hiperface field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings; biss
+    /// 0x24:0x10 (bank:offset), 0x24:0x10+COUNT, 0x40 to 0x7F.
     pub(super) item: String,
-    /// A number (decimal or 0x), or hex bytes for a field.
+    /// A number (decimal or 0x), or hex bytes for a field or a run of registers.
     #[arg(allow_hyphen_values = true)]
     pub(super) value: String,
     #[command(flatten)]
@@ -202,6 +205,9 @@ pub(super) struct Do {
     /// synchronise: the encoder is a kit, where its type does not tell.
     #[arg(long)]
     pub(super) kit: bool,
+    /// biss: how long the motor may take to turn as a run needs it; 30 without a terminal, 300 on one.
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
+    pub(super) timeout: Option<u16>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -232,6 +238,29 @@ pub(super) enum Action {
     ClearCounter,
     /// SETTINGS: interface settings until the next restart.
     ConfigureForNow,
+    /// biss: calibrate the singleturn; the motor turns counterclockwise, then clockwise, at 500 ± 2 rpm.
+    Calibrate,
+    /// biss: [save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm.
+    WiegandTest,
+    /// biss: balanced|dynamic.
+    Filter,
+    /// biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value;
+    /// without a value the stored one.
+    Preset,
+    /// biss: back to operation and the password cleared, after a procedure was cut off.
+    LeadBack,
+    /// biss: [calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant.
+    Mounting,
+}
+
+/// The action as it is written.
+pub(super) fn action_name(action: Action) -> String {
+    action.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+/// An action that is for another kind of device.
+pub(super) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
+    Failure::Usage(format!("{} is not an action of {kind} devices; these are {known}", action_name(action)))
 }
 
 #[derive(Args)]

@@ -27,17 +27,23 @@ pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
         return Ok(());
     }
     output.remark(plan.trim_end());
-    if ask("Write? [y/N] ") { Ok(()) } else { Err(not_confirmed()) }
+    if ask("Write? [y/N] ") {
+        return Ok(());
+    }
+    Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))
 }
 
-/// Nobody said yes.
-pub(super) fn not_confirmed() -> Failure {
-    Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()])
+/// Asks for a yes.
+fn ask(question: &str) -> bool {
+    matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 
-/// Asks for a yes. A terminal that cannot be read from gives none.
-pub(super) fn ask(question: &str) -> bool {
+/// Asks somebody who sits there. A terminal that cannot be read from gives no answer.
+pub(super) fn answer(question: &str) -> String {
     say(question);
     let mut answer = String::new();
-    stdin().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "Y" | "yes")
+    match stdin().read_line(&mut answer) {
+        Ok(_) => answer.trim().to_owned(),
+        Err(_) => String::new(),
+    }
 }

@@ -15,7 +15,8 @@ use crate::app::explain;
 use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
 
-fn load(path: &Path) -> Result<Body> {
+/// Reads a profile of any kind.
+pub(super) fn load(path: &Path) -> Result<Body> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
     let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
     Ok(document.body)
@@ -155,9 +156,21 @@ pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Resu
     Ok(Done::Well)
 }
 
-/// Prints what writing an item has done; `plan` is what was carried out.
+/// Prints what writing an item has done; `operations` are what was carried out.
 pub(super) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &Spent) -> Result {
-    let json = json!({
+    show_done(output, item, operations, spent, &[], "")
+}
+
+/// Prints what an action has done, and what came of it.
+pub(super) fn show_done(
+    output: &Output,
+    item: &str,
+    operations: &[Json],
+    spent: &Spent,
+    results: &[Json],
+    said: &str,
+) -> Result {
+    let mut json = json!({
         "item": item,
         "operations": operations,
         "written": spent.written,
@@ -165,13 +178,16 @@ pub(super) fn show_changed(output: &Output, item: &str, operations: &[Json], spe
         "write_cycles": spent.write_cycles,
         "backup": spent.backup,
     });
+    if let (false, Some(object)) = (results.is_empty(), json.as_object_mut()) {
+        object.insert("results".to_owned(), json!(results));
+    }
     let text = match &spent.backup {
         None => "nothing to write: it is so already\n".to_owned(),
         Some(backup) => {
             let mut lines = Lines::default();
             lines.add("written", spent.written).add("verified", spent.verified);
             lines.add("write cycles", spent.write_cycles).add("backup", backup.display());
-            lines.text()
+            format!("{said}{}", lines.text())
         }
     };
     output.show_written(&json, &text)?;

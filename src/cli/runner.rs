@@ -19,7 +19,7 @@ use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// What the command line has to know of a device that it runs jobs on.
-pub(super) trait Runs: Device<Doing: std::fmt::Display> {
+pub(super) trait Runs: Device {
     /// What is kept of a session when its thread has it.
     type Kept;
     /// It asks for access codes.
@@ -41,7 +41,10 @@ pub(super) trait Runs: Device<Doing: std::fmt::Display> {
     /// Says at once what the device said on the way.
     fn say(remark: &Self::Remark);
 
-    /// What somebody at a terminal should know of a step; told when it changes.
+    /// A step, beside the bar at a terminal.
+    fn doing(doing: &Self::Doing) -> String;
+
+    /// What somebody at the terminal should know of a step; told when it changes.
     fn announce(_doing: &Self::Doing) -> Option<String> {
         None
     }
@@ -130,7 +133,7 @@ impl<D: Runs> Runner<D> {
                         bar.say(words);
                     }
                     announced = words;
-                    bar.show(progress.done, progress.total, &progress.what);
+                    bar.show(progress.done, progress.total, &D::doing(&progress.what));
                 }
                 Event::Remark(remark) => {
                     D::say(&remark);
@@ -173,12 +176,23 @@ impl<D: Runs> Runner<D> {
 impl<D: Runs> Ended<D> {
     pub(super) fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => Failure::Failed(D::failure(&error).iter().map(Text::terminal).collect()),
+            Ended::Job(error) => Failure::Failed(lines(D::failure(&error).iter().map(Text::terminal).collect())),
             Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
     }
+}
+
+/// At most four lines: of more sentences all but the first and the last share one.
+fn lines(mut sentences: Vec<String>) -> Vec<String> {
+    if sentences.len() > 4 {
+        let last = sentences.split_off(sentences.len() - 1);
+        let middle = sentences.split_off(1).join(" ");
+        sentences.push(middle);
+        sentences.extend(last);
+    }
+    sentences
 }
 
 /// A failure with one text.

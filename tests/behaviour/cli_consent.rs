@@ -1,26 +1,8 @@
 //! Consent, and what needs more than that: values of the mounting.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
-use std::time::Instant;
-
 use serde_json::json;
 
-use super::support::{Bench, Ran, ended, frame, python};
-
-/// Runs its arguments on a terminal of their own; what is typed comes from stdin.
-const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
-
-/// The program on a terminal on which somebody types an answer.
-fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
-    let program = bench.program(arguments);
-    let mut command = Command::new("python3");
-    command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());
-    command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    child.stdin.as_mut().unwrap().write_all(answer.as_bytes()).unwrap();
-    ended(child, Instant::now())
-}
+use super::support::{Bench, asked, frame, python};
 
 #[test]
 fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {

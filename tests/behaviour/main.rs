@@ -4,10 +4,13 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss_guided;
 mod biss_offline;
 mod biss_profile;
 mod biss_reading;
 mod biss_simulate;
+mod biss_tour;
+mod biss_writing;
 mod cli_actions;
 mod cli_analyse;
 mod cli_bad_input;

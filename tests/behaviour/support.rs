@@ -1,7 +1,7 @@
 //! A bench: a folder of its own, the built program, and foreign encoders and hosts (`tests/foreign`).
 
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -314,6 +314,20 @@ impl Drop for Simulated {
             let _ = child.wait();
         }
     }
+}
+
+/// Runs its arguments on a terminal of their own; what is typed comes from stdin.
+const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
+
+/// The program on a terminal on which somebody types an answer.
+pub(crate) fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
+    let program = bench.program(arguments);
+    let mut command = Command::new("python3");
+    command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());
+    command.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.as_mut().unwrap().write_all(answer.as_bytes()).unwrap();
+    ended(child, Instant::now())
 }
 
 /// Says that a test is skipped. Where everything has to be there (`ENCODER_STUDIO_NO_SKIP`), it fails instead.

@@ -31,11 +31,14 @@ def add_options(add):
     add("--position", type=number, default=0x1234 << 17 | 0x18000)
     add("--rpm", type=float, default=0.0, help="above 0 clockwise: the position rises")
     add("--reverse", action="store_true", help="the motor turns round when a procedure waits for the other direction")
+    add("--rests", type=float, default=0.0, help="seconds from the first access on in which the motor stands still")
+    add("--stops", action="store_true", help="the motor stops when a Wiegand test is complete")
     add("--data", type=json.loads, default={}, help='content of the data areas: {"0x24:0x10": "AABB"}')
     add("--preset", type=bytes.fromhex, default=bytes(6), help="stored preset value, its six registers")
     add("--calibration", type=float, default=0.5, help="seconds of a run, in which the encoder is silent")
     add("--calibration-fails", type=number, help="status with which the second run ends")
     add("--revolutions", type=float, default=3.0, help="of the Wiegand test, each way")
+    add("--left-in", type=number, default=0, help="device mode in which another host has left it, with the password set")
     add("--silent-after", type=number, help="accesses after which nothing is answered")
 
 
@@ -43,7 +46,8 @@ class Kit:
     def __init__(self, options):
         self.options = options
         self.began = time.monotonic()
-        self.rpm, self.offset = options.rpm, options.position
+        self.rpm, self.offset = 0.0 if options.rests else options.rpm, options.position
+        self.rests_until = None if options.rests else 0.0
         self.ready = 0.0
         self.memory = {bank: bytearray(BANK) for bank in [*MOTOR, *OEM]}
         for place, content in options.data.items():
@@ -55,6 +59,7 @@ class Kit:
         self.saved_pulses = bytes(4)
         self.accesses = 0
         self.start()
+        self.mode, self.protection = options.left_in, PASSWORD if options.left_in else 0
 
     def start(self):
         self.bank = self.mode = self.protection = 0
@@ -97,6 +102,11 @@ class Kit:
         return not silent and time.monotonic() >= self.ready and not (registers and calibrates)
 
     def settle(self):
+        if self.rests_until is None:
+            self.rests_until = time.monotonic() + self.options.rests
+        if self.rests_until and time.monotonic() > self.rests_until:
+            self.rests_until = 0.0
+            self.turn(self.options.rpm)
         if self.run is None or time.monotonic() < self.run[0]:
             return
         _, what, status = self.run
@@ -107,6 +117,8 @@ class Kit:
             self.pulses[at:at + 2] = bytes([63, 58])
         if (what, status) in (("calibration", 0x02), ("wiegand", 0x03)) and self.options.reverse:
             self.turn(-self.rpm)
+        if status == 0x06 and self.options.stops:
+            self.turn(0.0)
 
     # Registers: place is (bank or None, address)
 

@@ -1,22 +1,32 @@
 //! The commands for BiSS encoders.
 
+mod act;
 mod decode;
 mod inspect;
+mod plan;
 mod profiles;
 mod run;
 mod words;
+mod write;
 
-use super::args::{Common, Position, Save, Simulate};
+use std::time::Duration;
+
+use super::args::{Common, Do, Position, Restore, Save, Simulate, Write};
 use super::kind::Kind;
 use super::output::Output;
+use super::runner::failed;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
+use crate::app::explain;
 use crate::profile::biss::{ItemError, ProfileIdentity, RegisterRange, compare};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::protocol::biss::KIND;
 use crate::protocol::ubicom;
 use crate::sim::{ConfigError, biss, bridge};
 use crate::units::{CharacterFormat, Moment};
+
+/// How long is waited for a motor, or a shaft at rest, where nobody can be told.
+const PATIENCE: Duration = Duration::from_secs(30);
 
 /// BiSS encoders.
 pub(super) struct Biss;
@@ -46,6 +56,14 @@ impl Kind for Biss {
         profiles::save(common, output, save)
     }
 
+    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
+        write::write(common, output, write)
+    }
+
+    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
+        act::act(common, output, act)
+    }
+
     fn decode(&self, output: &Output, words: &[String]) -> Result {
         decode::decode(output, words)
     }
@@ -65,6 +83,11 @@ impl Kind for Biss {
             let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
             format!("The profile is of {profile}, the encoder is {device}.")
         })
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let profile = profile.into_biss().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+        profiles::restore(common, output, restore, profile)
     }
 
     fn simulated(&self, arguments: &Simulate) -> Result<Box<dyn Simulated>> {

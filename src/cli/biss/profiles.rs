@@ -2,15 +2,17 @@
 
 use serde_json::json;
 
+use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::cli::args::{Common, Save};
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::keep;
+use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::profile::Body;
-use crate::profile::biss::BissProfile;
-use crate::worker::biss::{BissJob, BissOutput};
+use crate::profile::biss::{BissProfile, RestoreOptions};
+use crate::worker::biss::{BissJob, BissOutput, Change};
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common)?;
@@ -31,4 +33,28 @@ fn saved(common: &Common) -> Result<BissProfile> {
         BissOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
     }
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: BissProfile) -> Result {
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let options =
+        RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+    for item in &prepared.missing {
+        output.remark(&format!("{item} is left alone: the encoder does not have it"));
+    }
+    for range in &prepared.mounting_left {
+        output.remark(&format!(
+            "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone() };
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let (spent, _) = commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE)?;
+    show_restored(output, &spent, &left)
 }

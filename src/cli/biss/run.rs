@@ -5,11 +5,12 @@ use crate::cli::args::Code;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
+use crate::device::biss::procedure::{Detail, News};
 use crate::device::biss::{Identity, Way};
 use crate::link::LinkUrl;
 use crate::profile::biss::RegisterRange;
 use crate::store::Store;
-use crate::worker::biss::{Biss, BissJob, BissOutput, JobError, Remark, open};
+use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, Remark, open};
 use crate::worker::{OpenError, Session};
 
 /// A session with a BiSS encoder on its thread.
@@ -37,8 +38,40 @@ impl Runs for Biss {
         }
     }
 
+    fn doing(doing: &Doing) -> String {
+        match doing {
+            Doing::Operation { news, .. } => detail(news),
+            other => other.to_string(),
+        }
+    }
+
+    /// Every step of an operation, and what a person is to do.
+    fn announce(doing: &Doing) -> Option<String> {
+        match doing {
+            Doing::Operation { item, news } => Some(format!("{item}: {}", explain::biss::step(news.step).terminal())),
+            Doing::Register(_) | Doing::Bank(_) => None,
+        }
+    }
+
     fn failure(error: &JobError) -> Vec<Text> {
         explain::biss::job(error)
+    }
+}
+
+/// How far a step is: what stands against a start, how long it lasts.
+fn detail(news: &News) -> String {
+    match &news.detail {
+        Detail::Begins => String::new(),
+        Detail::Count { done, total } => format!("{done} of {total}"),
+        Detail::Lasts { elapsed, expected: Some(expected) } => {
+            format!("{} of about {} s", elapsed.as_secs(), expected.as_secs())
+        }
+        Detail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
+        Detail::Demand(demand) => {
+            let against = demand.blockers.iter().map(|blocker| explain::biss::blocker(*blocker).terminal());
+            let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
+            turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")
+        }
     }
 }
 

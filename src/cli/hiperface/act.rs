@@ -5,7 +5,7 @@ use serde_json::json;
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
 use crate::app::explain::hiperface::{finding, step, verdict};
-use crate::cli::args::{Action, Common, Do, parse_code};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, parse_code};
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
@@ -14,6 +14,9 @@ use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::check::{Line, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
+
+const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
+                       delete-field, change-code, increment-counter, clear-counter and configure-for-now";
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
@@ -45,9 +48,17 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (Action::ResizeField, _) => return Err(usage("NUMBER SIZE")),
         (Action::LockField | Action::UnlockField | Action::DeleteField, _) => return Err(usage("one field number")),
         (Action::ChangeCode, _) => return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX")),
+        (
+            other @ (Action::Calibrate
+            | Action::WiegandTest
+            | Action::Filter
+            | Action::Preset
+            | Action::LeadBack
+            | Action::Mounting),
+            _,
+        ) => return Err(no_action(other, "hiperface", ACTIONS)),
     };
-    let name = clap::ValueEnum::to_possible_value(&act.action).map(|value| value.get_name().to_owned());
-    change_and_show(common, output, change, &act.consent, &name.unwrap_or_default())
+    change_and_show(common, output, change, &act.consent, &action_name(act.action))
 }
 
 fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {

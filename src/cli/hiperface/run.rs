@@ -8,7 +8,7 @@ use crate::link::LinkUrl;
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::hiperface::{Hiperface, JobError, Remark, open};
+use crate::worker::hiperface::{Doing, Hiperface, JobError, Remark, open};
 use crate::worker::{OpenError, Session};
 
 /// A session with a HIPERFACE encoder on its thread.
@@ -36,6 +36,10 @@ impl Runs for Hiperface {
             let kind = if code.is_warning() { "warning" } else { "error" };
             say(&format!("encoder {kind}: {code}\n"));
         }
+    }
+
+    fn doing(doing: &Doing) -> String {
+        doing.to_string()
     }
 
     fn failure(error: &JobError) -> Vec<Text> {

@@ -92,7 +92,8 @@ pub fn plan(error: &PlanError) -> Text {
         }
         PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("{bank:02X}h")),
         PlanError::PresetTooWide { value, bits, .. } => {
-            Text::new("biss_plan.too_wide").with("value", value).with("bits", bits)
+            let last = (1u64 << bits.min(&63)) - 1;
+            Text::new("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
         }
         PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("{code:02X}h")),
         PlanError::NoProcedure { kind, description } => {

@@ -1,0 +1,274 @@
+//! Writing into a kit encoder that is not our program: over its configuration pin and over an adapter.
+
+use serde_json::{Value, json};
+
+use super::biss_profile::PROFILE;
+use super::support::{Bench, Foreign, Ran};
+
+/// What the profile says of bank 24h and 25h, and its preset value of 270°.
+const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
+const PRESET: &str = "008001000000";
+
+/// The same encoder over either way.
+fn both(bench: &Bench, arguments: &[&str]) -> Option<[Foreign; 2]> {
+    Some([bench.kit(arguments)?, bench.adapter(arguments)?])
+}
+
+fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
+    bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
+}
+
+/// Registers written since the last time, without bank selection.
+fn written(encoder: &Foreign) -> Vec<String> {
+    encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
+}
+
+/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is not
+/// left set.
+fn saved(registers: &[&str]) -> Vec<String> {
+    let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
+    [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
+}
+
+#[test]
+fn three_bytes_of_a_bank_are_three_registers_and_one_save() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET]) else { return };
+    let wanted = PROFILE.replace("[\"00 01 02", "[\"00 A1 A2").replace("0E 0F\"", "0E EE\"");
+    let file = bench.write("wanted.ron", wanted);
+    for encoder in &encoders {
+        let dry = ask(&bench, encoder, &["restore", &file, "--dry-run"]).json();
+        assert_eq!(written(encoder), [""; 0]);
+        let expected = json!([
+            {"item": "0x24:0x01+2", "old": "0102", "new": "A1A2", "write_cycles": 0},
+            {"item": "0x24:0x0F", "old": "0F", "new": "EE", "write_cycles": 0},
+            {"item": "OEM data", "old": null, "new": "saved", "write_cycles": 1},
+        ]);
+        assert_eq!((&dry["operations"], &dry["write_cycles"]), (&expected, &json!(1)), "{dry}");
+        let told = ask(&bench, encoder, &["restore", &file, "--yes"]).json();
+        assert_eq!((&told["written"], &told["verified"], &told["write_cycles"]), (&json!(3), &json!(3), &json!(1)));
+        // All other registers of the data, filter and preset value.
+        assert!(told["unchanged"].as_u64() >= Some(4096 - 3), "{told}");
+        assert_eq!(written(encoder), saved(&["0x24:0x01 A1", "0x24:0x02 A2", "0x24:0x0F EE"]));
+        assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
+
+        // The before-image is a profile, and restoring it brings back what was there.
+        let backup = told["backup"].as_str().unwrap();
+        let undone = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
+        assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(3), &json!(1)));
+        let there = ask(&bench, encoder, &["read", "biss", "0x24:0x00+16"]).json();
+        assert_eq!(there["value"], json!("000102030405060708090A0B0C0D0E0F"));
+        // The same once more: nothing differs, nothing is sent, nothing is kept.
+        written(encoder);
+        let again = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
+        assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
+        assert_eq!(written(encoder), [""; 0]);
+    }
+}
+
+#[test]
+fn write_stores_exactly_these_bytes() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &["--data", AS_PROFILE]) else { return };
+    for encoder in &encoders {
+        let told = ask(&bench, encoder, &["write", "biss", "0x25:0x10", "0x5A", "--yes"]).json();
+        assert_eq!(
+            (&told["item"], &told["written"], &told["write_cycles"]),
+            (&json!("0x25:0x10"), &json!(1), &json!(1))
+        );
+        assert_eq!(written(encoder), saved(&["0x25:0x10 5A"]));
+        // Of a run only what differs.
+        let told = ask(&bench, encoder, &["write", "biss", "0x25:0x00+4", "A1 00 C3 01", "--yes"]).json();
+        assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
+        assert_eq!(written(encoder), saved(&["0x25:0x01 00", "0x25:0x03 01"]));
+        let told = ask(&bench, encoder, &["write", "biss", "0x25:0x10", "90", "--yes"]).json();
+        assert_eq!((&told["written"], &told["backup"]), (&json!(0), &Value::Null), "5Ah is there already");
+        assert_eq!(written(encoder), [""; 0]);
+        assert_eq!(ask(&bench, encoder, &["read", "biss", "0x25:0x00+4"]).json()["value"], json!("A100C301"));
+        assert_eq!(ask(&bench, encoder, &["read", "biss", "0x6A"]).json()["value"], json!(0), "operation");
+        // Motor data is opened with another command.
+        ask(&bench, encoder, &["write", "biss", "0x04:0x00", "1", "--yes"]).json();
+        assert!(written(encoder).contains(&"0x00:0x1A 01".to_owned()));
+    }
+}
+
+/// A restore stores the preset value and the filter, and carries no preset out (reference 5.4 and 5.5).
+#[test]
+fn filter_and_preset_value_are_restored_and_no_preset_is_carried_out() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--filter", "4"]) else { return };
+    let file = bench.write("p.ron", PROFILE);
+    for encoder in &encoders {
+        let told = ask(&bench, encoder, &["restore", &file, "--yes"]).json();
+        assert_eq!((&told["written"], &told["verified"], &told["write_cycles"]), (&json!(2), &json!(2), &json!(2)));
+        let lines = written(encoder);
+        assert!(lines.contains(&"0x00:0x24 03".to_owned()) && lines.contains(&"0x00:0x24 02".to_owned()), "{lines:?}");
+        assert!(lines.contains(&"0x01:0x00 03".to_owned()), "stored: {lines:?}");
+        let fires = ["0x01:0x00 01", "0x01:0x00 04", "0x01:0x00 05"];
+        assert!(lines.iter().all(|line| !fires.contains(&line.as_str())), "carried out: {lines:?}");
+        assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
+        let position = ask(&bench, encoder, &["position", "biss"]).json();
+        assert_eq!((&position["turns"], &position["steps"]), (&json!(0x1234), &json!(98_304)), "where it was");
+        let password = ask(&bench, encoder, &["read", "biss", "0x6A+2"]).json();
+        assert_eq!(password["value"], json!("0000"), "operation, and no password");
+    }
+}
+
+#[test]
+fn the_mounting_of_another_encoder_is_left_alone() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&["--serial-number", "7", "--data", AS_PROFILE]) else { return };
+    let file = bench.write("p.ron", PROFILE);
+    for consent in ["--yes", "--dry-run"] {
+        let refused = ask(&bench, &encoder, &["restore", &file, consent]);
+        refused.fails(1, &["12345678", "7", "--allow-other-device"]);
+    }
+    assert_eq!(written(&encoder), [""; 0]);
+    let left = ask(&bench, &encoder, &["restore", &file, "--yes", "--allow-other-device"]);
+    assert!(left.err.contains("0x01:0x02+6") && left.err.contains("--with-mounting"), "{left:?}");
+    assert_eq!(left.json()["written"], json!(0));
+    let with = ["restore", &file, "--yes", "--allow-other-device", "--with-mounting"];
+    assert_eq!(ask(&bench, &encoder, &with).json()["written"], json!(1));
+    let value = ask(&bench, &encoder, &["read", "biss", "0x01:0x02+6"]).json();
+    assert_eq!(value["value"], json!(PRESET));
+}
+
+#[test]
+fn an_encoder_of_another_kind_is_refused() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&["--device-id", "010168110002"]) else { return };
+    let file = bench.write("p.ron", PROFILE);
+    ask(&bench, &encoder, &["restore", &file, "--yes"]).fails(1, &["01 01 68 11 00 01", "01 01 68 11 00 02"]);
+    assert_eq!(written(&encoder), [""; 0]);
+    let other = bench.file("hiperface.ron");
+    assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
+    // The kind of device is in the file: a HIPERFACE encoder is looked for, and does not answer.
+    ask(&bench, &encoder, &["restore", &other, "--dry-run"]).fails(1, &[]);
+    assert_eq!(encoder.requests(), [""; 0]);
+}
+
+#[test]
+fn without_consent_nothing_is_touched() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&[]) else { return };
+    let file = bench.write("p.ron", PROFILE);
+    let commands: [&[&str]; 7] = [
+        &["write", "biss", "0x24:0x00", "1"],
+        &["restore", &file],
+        &["do", "biss", "calibrate"],
+        &["do", "biss", "wiegand-test", "save"],
+        &["do", "biss", "filter", "dynamic"],
+        &["do", "biss", "preset"],
+        &["do", "biss", "mounting"],
+    ];
+    for command in commands {
+        ask(&bench, &encoder, command).fails(2, &["--yes"]);
+    }
+    assert_eq!(encoder.requests(), [""; 0]);
+}
+
+#[test]
+fn what_cannot_be_written_is_told() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&[]) else { return };
+    let cases: [(i32, &[&str], &[&str]); 16] = [
+        (1, &["write", "biss", "0x24:0x00", "256"], &["0 to 255"]),
+        (1, &["write", "biss", "0x24:0x00", "-1"], &["0 to 255"]),
+        (1, &["write", "biss", "0x66", "1"], &["0x66"]),
+        (1, &["write", "biss", "0x02:0x00", "1"], &["0x02:0x00"]),
+        (1, &["write", "biss", "0x6A", "4"], &["0x6A"]),
+        (1, &["write", "biss", "0x00:0x1A", "1"], &["0x00:0x1A"]),
+        (2, &["write", "biss", "0x24:0x40", "1"], &["0x24:0x40"]),
+        (2, &["write", "biss", "colour", "1"], &["colour", "0x24:0x10"]),
+        (2, &["write", "biss", "0x24:0x00", "blue"], &["blue", "number"]),
+        (2, &["write", "biss", "0x24:0x00+2", "AA"], &["2 bytes", "1"]),
+        (2, &["write", "biss", "0x24:0x00+2", "XX YY"], &["hex"]),
+        (2, &["do", "biss", "filter", "fast"], &["balanced or dynamic"]),
+        (2, &["do", "biss", "create-field", "1", "16"], &["create-field", "calibrate"]),
+        (1, &["do", "biss", "preset", "131072"], &["131071"]),
+        (1, &["do", "biss", "preset", "0", "-1"], &["0 to"]),
+        (2, &["do", "biss", "preset", "north"], &["north"]),
+    ];
+    for (status, command, words) in cases {
+        ask(&bench, &encoder, &[command, &["--yes"]].concat()).fails(status, words);
+    }
+    assert_eq!(written(&encoder), [""; 0]);
+    bench.run(&["do", "hiperface", "calibrate", "--link", "sim:", "--yes"]).fails(2, &["calibrate", "set-position"]);
+    bench.run(&["do", "biss", "calibrate", "--link", "sim:", "--yes", "--timeout", "0"]).fails(2, &["timeout"]);
+}
+
+#[test]
+fn data_is_not_written_while_the_shaft_turns() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&["--rpm", "30"]) else { return };
+    ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["rest"]);
+    assert_eq!(written(&encoder), [""; 0]);
+}
+
+/// The reference's filter procedure, and a preset of all, of the singleturn, of the multiturn.
+#[test]
+fn filter_and_preset_are_actions() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &[]) else { return };
+    for encoder in &encoders {
+        let told = ask(&bench, encoder, &["do", "biss", "filter", "dynamic", "--yes"]).json();
+        assert_eq!((&told["write_cycles"], &told["results"][0]["filter"]), (&json!(1), &json!("dynamic")), "{told}");
+        assert_eq!(ask(&bench, encoder, &["read", "biss", "0x6E"]).json()["value"], json!(4));
+
+        let place = |encoder: &Foreign| {
+            let told = ask(&bench, encoder, &["position", "biss"]).json();
+            (told["turns"].as_u64().unwrap(), told["steps"].as_u64().unwrap())
+        };
+        let preset = |words: &[&str]| {
+            let told = ask(&bench, encoder, &[&["do", "biss", "preset"], words, &["--yes"]].concat()).json();
+            told["write_cycles"].as_u64().unwrap()
+        };
+        // 270° and turn 5: stored, then carried out.
+        assert_eq!(preset(&["98304", "5"]), 2);
+        assert_eq!(place(encoder), (5, 98_304));
+        // Stored already, and the shaft is elsewhere by then: nothing to store.
+        assert_eq!(preset(&[]), 1);
+        assert_eq!(preset(&["1000", "singleturn"]), 2);
+        assert_eq!(place(encoder), (5, 1000), "the turn stays");
+        assert_eq!(preset(&["7", "9", "multiturn"]), 2);
+        assert_eq!(place(encoder), (9, 1000), "the place within the turn stays");
+        assert_eq!(preset(&["0"]), 2);
+        assert_eq!(place(encoder), (0, 0));
+    }
+}
+
+/// Once in the reading and in three places of the writing.
+#[test]
+fn a_link_that_is_cut_in_the_middle_is_told_with_the_backup() {
+    let bench = Bench::new();
+    let file = bench.write("p.ron", PROFILE);
+    let Some(whole) = bench.kit(&[]) else { return };
+    let restore = ["restore", &file, "--yes"];
+    assert_eq!(ask(&bench, &whole, &restore).status, Some(0));
+    let accesses = whole.requests();
+    let begins = accesses.iter().position(|line| line == "W 0x6B 2A").unwrap();
+    let third = (accesses.len() - begins) / 3;
+    for after in [begins / 2, begins + 1, begins + third, begins + 2 * third] {
+        let Some(encoder) = bench.kit(&["--silent-after", &after.to_string()]) else { return };
+        let ran = ask(&bench, &encoder, &restore);
+        assert_eq!((ran.status, ran.out.as_str()), (Some(1), ""), "cut after {after}: {ran:?}");
+        assert!(ran.took.as_secs() < 15, "{ran:?}");
+        let backup = ran.err.contains("backups/biss/12345678");
+        assert_eq!(backup, after > begins, "cut after {after}, writing begins after {begins}: {ran:?}");
+    }
+}
+
+/// Reference 5: a mode that another host has left, and the password that it has left set.
+#[test]
+fn an_encoder_that_was_left_in_a_mode_is_led_back() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &["--left-in", "4"]) else { return };
+    for encoder in &encoders {
+        assert_eq!(ask(&bench, encoder, &["status", "biss"]).json()["mode"], json!(4));
+        ask(&bench, encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["lead-back"]);
+        let told = ask(&bench, encoder, &["do", "biss", "lead-back"]).json();
+        assert_eq!(told["mode"], json!(4));
+        assert_eq!(ask(&bench, encoder, &["read", "biss", "0x6A+2"]).json()["value"], json!("0000"));
+        assert_eq!(ask(&bench, encoder, &["do", "biss", "lead-back"]).json()["mode"], json!(0), "again");
+    }
+}
