@@ -24,9 +24,6 @@ fn links_fill_the_form_and_come_out_of_it_again() {
         "tcp:[::1]:4001?baud=19200",
         "replay:captures/monday.trace",
         "replay:monday.trace?periods=16",
-        // Kinds of link without entries stay as they are.
-        "bridge:/dev/ttyACM0?timeout=18&colour=green",
-        "bridge:tcp:[::1]:4001",
         // What this program does not know is for whoever opens the link to refuse.
         "serial:COM3?colour=green",
     ];
