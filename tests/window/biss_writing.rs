@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::biss::{Action as Biss, Encoder, End, ReviewState};
+use encoder_studio::app::biss::{Action as Biss, Encoder, End, Reached, ReviewState};
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
 use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
 use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
@@ -161,10 +161,15 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     desk.until("it is read", is_ready);
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
-    let End::Failed { may_lead_back, .. } = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else {
-        panic!()
-    };
+    let guide = encoder(&desk).guide.as_ref().unwrap();
+    let End::Failed { may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
     assert!(!may_lead_back, "it is in operation");
+    let reached: Vec<Reached> = guide.steps().iter().map(|own| own.reached).collect();
+    let cut = reached.iter().position(|own| *own == Reached::Failed).unwrap();
+    assert!(reached[..cut].iter().all(|own| *own == Reached::Done), "{reached:?}");
+    let (back, between) = reached[cut + 1..].split_last().unwrap();
+    assert_eq!(*back, Reached::Done, "it was led back");
+    assert!(!between.is_empty() && between.iter().all(|own| *own == Reached::Ahead), "{reached:?}");
 }
 
 #[test]

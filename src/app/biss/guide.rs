@@ -9,6 +9,8 @@ use crate::profile::biss::Op;
 pub struct Guide {
     ops: Vec<Op>,
     news: Option<News>,
+    /// The step that it was at when it was cut off: what is told last is the way back from there.
+    pub(super) cut: Option<Step>,
     pub(super) seat: Seat,
     /// How it ended; `None`: it goes on.
     pub end: Option<End>,
@@ -60,7 +62,7 @@ pub struct GuideStep<'a> {
 
 impl Guide {
     pub(super) fn new(ops: Vec<Op>) -> Self {
-        Guide { ops, news: None, seat: Seat::default(), end: None }
+        Guide { ops, news: None, cut: None, seat: Seat::default(), end: None }
     }
 
     /// It goes on.
@@ -99,7 +101,7 @@ impl Guide {
 
     /// All steps, in their order.
     pub fn steps(&self) -> Vec<GuideStep<'_>> {
-        let at = self.news.as_ref().map(|news| (news.op, news.step));
+        let at = self.news.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
         let mut steps = Vec::new();
         let mut passed = true;
         for (number, op) in self.ops.iter().enumerate() {
@@ -109,6 +111,7 @@ impl Guide {
                 let reached = match &self.end {
                     Some(End::Done(_)) => Reached::Done,
                     Some(End::Failed { .. }) if is_own => Reached::Failed,
+                    Some(End::Failed { .. }) if self.was_led_back(number, step) => Reached::Done,
                     _ if is_own && self.demand().is_some() => Reached::Waits,
                     _ if is_own => Reached::Runs,
                     _ if passed => Reached::Done,
@@ -118,5 +121,45 @@ impl Guide {
             }
         }
         steps
+    }
+
+    /// This is the way back from where it was cut off, and it was gone to its end.
+    fn was_led_back(&self, op: usize, step: Step) -> bool {
+        let told = self.news.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
+        let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
+        step == Step::LeadBack && told && in_operation
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::biss::procedure::Run;
+    use crate::protocol::biss::DeviceMode;
+
+    fn reached(told: &[Step], cut: Option<Step>, may_lead_back: bool) -> Vec<Reached> {
+        let mut guide = Guide::new(vec![Op::Calibrate]);
+        told.iter().for_each(|step| guide.tell(News { op: 0, step: *step, detail: Detail::Begins }));
+        guide.cut = cut;
+        guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back });
+        guide.steps().iter().map(|own| own.reached).collect()
+    }
+
+    #[test]
+    fn a_procedure_that_was_cut_off_tells_where_and_what_did_not_run() {
+        use Reached::{Ahead, Done, Failed};
+        let first = Run::CalibrationCounterclockwise;
+        let (turn, run) = (Step::Await(Task::Turn(first)), Step::Run(first));
+        let told = [Step::Conditions, turn, Step::Enter(DeviceMode::CALIBRATION), run];
+        let led = [&told[..], &[Step::LeadBack]].concat();
+        assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
+        assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        // The link is gone: nothing is told of a way back.
+        assert_eq!(reached(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        // It has never left operation.
+        assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
+        // The way back itself.
+        assert_eq!(reached(&led, Some(Step::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
+        assert_eq!(reached(&[], None, false), [Ahead; 7]);
     }
 }

@@ -172,6 +172,7 @@ impl Encoder {
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
             let (before, may_lead_back) = match error {
                 JobError::Interrupted { interrupted, .. } => {
+                    guide.cut = Some(interrupted.at);
                     (interrupted.done.outcomes.clone(), interrupted.left != Left::Operation)
                 }
                 JobError::Device(Error::NotInOperation { .. }) => (Vec::new(), true),
