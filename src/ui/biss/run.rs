@@ -7,7 +7,7 @@ use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
 use crate::app::{Action, Text, explain::biss as says};
 use crate::device::biss::procedure::{Answer, Demand, Detail, Outcome, Task};
 use crate::profile::biss::Op;
-use crate::ui::controls::{button, card, enabled_button, paragraph};
+use crate::ui::controls::{button, card, enabled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Skin, icons};
 
@@ -144,8 +144,9 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
         };
         if let End::Failed { texts, .. } = end {
             for text in texts {
+                let (icon, ink) = severity(skin, says::weight(text));
                 ui.horizontal_top(|ui| {
-                    ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
+                    ui.label(RichText::new(icon).color(ink));
                     paragraph(ui, skin.words(text));
                 });
             }

@@ -88,6 +88,8 @@ pub enum ChangeKind {
     Bytes,
     /// Procedures led by a person: those that are not done are begun again.
     Guided,
+    /// The same with a calibration among them: no backup holds its table.
+    Calibration,
     /// One thing, which is done or not.
     Single,
 }
@@ -98,6 +100,7 @@ impl Change {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
             Change::Write(_) => ChangeKind::Bytes,
+            Change::Guided { run, .. } if run.calibrate => ChangeKind::Calibration,
             Change::Guided { .. } => ChangeKind::Guided,
             Change::SelectFilter(_) | Change::Preset { .. } => ChangeKind::Single,
         }

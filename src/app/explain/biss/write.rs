@@ -5,10 +5,10 @@ use std::path::Path;
 
 use super::encoder;
 use super::guide::{blocker, mode, step, task};
-use crate::app::Text;
 use crate::app::biss::words::filter;
 use crate::app::explain::plain;
 use crate::app::review::OpWords;
+use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::device::biss::procedure::{Activity, Failure, Run, Standing};
 use crate::device::biss::write::{Interrupted, Left, Written};
@@ -144,6 +144,8 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     });
     // An operation that may have been carried out counts as a write cycle, where it costs one.
     let id = match kind {
+        // The table may be lost without a write, and no backup holds it.
+        ChangeKind::Calibration => "write.backup_calibration",
         _ if done.write_cycles == 0 && done.written == 0 => "write.untouched",
         ChangeKind::Restore => "write.backup",
         ChangeKind::Bytes => "write.backup_bytes",
@@ -151,6 +153,20 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     };
     texts.push(Text::new(id).with("backup", backup.display()));
     texts
+}
+
+/// How much one of the sentences about a write that was cut off matters.
+pub fn weight(text: &Text) -> Severity {
+    match text.id() {
+        "biss_left.operation" => Severity::Good,
+        "write.backup"
+        | "write.backup_bytes"
+        | "write.backup_single"
+        | "write.backup_calibration"
+        | "write.untouched" => Severity::Note,
+        "write.cancelled" => Severity::Warning,
+        _ => Severity::Error,
+    }
 }
 
 /// In which state an encoder was left that could not be led back.
