@@ -9,7 +9,7 @@ use egui::{RichText, Ui};
 use super::nothing;
 use crate::app::hiperface::{self, Action as Hiperface, Encoder};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Desk, Studio, Text, Wish};
+use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
 use crate::device::hiperface::Watch;
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::{Skin, Views, icons, plot};
@@ -25,15 +25,23 @@ const USUAL: u64 = 50_000;
 /// Height in points below which the numbers beside the position stand in one line.
 const LOW: f32 = 460.0;
 
+/// Seconds after which somebody notices that the position stays as it is.
+const NOTICED: f32 = 0.4;
+
 /// Draws the panel.
 pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let Some(device) = studio.shown() else {
         nothing(ui, skin, &skin.say("live.nothing"));
         return;
     };
+    let paused = is_paused(ui, device);
+    let ink = if device.is_polling() && !paused { skin.palette.text } else { skin.palette.muted };
     match device {
-        AnyDevice::Hiperface(encoder) => value(ui, skin, encoder),
-        AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder),
+        AnyDevice::Hiperface(encoder) => value(ui, skin, encoder, ink),
+        AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder, ink),
+    }
+    if paused {
+        ui.label(skin.caption(skin.say("live.paused_by_job")));
     }
     ui.add_space(skin.space.inside);
     controls(ui, skin, device, views, actions);
@@ -41,6 +49,15 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     if !views.plot.is_large() {
         plot_ui(ui, skin, device, views, actions);
     }
+}
+
+/// A job keeps the position from being read. One that is over at once does not count: the number would only flicker.
+fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
+    let waits = device.is_polling() && device.is_busy();
+    let id = egui::Id::unique(("live.paused", device.id()));
+    // Also where nothing waits: the next job begins anew.
+    let share = ui.ctx().animate_bool_with_time(id, waits, if waits { NOTICED } else { 0.0 });
+    waits && share >= 1.0
 }
 
 /// What is read beside the position.
@@ -90,7 +107,7 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let record = &encoder.record;
     let reading = record.last();
     let position = reading.and_then(|reading| reading.position);
@@ -103,10 +120,8 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         (Some(reading), None) => (reading.raw.to_string(), skin.say("live.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
-    let stale = encoder.session.line().is_none_or(|line| line.polling().is_none());
-    let colour = if stale { skin.palette.muted } else { skin.palette.text };
     ui.horizontal(|ui| {
-        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(colour));
+        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label(unit));
         if record.refused() {
             ui.label(RichText::new(skin.say("live.refused")).color(skin.palette.bad));

@@ -4,18 +4,17 @@ use egui::{RichText, Ui};
 
 use super::LOW;
 use crate::app::biss::{Action as Biss, Encoder};
-use crate::app::{Action, Text};
+use crate::app::{Action, Rgb, Text};
 use crate::protocol::biss::{Register, Role};
 use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::{Skin, icons};
 
-pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let reading = encoder.record.last();
     let main = reading.map_or_else(|| "–".to_owned(), |own| skin.number(own.degrees(), 3));
     let palette = skin.palette;
-    let colour = if encoder.session.is_polling() { palette.text } else { palette.muted };
     ui.horizontal(|ui| {
-        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(colour));
+        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label("°"));
         match reading {
             Some(own) if !own.is_valid() => {
