@@ -99,7 +99,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
     let mut gauges = Vec::new();
     if let Task::Turn(run) = demand.task {
         let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
-        let allowed = run.allowed();
+        let (allowed, accepted) = (run.allowed(), run.allowed().measured());
         // Standing is 0, whichever way it is looked at.
         let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
         let unit = skin.say("unit.revolutions_per_minute");
@@ -112,7 +112,8 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
             name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
             value: rpm,
             shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
-            allowed: allowed.least..=allowed.greatest,
+            // What is decided with, so that the mark says what the start does.
+            allowed: accepted.least..=accepted.greatest,
             limits: skin.words(&limits),
             scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
         });

@@ -29,8 +29,16 @@ pub struct SpeedRange {
 }
 
 impl SpeedRange {
+    /// A speed is measured to this part of it.
+    const EXACT: f64 = 0.01;
+
     const fn new(least: f64, greatest: f64) -> Self {
         SpeedRange { least, greatest }
+    }
+
+    /// The same, as wide as a speed that is measured may lie in it: what is accepted.
+    pub fn measured(self) -> Self {
+        SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
 
     fn contains(self, rpm: f64) -> bool {
@@ -142,8 +150,6 @@ impl Demand {
     const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
     /// More than this part of the speed is no steady motor.
     const UNSTEADY: f64 = 0.05;
-    /// A speed is measured to this part of it.
-    const EXACT: f64 = 0.01;
     /// Below this nobody would say that a motor turns, in revolutions a minute.
     const SLOWEST: f64 = 1.0;
 
@@ -177,12 +183,11 @@ impl Demand {
 
     fn unfit(run: Run, motion: Motion) -> Option<Blocker> {
         let (rpm, allowed) = (motion.rpm.abs(), run.allowed());
-        let tolerance = rpm * Self::EXACT;
         if rpm < Self::SLOWEST {
             Some(Blocker::Standing)
         } else if (motion.rpm > 0.0) != run.is_clockwise() {
             Some(Blocker::WrongDirection)
-        } else if rpm + tolerance < allowed.least || rpm - tolerance > allowed.greatest {
+        } else if !allowed.measured().contains(rpm) {
             Some(Blocker::Speed { rpm, allowed })
         } else if motion.spread > rpm * Self::UNSTEADY {
             Some(Blocker::Unsteady { spread: motion.spread })
@@ -317,7 +322,9 @@ mod tests {
             (first, 0.5, 0.0, vec![Blocker::Standing]),
             (first, -500.0, 26.0, vec![Blocker::Unsteady { spread: 26.0 }]),
             (Run::WiegandClockwise, 500.0, 20.0, vec![]),
+            (Run::WiegandClockwise, 499.96, 0.0, vec![]),
             (Run::WiegandClockwise, 2000.0, 0.0, vec![]),
+            (Run::WiegandClockwise, 2000.04, 0.0, vec![]),
             (Run::WiegandCounterclockwise, -1000.0, 0.0, vec![]),
             (Run::WiegandCounterclockwise, 1000.0, 0.0, vec![Blocker::WrongDirection]),
             (
