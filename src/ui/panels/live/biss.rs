@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::LOW;
-use crate::app::biss::{Action as Biss, Encoder};
+use crate::app::biss::{Action as Biss, Encoder, Mark};
 use crate::app::{Action, Rgb, Text};
 use crate::protocol::biss::{Register, Role};
 use crate::ui::controls::{icon_menu, paragraph, row};
@@ -16,14 +16,12 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label("°"));
-        match reading {
-            Some(own) if !own.is_valid() => {
-                ui.label(RichText::new(skin.say("live.invalid")).color(palette.bad));
-            }
-            Some(own) if own.warning == Some(true) => {
-                ui.label(RichText::new(skin.say("live.warning")).color(palette.warn));
-            }
-            _ => {}
+        if let Some(mark) = encoder.mark() {
+            let (word, ink) = match mark {
+                Mark::Invalid => ("live.invalid", palette.bad),
+                Mark::Warned => ("live.warning", palette.warn),
+            };
+            ui.label(RichText::new(skin.say(word)).color(ink));
         }
     });
     let Some(reading) = reading else { return };
