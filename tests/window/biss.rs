@@ -1,6 +1,6 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
-use encoder_studio::app::biss::{Action as Biss, Encoder};
+use encoder_studio::app::biss::{Action as Biss, Encoder, Mark};
 use encoder_studio::app::connect::{Action as Connect, BissForm, BissWay};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Studio, Tab};
@@ -51,6 +51,17 @@ fn the_virtual_encoder_is_read_over_either_way() {
         assert!(desk.told(Severity::Warning).is_empty(), "{link}");
         assert_eq!(desk.studio.settings.links(Tab::Biss), [link]);
         assert!(desk.studio.settings.links(Tab::Hiperface).is_empty());
+    }
+}
+
+/// Over the configuration pin a position carries no bits: the registers tell.
+#[test]
+fn a_position_is_marked_over_either_way() {
+    for link in ["sim:", "sim:?bridge=on"] {
+        assert_eq!(encoder(&open(link)).mark(), None, "{link}");
+    }
+    for link in ["sim:?errors=0x12", "sim:?bridge=on&errors=0x12"] {
+        assert_eq!(encoder(&open(link)).mark(), Some(Mark::Invalid), "{link}");
     }
 }
 

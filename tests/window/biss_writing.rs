@@ -1,15 +1,16 @@
 //! Writing into a BiSS encoder from the window: edits with their review, and procedures that a person leads.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use encoder_studio::app::biss::{Action as Biss, Encoder, End, Reached, ReviewState};
-use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, explain};
 use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
 use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
 use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue, RegisterAddress};
 use encoder_studio::worker::biss::Change;
 
-use crate::support::Desk;
+use crate::screen::Screen;
+use crate::support::{Desk, Outside};
 
 fn at(text: &str) -> RegisterAddress {
     text.parse().unwrap()
@@ -162,7 +163,10 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     let guide = encoder(&desk).guide.as_ref().unwrap();
-    let End::Failed { may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
+    let End::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
+    let weights: Vec<Severity> = texts.iter().map(explain::biss::weight).collect();
+    assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Note]);
+    assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
     assert!(!may_lead_back, "it is in operation");
     let reached: Vec<Reached> = guide.steps().iter().map(|own| own.reached).collect();
     let cut = reached.iter().position(|own| *own == Reached::Failed).unwrap();
@@ -170,6 +174,32 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     let (back, between) = reached[cut + 1..].split_last().unwrap();
     assert_eq!(*back, Reached::Done, "it was led back");
     assert!(!between.is_empty() && between.iter().all(|own| *own == Reached::Ahead), "{reached:?}");
+}
+
+#[test]
+fn the_live_position_says_that_it_waits_for_a_job() {
+    let outside = Outside::new("");
+    let mut studio = outside.studio();
+    studio.act(Action::ShowTab(Tab::Biss));
+    studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
+    let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
+    screen.until("the encoder is read", is_ready);
+    let id = screen.studio().biss().unwrap().session.id;
+    screen.act(Action::Biss(id, Biss::Poll(Some(Duration::from_millis(50)))));
+    screen.act(Action::Biss(id, Biss::Plan(Box::new(calibration()))));
+    let plan = |studio: &Studio| Some(studio.biss()?.review.as_ref()?.prepared()?.plan.id());
+    screen.until("the plan is there", |studio| is_ready(studio) && plan(studio).is_some());
+    let own = plan(screen.studio()).unwrap();
+    let words = "paused while the job runs";
+    assert!(!screen.shows(words));
+    screen.act(Action::Review(id, ReviewAction::Write(own)));
+    screen.until("it waits", |studio| turn_of(studio).is_some());
+    let began = Instant::now();
+    screen.until("a second passes", |_| began.elapsed() > Duration::from_secs(1));
+    assert!(screen.shows(words));
+    screen.act(Action::Stop);
+    screen.until("it is over", is_ready);
+    assert!(!screen.shows(words));
 }
 
 #[test]
