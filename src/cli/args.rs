@@ -240,16 +240,22 @@ pub(super) enum Action {
     ConfigureForNow,
     /// biss: calibrate the singleturn; the motor turns counterclockwise, then clockwise, at 500 ± 2 rpm.
     Calibrate,
-    /// biss: [save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm.
+    // Brackets in what rustdoc reads would be links.
+    #[value(
+        help = "biss: [save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm"
+    )]
     WiegandTest,
     /// biss: balanced|dynamic.
     Filter,
-    /// biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value;
-    /// without a value the stored one.
+    #[value(
+        help = "biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value; without a value the stored one"
+    )]
     Preset,
     /// biss: back to operation and the password cleared, after a procedure was cut off.
     LeadBack,
-    /// biss: [calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant.
+    #[value(
+        help = "biss: [calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant"
+    )]
     Mounting,
 }
 

@@ -1,5 +1,5 @@
 //! The host's side of the open adapter, whatever bus is behind it (reference "bridge"): a request, the reply with the same
-//! sequence number, and the request once more where none comes. What streams bring is taken by [`flow`]; between a request
+//! sequence number, and the request once more where none comes. What streams bring is taken by `flow`; between a request
 //! and its reply it is let go.
 
 pub(super) mod flow;
