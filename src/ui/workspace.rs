@@ -1,6 +1,6 @@
 //! The workspace: what the open tab shows of the session that is shown.
 
-use egui::{RichText, Ui};
+use egui::{Align, Layout, RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::panels::plot_ui;
@@ -81,18 +81,23 @@ fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
                 }
                 None => skin.say("shell.opening"),
             };
-            ui.label(skin.label(words));
-            if let Some(running) = running {
-                let stopping = running.stopping;
-                let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
-                if super::controls::enabled_button(ui, !stopping, icons::X, &word).clicked() {
-                    actions.push(Action::Stop);
+            // What is pressed stays where it is, however long the words are.
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if let Some(running) = running {
+                    let stopping = running.stopping;
+                    let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                    if super::controls::enabled_button(ui, !stopping, icons::X, &word).clicked() {
+                        actions.push(Action::Stop);
+                    }
+                    if let Some((done, total, _)) = running.progress {
+                        let part = done as f32 / total.max(1) as f32;
+                        ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(120.0));
+                    }
                 }
-                if let Some((done, total, _)) = running.progress {
-                    let part = done as f32 / total.max(1) as f32;
-                    ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(120.0));
-                }
-            }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(egui::Label::new(skin.label(words)).truncate());
+                });
+            });
         });
     });
 }

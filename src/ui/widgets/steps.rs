@@ -129,12 +129,14 @@ const RAIL: f32 = 32.0;
 pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();
+    // The step that was in turn the last time.
+    let at = ui.scope_id().with("step");
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = skin.space.inside;
         for (number, step) in (1_usize..).zip(model.steps) {
             let left = ui.cursor().left();
             let mut middle = pos2(left + DOT + 1.0, 0.0);
-            ui.horizontal_top(|ui| {
+            let drawn = ui.horizontal_top(|ui| {
                 ui.add_space(RAIL);
                 ui.vertical(|ui| {
                     fill(ui);
@@ -142,6 +144,10 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
                     event = event.or(content(ui, skin, model, step));
                 });
             });
+            if step.state.counts() && ui.data(|data| data.get_temp(at)) != Some(number) {
+                ui.data_mut(|data| data.insert_temp(at, number));
+                drawn.response.scroll_to_me(None);
+            }
             dot(ui.painter(), skin, middle, number, step);
             dots.push(middle);
             ui.add_space(skin.space.between + skin.space.inside);
