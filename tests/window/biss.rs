@@ -1,11 +1,13 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
+use egui_kittest::kittest::Queryable;
 use encoder_studio::app::biss::{Action as Biss, Encoder, Mark};
 use encoder_studio::app::connect::{Action as Connect, BissForm, BissWay};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Studio, Tab};
 use encoder_studio::protocol::biss::{RegisterAddress, Role};
 
+use crate::screen::Screen;
 use crate::support::Desk;
 
 fn at(text: &str) -> RegisterAddress {
@@ -161,4 +163,20 @@ fn a_link_is_for_the_tab_that_asks_for_it() {
     desk.act(Action::OpenVirtual);
     desk.until("the virtual one is read", is_read);
     assert_eq!(desk.studio.devices().len(), 2);
+}
+
+#[test]
+fn a_click_in_the_list_of_banks_goes_there_and_reads_it() {
+    let mut screen = Screen::opened_in(Tab::Biss, "sim:?bridge=on", [1440.0, 900.0]);
+    screen.until("it is read", is_read);
+    screen.click("page.registers");
+    assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);
+    // The list stands before the table, whose heading has the same words.
+    let bank = screen.harness.query_all_by_label_contains("04h").next().expect("bank 04h is listed");
+    assert!(bank.rect().right() < 340.0, "{:?}", bank.rect());
+    bank.click();
+    screen.steps();
+    screen.until("it is read by itself", |studio| {
+        studio.biss().is_some_and(|own| own.memory.read(at("0x04:0x3F")).is_some())
+    });
 }

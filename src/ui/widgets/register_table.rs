@@ -205,7 +205,9 @@ fn body(
     let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
         let size = Vec2::new(columns.width(), lines.total() as f32 * LINE);
         let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
-        let response = ui.interact(ui.clip_rect(), id, Sense::click());
+        // The clip reaches beside the table, over what stands there.
+        let body = Rect::from_x_y_ranges(whole.x_range(), ui.clip_rect().y_range());
+        let response = ui.interact(body, id, Sense::click());
         let at = |line: usize| {
             let top = whole.top() + line as f32 * LINE;
             Rect::from_min_size(pos2(whole.left(), top), Vec2::new(columns.width(), LINE))
