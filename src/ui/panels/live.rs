@@ -54,7 +54,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
 /// A job keeps the position from being read. One that is over at once does not count: the number would only flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
-    let id = egui::Id::unique(("job_pause", device.id()));
+    let id = egui::Id::unique(device.id()).with("job_pause");
     // Also where nothing waits: the next job begins anew.
     let share = ui.ctx().animate_bool_with_time(id, waits, if waits { NOTICED } else { 0.0 });
     waits && share >= 1.0
