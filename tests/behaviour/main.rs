@@ -4,6 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
+mod biss_bad_input;
 mod biss_guided;
 mod biss_offline;
 mod biss_profile;
