@@ -165,7 +165,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     let guide = encoder(&desk).guide.as_ref().unwrap();
     let End::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
     let weights: Vec<Severity> = texts.iter().map(explain::biss::weight).collect();
-    assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Note]);
+    assert_eq!(weights, [Severity::Warning, Severity::Note, Severity::Good, Severity::Note]);
     assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
     assert!(!may_lead_back, "it is in operation");
     let reached: Vec<Reached> = guide.steps().iter().map(|own| own.reached).collect();

@@ -328,7 +328,7 @@ fn a_calibration_that_fails_says_why() {
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
         // No backup holds the table.
-        assert_eq!(words, ["write.interrupted", "biss_left.operation", "write.backup_calibration"]);
+        assert_eq!(words, ["write.interrupted", "biss_left.at", "biss_left.operation", "write.backup_calibration"]);
         let again = bench.prepare(calibration()).unwrap();
         assert_eq!(again.cycles_seen, Some(u64::from(lost)), "as the logbook has it");
     }

@@ -159,7 +159,8 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,
-        "write.backup"
+        "biss_left.at"
+        | "write.backup"
         | "write.backup_bytes"
         | "write.backup_single"
         | "write.backup_calibration"
