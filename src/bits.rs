@@ -15,6 +15,21 @@ pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
 
+/// A number as it came, in so many bits. Its text has as many upper-case hexadecimal digits as they need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The bits, right-justified.
+    pub value: u64,
+    /// How many they are.
+    pub bits: u8,
+}
+
+impl fmt::Display for Word {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:0digits$X}", self.value, digits = usize::from(self.bits.div_ceil(4)))
+    }
+}
+
 /// Bytes that may be shown: what is secret is not in them. Its text has `**` for a masked byte.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaskedBytes(Vec<Option<u8>>);

@@ -61,7 +61,7 @@ pub(super) trait Watchable: Clone + PartialEq {
 }
 
 /// A watched value, or that there is none at the moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Watching {
     /// When.
     pub(super) at: Moment,
@@ -69,8 +69,8 @@ pub(super) struct Watching {
     pub(super) value: Option<Value>,
     /// The device warned with it.
     pub(super) is_warned: bool,
-    /// The device does not have it.
-    pub(super) is_absent: bool,
+    /// Why there will be none, however long one waits.
+    pub(super) never: Option<Text>,
 }
 
 /// The recorder of a device, and what is needed to fill it; `W` is what can be watched.
@@ -333,7 +333,7 @@ impl<W: Watchable> Track<W> {
         if watching.is_warned {
             flags |= Flags::WARNING;
         }
-        self.recorder.remark(line, watching.is_absent.then(|| Text::new("recorder.absent")));
+        self.recorder.remark(line, watching.never.clone());
         let (time, flags) = (self.time(watching.at), [flags]);
         let (whole, real) = match watching.value {
             Some(Value::Whole(whole)) => ([whole], [whole as f64]),

@@ -4,6 +4,7 @@
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
 use crate::app::{Language, Look, Palette, Rgb, Spaces, Text, TextSizes, Theme};
+use crate::bits::Word;
 
 impl From<Rgb> for Color32 {
     fn from(Rgb([red, green, blue]): Rgb) -> Self {
@@ -59,6 +60,11 @@ impl Skin {
     pub fn plain(&self, value: f64) -> String {
         let decimals = value.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
         self.number(value, decimals)
+    }
+
+    /// A number as it came, in hexadecimal digits, and how wide it is.
+    pub fn word(&self, word: Word) -> String {
+        self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
 
     /// A label: what a value beside it is.

@@ -101,13 +101,7 @@ impl Record {
             self.keep(batch);
         }
         batch.widths = Some(widths);
-        let sighting = Sighting {
-            at: reading.at,
-            position: i64::try_from(reading.position()).ok(),
-            is_bad: !reading.is_valid(),
-            is_warned: reading.warning == Some(true),
-        };
-        batch.sightings.push(sighting);
+        batch.sightings.push(sighting(reading));
         self.last = Some(*reading);
     }
 
@@ -122,7 +116,7 @@ impl Record {
         self.lost += missing;
         self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns: run.period_ns });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
-        let widths = (run.multiturn_bits, run.singleturn_bits);
+        let widths = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
         if batch.widths.is_some_and(|own| own != widths) {
             self.keep(batch);
         }
@@ -132,24 +126,9 @@ impl Record {
                 batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
                 continue;
             };
-            let raw = run.position(reading);
-            batch.sightings.push(Sighting {
-                at,
-                position: i64::try_from(raw).ok(),
-                is_bad: reading.error,
-                is_warned: reading.warning,
-            });
-            self.last = Some(PositionReading {
-                at,
-                raw,
-                turns: reading.multiturn,
-                steps: reading.singleturn,
-                error: Some(reading.error),
-                warning: Some(reading.warning),
-                crc_errors: 0,
-                multiturn_bits: run.multiturn_bits,
-                singleturn_bits: run.singleturn_bits,
-            });
+            let reading = PositionReading::in_frame(at, reading, &run.layout);
+            batch.sightings.push(sighting(&reading));
+            self.last = Some(reading);
         }
     }
 
@@ -174,8 +153,12 @@ impl Record {
         let watched = self.track.watched().into_iter().find(|own| own.address == reading.what.start());
         let Some(register) = watched else { return };
         let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
-        let is_absent = matches!(reading.value, Err(Error::NoSuchRegister { .. }));
-        let watching = Watching { at: reading.at, value, is_warned: false, is_absent };
+        let never = match &reading.value {
+            Err(Error::NoSuchRegister { .. }) => Some(Text::new("recorder.absent")),
+            Err(Error::NotWatched { .. }) => Some(Text::new("recorder.data")),
+            _ => None,
+        };
+        let watching = Watching { at: reading.at, value, is_warned: false, never };
         self.track.add_watched(&register, &watching);
     }
 
@@ -221,6 +204,15 @@ impl Record {
     }
 }
 
+fn sighting(reading: &PositionReading) -> Sighting {
+    Sighting {
+        at: reading.at,
+        position: i64::try_from(reading.position()).ok(),
+        is_bad: !reading.is_valid(),
+        is_warned: reading.warning == Some(true),
+    }
+}
+
 /// What positions of such widths are, multiturn and singleturn.
 fn meaning((multiturn, singleturn): (u8, u8)) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
@@ -250,8 +242,11 @@ impl Watchable for Register {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
-    use crate::protocol::biss::Reading;
+    use crate::profile::biss::RegisterRange;
+    use crate::protocol::biss::{Descriptions, Layout, Reading, Role};
     use crate::units::Moment;
 
     fn run(first: u64, count: u64, lost: u64) -> FrameRun {
@@ -262,8 +257,47 @@ mod tests {
             period_ns: 50_000,
             lost,
             frames: (first..first + count).map(frame).collect(),
-            multiturn_bits: 16,
-            singleturn_bits: 17,
+            layout: Arc::default(),
+        }
+    }
+
+    /// Reference 2: turn 1234h and 270°.
+    #[test]
+    fn raw_is_the_position_word_also_in_a_stream() {
+        let mut record = Record::default();
+        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
+        record.add(vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
+        let last = record.last().unwrap();
+        assert_eq!((last.raw().to_string(), last.raw().bits), ("024698000".to_owned(), 33));
+        assert_eq!((last.error, last.warning), (Some(false), Some(true)));
+        let bare = Layout::new(0, 12, false, false, None).unwrap();
+        let reading = Reading { singleturn: 0x00A, ..Reading::default() };
+        record.add(
+            vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], layout: Arc::new(bare), ..run(1, 1, 0) })],
+            0,
+        );
+        let last = record.last().unwrap();
+        assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
+    }
+
+    #[test]
+    fn a_register_that_never_has_a_value_says_why() {
+        let descriptions = Descriptions::built_in();
+        let kit = descriptions.named("POSITAL IXARC kit encoder").unwrap();
+        let register = kit.with_role(Role::Temperature).unwrap().clone();
+        let address = register.address;
+        let mut record = Record::default();
+        record.watch(std::slice::from_ref(&register));
+        let what = RegisterRange::new(address, 1).unwrap();
+        for (error, said) in [
+            (Error::NoSuchRegister { address }, Some("recorder.absent")),
+            (Error::NotWatched { address }, Some("recorder.data")),
+            (Error::NeverSilent, None),
+        ] {
+            let reading = WatchedReading { at: Moment::START, what, value: Err(error) };
+            record.add(vec![Sample::Watched(reading)], 0);
+            let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
+            assert_eq!(line.unwrap().remark, said.map(Text::new));
         }
     }
 

@@ -122,7 +122,7 @@ fn watching(reading: &WatchedReading) -> Watching {
         at: reading.at,
         value: reading.value.as_ref().ok().map(|value| Value::Whole(*value)),
         is_warned: !reading.codes.is_empty(),
-        is_absent: reading.is_refused(),
+        never: reading.is_refused().then(|| Text::new("recorder.absent")),
     }
 }
 

@@ -227,14 +227,16 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
     let json = json!({
         "t_s": t,
-        "raw": reading.raw,
+        "raw": reading.raw().value,
+        "frame": reading.frame.map(|frame| frame.to_string()),
         "turns": reading.turns,
         "steps": reading.steps,
         "degrees": reading.degrees(),
         "valid": reading.is_valid(),
         "warning": reading.warning,
     });
-    output.show(&json, &format!("{t:10.3} s  {:011X}h  {}{}\n", reading.raw, place(reading), flags(reading)))
+    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
+    output.show(&json, &format!("{t:10.3} s  {}h  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
 }
 
 fn place(reading: &PositionReading) -> String {
@@ -254,7 +256,7 @@ fn row(reading: &PositionReading) -> String {
     format!(
         "{:.6},{},{},{},{},{},{}\n",
         reading.at.since_start().as_secs_f64(),
-        reading.raw,
+        reading.raw().value,
         reading.turns,
         reading.steps,
         reading.degrees(),

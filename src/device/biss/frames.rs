@@ -1,5 +1,6 @@
 //! The frames of a stream, each with its checksum looked at: what a reading says, or why there is none.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::device::bridge::Portion;
@@ -37,20 +38,17 @@ pub struct FrameRun {
     pub lost: u64,
     /// The frames, one at least.
     pub frames: Vec<Frame>,
-    /// Bits of the revolutions, 0…32.
-    pub multiturn_bits: u8,
-    /// Bits within a revolution, 0…32.
-    pub singleturn_bits: u8,
+    /// What their bits are.
+    pub layout: Arc<Layout>,
 }
 
 impl FrameRun {
     /// What came in a packet.
-    pub(super) fn new(portion: &Portion, frames: Vec<Frame>, layout: &Layout) -> Self {
+    pub(super) fn new(portion: &Portion, frames: Vec<Frame>, layout: Arc<Layout>) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         // Not before the stream began.
         let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
-        let (multiturn_bits, singleturn_bits) = (layout.multiturn_bits(), layout.singleturn_bits());
-        FrameRun { first, at, period_ns, lost, frames, multiturn_bits, singleturn_bits }
+        FrameRun { first, at, period_ns, lost, frames, layout }
     }
 
     /// A stream begins.
@@ -62,11 +60,6 @@ impl FrameRun {
     pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
-    }
-
-    /// Revolutions and place of a reading as one number of steps.
-    pub fn position(&self, reading: &Reading) -> u64 {
-        u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
 
     /// Frames with a wrong checksum.

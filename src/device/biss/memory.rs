@@ -39,7 +39,7 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
         last = master.position()?;
         readings.push(last.position());
     }
-    let range = 1u64.checked_shl((first.multiturn_bits + first.singleturn_bits).into());
+    let range = 1u64.checked_shl(first.raw().bits.into());
     let allowed = ((1u64 << first.singleturn_bits) / TREMBLE).max(1);
     if readings.iter().all(|reading| distance(first.position(), *reading, range) <= allowed) {
         Ok(last)

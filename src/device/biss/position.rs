@@ -1,6 +1,7 @@
 //! The position as a person or a plot takes it, and registers that are watched beside it.
 
 use super::{Damage, Error, FrameRun, Master};
+use crate::bits::Word;
 use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{Layout, Reading};
 use crate::units::Moment;
@@ -10,8 +11,6 @@ use crate::units::Moment;
 pub struct PositionReading {
     /// When the encoder sampled it.
     pub at: Moment,
-    /// As it came: the frame with its CRC, or the word over the configuration pin.
-    pub raw: u64,
     /// Revolutions, as many bits as there are.
     pub turns: u32,
     /// Place within the revolution, in parts of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
@@ -26,14 +25,15 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Bits within a revolution, 0…32.
     pub singleturn_bits: u8,
+    /// The whole frame that it came in, with its flags and its CRC; `None` over the configuration pin.
+    pub frame: Option<Word>,
 }
 
 impl PositionReading {
     /// A reading at a moment, without anything that only one way tells.
-    pub(super) fn new(at: Moment, raw: u64, reading: &Reading, layout: &Layout) -> Self {
+    pub(super) fn new(at: Moment, reading: &Reading, layout: &Layout) -> Self {
         PositionReading {
             at,
-            raw,
             turns: reading.multiturn,
             steps: reading.singleturn,
             error: None,
@@ -41,7 +41,23 @@ impl PositionReading {
             crc_errors: 0,
             multiturn_bits: layout.multiturn_bits(),
             singleturn_bits: layout.singleturn_bits(),
+            frame: None,
         }
+    }
+
+    /// A reading that came in a frame with a right checksum.
+    pub fn in_frame(at: Moment, reading: &Reading, layout: &Layout) -> Self {
+        PositionReading {
+            error: layout.has_error_bit().then_some(reading.error),
+            warning: layout.has_warning_bit().then_some(reading.warning),
+            frame: Some(Word { value: layout.emit(reading), bits: layout.bits() }),
+            ..PositionReading::new(at, reading, layout)
+        }
+    }
+
+    /// The position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
+    pub const fn raw(&self) -> Word {
+        Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
 
     /// Revolutions and place as one number of steps.

@@ -9,7 +9,7 @@ use crate::device::biss::PositionReading;
 use crate::protocol::biss::{Layout, Reading};
 use crate::signal::quality::Verdict;
 use crate::ui::Skin;
-use crate::ui::controls::{card_with, enabled_button, paragraph};
+use crate::ui::controls::{card_with, enabled_button, paragraph, row};
 use crate::ui::icons;
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
 
@@ -26,7 +26,13 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
         let (fields, bits) = strip(skin, &identity.layout, reading);
         let label = skin.say("frame_card.title");
         frame_strip(ui, skin, &FrameStrip { label: &label, fields: &fields, bits: &bits });
-        if reading.is_some_and(|reading| reading.error.is_none()) {
+        if let Some(reading) = reading {
+            row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
+            if let Some(frame) = reading.frame {
+                row(ui, skin, &skin.say("frame_card.frame"), skin.mono(skin.word(frame)));
+            }
+        }
+        if reading.is_some_and(|reading| reading.frame.is_none()) {
             paragraph(ui, skin.caption(skin.say("frame_card.pin")));
         }
         let errors = encoder.record.crc_errors();
@@ -71,7 +77,7 @@ fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Ve
         let value = reading.map(|own| format!("{} °", skin.number(own.degrees(), 3))).unwrap_or_default();
         add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);
     }
-    if reading.is_some_and(|own| own.error.is_none()) {
+    if reading.is_some_and(|own| own.frame.is_none()) {
         return (fields, bits);
     }
     for (is_there, name, is_set, verdict) in [

@@ -15,7 +15,10 @@ fn registers_and_position_are_read_with_the_published_frames() {
     let mut pin = Pin::new("temperature=25");
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
     let reading = pin.master().position().unwrap();
-    assert_eq!((reading.turns, reading.steps, reading.raw), (0x1234, 0x18000, 0x2469_8000));
+    assert_eq!(
+        (reading.turns, reading.steps, reading.raw().to_string(), reading.frame),
+        (0x1234, 0x18000, "024698000".to_owned(), None)
+    );
     assert_eq!((reading.position(), reading.degrees()), (0x2469_8000, 270.0));
     assert_eq!((reading.error, reading.warning, reading.crc_errors), (None, None, 0));
     assert_eq!(pin.master().read_run(at("0x7E"), 2), Ok(b"Fr".to_vec()));

@@ -92,7 +92,7 @@ fn check(runs: &[FrameRun]) {
         assert_eq!((run.first, run.lost, run.period_ns), (next, 0, 50_000));
         next = run.first + run.frames.len() as u64;
         for (moment, frame) in run.timed() {
-            let position = run.position(&frame.unwrap());
+            let position = run.layout.steps(&frame.unwrap());
             if let Some((earlier, from)) = before {
                 assert_eq!(moment.since(earlier), FAST);
                 assert!((327..=328).contains(&(position - from)), "{from} to {position}");

@@ -187,12 +187,8 @@ impl<'a> Master<'a> {
         Ok(match layout.parse(raw) {
             Ok(reading) => {
                 self.station.good_frames = true;
-                Ok(PositionReading {
-                    error: layout.has_error_bit().then_some(reading.error),
-                    warning: layout.has_warning_bit().then_some(reading.warning),
-                    crc_errors: self.station.take_crc_errors(),
-                    ..PositionReading::new(at, raw, &reading, &layout)
-                })
+                let crc_errors = self.station.take_crc_errors();
+                Ok(PositionReading { crc_errors, ..PositionReading::in_frame(at, &reading, &layout) })
             }
             Err(FrameError::StuckLow) => Err(Trouble::NoFrame(NoFrame::StuckLow)),
             Err(FrameError::StuckHigh) => Err(Trouble::NoFrame(NoFrame::StuckHigh)),

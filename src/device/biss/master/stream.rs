@@ -1,6 +1,7 @@
 //! Frames without being asked: while a stream runs, the adapter has no time for anything else, so that whatever comes next
 //! ends it first.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::Master;
@@ -44,8 +45,8 @@ impl Master<'_> {
             if let Some(portion) = portion
                 && let Data::Biss(data) = &portion.data
             {
-                let layout = self.station.frame();
-                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), &layout)));
+                let layout = Arc::new(self.station.frame());
+                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), layout)));
             }
         }
     }

@@ -78,7 +78,7 @@ impl Master<'_> {
             let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
             return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
         };
-        Ok(Ok(PositionReading::new(at, word.word(), &reading, &layout)))
+        Ok(Ok(PositionReading::new(at, &reading, &layout)))
     }
 
     /// The time that an exchange takes at most.

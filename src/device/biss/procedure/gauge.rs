@@ -51,7 +51,7 @@ impl Gauge {
 
     /// The next position.
     pub(super) fn next(&mut self, reading: &PositionReading) {
-        let bits = u32::from(reading.multiturn_bits) + u32::from(reading.singleturn_bits);
+        let bits = u32::from(reading.raw().bits);
         self.steps_per_turn = f64::powi(2.0, reading.singleturn_bits.into());
         let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
         let unwrap = self.unwrap.get_or_insert_with(|| range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear));
@@ -121,7 +121,6 @@ mod tests {
         let steps = (turns.rem_euclid(range) * REVOLUTION) as u64;
         PositionReading {
             at: Moment::after_start(Duration::from_millis(milliseconds)),
-            raw: 0,
             turns: (steps >> 17) as u32,
             steps: (steps & 0x1_FFFF) as u32,
             error: None,
@@ -129,6 +128,7 @@ mod tests {
             crc_errors: 0,
             multiturn_bits,
             singleturn_bits: 17,
+            frame: None,
         }
     }
 

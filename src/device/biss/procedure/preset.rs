@@ -73,7 +73,7 @@ fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64
 
 /// Steps between two places, the shorter way round.
 fn distance(place: u64, reading: &PositionReading) -> u64 {
-    let bits = u32::from(reading.multiturn_bits) + u32::from(reading.singleturn_bits);
+    let bits = u32::from(reading.raw().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);
     let forward = place.wrapping_sub(reading.position()) & mask;
     let backward = reading.position().wrapping_sub(place) & mask;
@@ -88,7 +88,6 @@ mod tests {
     fn reading(turns: u32, steps: u32) -> PositionReading {
         PositionReading {
             at: Moment::START,
-            raw: 0,
             turns,
             steps,
             error: None,
@@ -96,6 +95,7 @@ mod tests {
             crc_errors: 0,
             multiturn_bits: 16,
             singleturn_bits: 17,
+            frame: None,
         }
     }
 

@@ -28,12 +28,12 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     if ui.available_height() < LOW {
         // In a low window the plot needs the room.
         let (turns, steps) = (skin.say("live.turns"), skin.say("live.step"));
-        let words = format!("{turns} {} · {steps} {} · {:X}h", reading.turns, reading.steps, reading.raw);
+        let words = format!("{turns} {} · {steps} {} · {}h", reading.turns, reading.steps, reading.raw());
         ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
     } else {
         row(ui, skin, &skin.say("live.turns"), skin.mono(reading.turns.to_string()));
         row(ui, skin, &skin.say("live.step"), skin.mono(reading.steps.to_string()));
-        row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:X}h", reading.raw)));
+        row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
     }
     if let Some(hz) = encoder.streamed_hz() {
         let words = skin.words(&Text::new("live.streamed").with_number("count", hz, 0));
