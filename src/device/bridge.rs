@@ -2,6 +2,7 @@
 //! sequence number, and the request once more where none comes. What streams bring is taken by `flow`; between a request
 //! and its reply it is let go.
 
+mod drift;
 pub(super) mod flow;
 mod tap;
 

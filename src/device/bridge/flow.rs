@@ -1,8 +1,9 @@
 //! What an adapter sends by itself: the samples of one stream in their order, and how many are missing before them
-//! (reference "bridge", 3). What it samples when is told by its own clock; the first samples tell how that stands to ours.
+//! (reference "bridge", 3), by our clock (`drift`).
 
 use std::time::Duration;
 
+use super::drift::Drift;
 use super::{Adapter, AdapterError, Failure, other};
 use crate::device::line::LineError;
 use crate::protocol::bridge::{Continuity, Data, Gap, Message, Packet, Reply, Request};
@@ -50,8 +51,7 @@ pub(in crate::device) struct Flow {
     heard_at: Moment,
     /// The last sample.
     last: Option<Time>,
-    /// How far the adapter's clock is behind ours, in nanoseconds.
-    behind_ns: Option<i128>,
+    drift: Drift,
 }
 
 /// Who sends nothing for so long, and for so many samples, has ended.
@@ -120,7 +120,7 @@ impl Flow {
             not_before: after.map_or(begun_at, |after| begun_at.max(after.plus(1))),
             heard_at: adapter.line.now(),
             last: None,
-            behind_ns: None,
+            drift: Drift::default(),
         })
     }
 
@@ -213,7 +213,7 @@ impl Flow {
         Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// When the first sample was taken. The last cannot be later than now, nor the first before the stream began.
+    /// When the first sample was taken. The last cannot be later than it came, nor the first before the stream began.
     fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
         let t0_us = match data {
             Data::Ssi(data) => data.t0_us,
@@ -224,8 +224,9 @@ impl Flow {
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
         let latest = Time::from(now).plus(lasts.saturating_neg()).max(self.not_before);
-        let behind = *self.behind_ns.get_or_insert_with(|| i128::from(latest.nanoseconds()) - own);
-        let time = Time::from_nanoseconds(i64::try_from(own + behind).unwrap_or(i64::MAX));
+        let told = self.drift.time(own, latest);
+        // An adapter may count its samples well and its time badly.
+        let time = self.last.map_or(told, |last| told.max(last.plus(1)));
         self.last = Some(time.plus(lasts));
         time
     }

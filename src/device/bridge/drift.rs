@@ -1,0 +1,110 @@
+//! What an adapter samples when is told by its own clock, which runs a little faster or slower than ours. A packet cannot
+//! have been sampled after it came: the one that was least under way tells how the clocks stand, and a stretch of time later
+//! another one. Ours is followed slowly, so that samples stay at equal distances and no time goes back.
+
+use crate::signal::Time;
+
+/// How the clock of an adapter that streams stands to ours.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drift {
+    /// What is added to the adapter's time, in nanoseconds; `None` before the first packet.
+    ahead_ns: Option<i128>,
+    /// The least that packets have told in this stretch, and in the one before.
+    least: Option<(i128, Option<i128>)>,
+    /// When the stretch began, by the adapter's clock.
+    since_ns: i128,
+    /// The packet before, by the adapter's clock.
+    before_ns: i128,
+}
+
+/// Among the packets of so long one was hardly under way.
+const STRETCH_NS: i128 = 10_000_000_000;
+/// What packets are more or less under way with USB.
+const SLACK_NS: i128 = 1_000_000;
+/// One part of so many is made up for at most: ten times what oscillators differ by, and less than one of the 255 samples
+/// of a packet.
+const SLOWNESS: i128 = 1000;
+/// That is no drift: one of both clocks stood still, or was set.
+const JUMP_NS: i128 = 1_000_000_000;
+
+impl Drift {
+    /// Our time for `own_ns` of the adapter's, which cannot be later than `latest`.
+    pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
+        let most = i128::from(latest.nanoseconds()) - own_ns;
+        let told = self.told(own_ns, most);
+        let elapsed = (own_ns - self.before_ns).max(0);
+        self.before_ns = own_ns;
+        let ahead = match self.ahead_ns {
+            Some(ahead) if (told - ahead).abs() <= JUMP_NS => {
+                let wrong = told - ahead;
+                let beyond = wrong - wrong.clamp(-SLACK_NS, SLACK_NS);
+                ahead + beyond.clamp(-elapsed / SLOWNESS, elapsed / SLOWNESS)
+            }
+            _ => told,
+        };
+        self.ahead_ns = Some(ahead);
+        Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
+    }
+
+    /// The least of the stretch and of the one before.
+    fn told(&mut self, own_ns: i128, most: i128) -> i128 {
+        let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
+        let (least, before) = match self.least {
+            Some((least, before)) if fits => (least.min(most), before),
+            other => {
+                self.since_ns = own_ns;
+                (most, other.map(|(least, _)| least))
+            }
+        };
+        self.least = Some((least, before));
+        before.map_or(least, |before| before.min(least))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+    /// A hundred samples of 50 µs.
+    const PACKET: i64 = 5 * MS;
+
+    /// Hours of packets, each under way for 0.3 ms to 6 ms, of an adapter whose clock runs at a rate to ours.
+    fn drift(parts_per_million: i64, hours: i64) {
+        let (mut drift, mut before) = (Drift::default(), None);
+        let mut random = 1_u64;
+        for packet in 0..hours * 3_600 * 200 {
+            // Sampled at this time of ours; the adapter's clock was started at another.
+            let sampled = packet * PACKET;
+            let own = i128::from(sampled + sampled / 1_000_000 * parts_per_million) + 77_000_000_000;
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let under_way = 300_000 + (random >> 33) as i64 % 5_700_000;
+            let time = drift.time(own / 1000 * 1000, Time::from_nanoseconds(sampled + under_way)).nanoseconds();
+            assert!((-4 * MS..7 * MS).contains(&(time - sampled)), "{packet}: {} ns off", time - sampled);
+            let last = before.replace(time).unwrap_or(time - PACKET);
+            assert!((time - last - PACKET).abs() <= PACKET / 500, "{packet}: {} ns on", time - last);
+        }
+    }
+
+    #[test]
+    fn a_clock_that_runs_fast_or_slow_is_followed_for_hours() {
+        for parts_per_million in [-100, 100] {
+            drift(parts_per_million, 3);
+        }
+    }
+
+    #[test]
+    fn a_clock_that_stood_still_is_found_again() {
+        let mut drift = Drift::default();
+        let at = |ms: i64| Time::from_nanoseconds(ms * MS);
+        assert_eq!(drift.time(0, at(500)), at(500));
+        assert_eq!(drift.time(5_000_000, at(506)), at(505), "it was under way for longer");
+        // Our machine slept for an hour, and its clock with it.
+        let hour = 3_600_000;
+        assert_eq!(drift.time(i128::from((hour + 10) * MS), at(510)), at(510));
+        // The adapter stood still for 13.5 s: it may be late packets, until two stretches have told the same.
+        for (own, came, expected) in [(20, 520, 520), (25_000, 39_000, 25_500), (36_000, 50_000, 50_000)] {
+            assert_eq!(drift.time(i128::from((hour + own) * MS), at(came)), at(expected), "{own}");
+        }
+    }
+}
