@@ -174,6 +174,30 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
 }
 
+/// A reset ends the stream and forgets supply and clock: a job, or the next sample, finds that out and goes on.
+#[test]
+fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
+    let query = "supply=switched&rpm=60";
+    let supply = Supply { millivolt: 5_000, measured: None };
+    for by_job in [true, false] {
+        let mut stand = stand_with(query, Some(supply));
+        stand.session.pace(Some(FAST));
+        stand.runs(Duration::from_millis(100));
+        *stand.adapter.lock().unwrap() = Adapter::new(&Config::from_pairs(&pairs(query)).unwrap());
+        if by_job {
+            stand.session.run_inline(BissJob::Status).unwrap();
+        } else {
+            // What it had sent before still comes.
+            let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
+            assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
+        }
+        assert!(stand.run().begins());
+        let counts = [Operation::Hello, Operation::Supply, Operation::BissConfig].map(|own| stand.count(own));
+        assert_eq!(counts, [1, 2, 2], "{by_job}");
+        assert!(stand.runs(Duration::from_secs(1)).iter().all(|run| run.crc_errors() == 0));
+    }
+}
+
 /// HELLO switches the supply off: the encoder gets it again, and the time that it needs to start.
 #[test]
 fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {

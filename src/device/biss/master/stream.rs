@@ -8,8 +8,8 @@ use super::Master;
 use crate::device::biss::frames::{FrameRun, frames};
 use crate::device::biss::station::Way;
 use crate::device::biss::{Error, Station};
-use crate::device::bridge::Adapter;
 use crate::device::bridge::flow::{Flow, Streamed};
+use crate::device::bridge::{Adapter, AdapterError, Failure};
 use crate::protocol::bridge::Data;
 
 /// A wish to end is heard so often.
@@ -58,11 +58,18 @@ impl Master<'_> {
     pub fn end_frames(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        let ended = self.shielded(|master| flow.end(&mut master.adapter()));
-        if ended.is_err() {
-            self.station.flow = Some(flow);
+        match self.shielded(|master| flow.end(&mut master.adapter())) {
+            Ok(()) => Ok(()),
+            // It knows of no stream: it was reset, and has to be set again.
+            Err(Failure::Adapter(AdapterError::Refused { .. })) => {
+                self.station.forget_settings();
+                Ok(())
+            }
+            Err(failure) => {
+                self.station.flow = Some(flow);
+                Err(failure.into())
+            }
         }
-        Ok(ended?)
     }
 
     /// A stream that failed is over, at the adapter too where that can be told.
