@@ -12,6 +12,8 @@ pub struct Guide {
     /// The step that it was at when it was cut off: what is told last is the way back from there.
     pub(super) cut: Option<Step>,
     pub(super) seat: Seat,
+    /// What the person wants to leave out: the operation and what was asked in it.
+    skips: Vec<(usize, Task)>,
     /// How it ended; `None`: it goes on.
     pub end: Option<End>,
 }
@@ -41,6 +43,8 @@ pub enum Reached {
     Waits,
     /// It runs.
     Runs,
+    /// It was left out.
+    Skipped,
     /// It ended the procedure.
     Failed,
     /// It comes later, or not any more.
@@ -62,7 +66,7 @@ pub struct GuideStep<'a> {
 
 impl Guide {
     pub(super) fn new(ops: Vec<Op>) -> Self {
-        Guide { ops, news: None, cut: None, seat: Seat::default(), end: None }
+        Guide { ops, news: None, cut: None, seat: Seat::default(), skips: Vec::new(), end: None }
     }
 
     /// It goes on.
@@ -93,8 +97,11 @@ impl Guide {
     }
 
     /// Answers what is being asked.
-    pub(super) fn answer(&self, task: Task, answer: Answer) {
+    pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if self.is_running() {
+            if let Some(op) = self.news.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
+                self.skips.push((op, task));
+            }
             self.seat.answer(task, answer);
         }
     }
@@ -105,15 +112,20 @@ impl Guide {
         let mut steps = Vec::new();
         let mut passed = true;
         for (number, op) in self.ops.iter().enumerate() {
-            for (place, step) in steps_of(op).into_iter().enumerate() {
+            let all = steps_of(op);
+            let skipped = self.skipped(number, &all);
+            for (place, step) in all.into_iter().enumerate() {
                 let is_own = at == Some((number, step));
                 passed &= !is_own && at.is_some_and(|(own, _)| number <= own);
+                let is_skipped = skipped.as_ref().is_some_and(|range| range.contains(&place));
                 let reached = match &self.end {
+                    Some(End::Done(_)) if is_skipped => Reached::Skipped,
                     Some(End::Done(_)) => Reached::Done,
                     Some(End::Failed { .. }) if is_own => Reached::Failed,
                     Some(End::Failed { .. }) if self.was_led_back(number, step) => Reached::Done,
                     _ if is_own && self.demand().is_some() => Reached::Waits,
                     _ if is_own => Reached::Runs,
+                    _ if passed && is_skipped => Reached::Skipped,
                     _ if passed => Reached::Done,
                     _ => Reached::Ahead,
                 };
@@ -121,6 +133,30 @@ impl Guide {
             }
         }
         steps
+    }
+
+    /// Which steps of an operation were left out: as it ended, else as the person has answered.
+    fn skipped(&self, number: usize, steps: &[Step]) -> Option<std::ops::Range<usize>> {
+        let outcomes = match &self.end {
+            Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),
+            None => &[],
+        };
+        let asks = |step: &Step| matches!(step, Step::Await(_));
+        let from = match outcomes.get(number) {
+            Some(Outcome::Skipped { after }) => {
+                let done = after.and_then(|run| steps.iter().position(|step| *step == Step::Run(run))).unwrap_or(0);
+                steps.iter().skip(done).position(asks).map(|place| done + place)
+            }
+            Some(_) => None,
+            None => {
+                let task = self.skips.iter().find(|(op, _)| *op == number).map(|(_, task)| *task)?;
+                steps.iter().position(|step| *step == Step::Await(task))
+            }
+        }?;
+        // It is led back where its mode was entered.
+        let entered = steps.iter().take(from).any(|step| matches!(step, Step::Enter(_)));
+        let led_back = steps.iter().position(|step| *step == Step::LeadBack).filter(|_| entered);
+        Some(from..led_back.unwrap_or(steps.len()))
     }
 
     /// This is the way back from where it was cut off, and it was gone to its end.
@@ -143,6 +179,26 @@ mod tests {
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back });
         guide.steps().iter().map(|own| own.reached).collect()
+    }
+
+    #[test]
+    fn what_was_left_out_is_not_done() {
+        use Reached::{Ahead, Done, Runs, Skipped};
+        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let states = |guide: &Guide| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
+        for (task, after, expected) in [
+            (first, None, [Done, Skipped, Skipped, Skipped, Skipped, Skipped, Skipped]),
+            (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
+        ] {
+            let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
+            guide.tell(News { op: 0, step: Step::Await(Task::Turn(task)), detail: Detail::Begins });
+            guide.answer(Task::Turn(task), Answer::Skip);
+            let next = Step::Await(Task::Turn(Run::WiegandClockwise));
+            guide.tell(News { op: 1, step: next, detail: Detail::Begins });
+            assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
+            guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
+            assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
+        }
     }
 
     #[test]

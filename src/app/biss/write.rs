@@ -110,7 +110,7 @@ impl Encoder {
 
     /// Answers what a procedure asks.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
-        if let Some(guide) = &self.guide {
+        if let Some(guide) = &mut self.guide {
             guide.answer(task, answer);
         }
     }

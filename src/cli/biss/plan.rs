@@ -143,7 +143,9 @@ fn fired(parts: PresetParts, value: PresetValue) -> String {
 pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
     let rpm = |motion: &Option<Motion>| motion.map(|motion| motion.rpm);
     let one = |outcome: &Outcome| match outcome {
-        Outcome::Skipped => json!({"result": "skipped"}),
+        Outcome::Skipped { after } => {
+            json!({"result": "skipped", "after": after.map(|run| if run.is_clockwise() { "clockwise" } else { "counterclockwise" })})
+        }
         Outcome::Stored { registers } => json!({"result": "stored", "registers": registers}),
         Outcome::PresetStored(value) => {
             json!({"result": "preset stored", "singleturn": value.singleturn(), "multiturn": value.multiturn()})

@@ -166,7 +166,7 @@ fn is_gone(error: &Error) -> bool {
 }
 
 fn count(done: &mut Written, op: &Op, outcome: Outcome) {
-    if outcome != Outcome::Skipped {
+    if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
         done.written += op.weight();
         // The encoder's word is all there is of a calibration, and of a result that shows after a restart.

@@ -71,6 +71,7 @@ fn step(
         Reached::Done => (StepState::Done, "guide.done"),
         Reached::Waits => (StepState::Waiting, "guide.waits"),
         Reached::Runs => (StepState::Running, "guide.runs"),
+        Reached::Skipped => (StepState::Skipped, "guide.left_out"),
         Reached::Failed => (StepState::Failed, "guide.failed"),
         Reached::Ahead => (StepState::ToCome, "guide.ahead"),
     };
@@ -153,9 +154,11 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
             }
         }
         let lines = report(skin, outcomes);
-        for line in &lines {
+        for (is_done, line) in &lines {
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                let (icon, ink) =
+                    if *is_done { (icons::CHECK_CIRCLE, skin.palette.good) } else { (icons::X, skin.palette.muted) };
+                ui.label(RichText::new(icon).color(ink));
                 paragraph(ui, line);
             });
         }
@@ -168,7 +171,8 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
             }
             if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));
-                ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
+                let report: String = lines.iter().map(|(_, line)| format!("{line}\n")).collect();
+                ui.ctx().copy_text(format!("{head}{report}"));
             }
             if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
                 actions.push(Action::Biss(id, Biss::CloseGuide));
@@ -177,6 +181,11 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
     });
 }
 
-fn report(skin: &Skin, outcomes: &[Outcome]) -> Vec<String> {
-    outcomes.iter().flat_map(says::outcome).map(|text| skin.words(&text)).collect()
+/// What came of the operations, and whether that was done.
+fn report(skin: &Skin, outcomes: &[Outcome]) -> Vec<(bool, String)> {
+    let lines = |own: &Outcome| {
+        let is_done = !matches!(own, Outcome::Skipped { .. });
+        says::outcome(own).into_iter().map(move |text| (is_done, text))
+    };
+    outcomes.iter().flat_map(lines).map(|(is_done, text)| (is_done, skin.words(&text))).collect()
 }

@@ -104,7 +104,11 @@ fn speeds(text: Text, range: SpeedRange) -> Text {
 /// What came of an operation, a line each; for the page and for the report.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
-        Outcome::Skipped => vec![Text::new("guide.skipped")],
+        Outcome::Skipped { after } => vec![Text::new(match after {
+            None => "guide.skipped",
+            Some(run) if run.calibrates() => "guide.skipped_calibration",
+            Some(_) => "guide.skipped_wiegand",
+        })],
         Outcome::Stored { registers } => vec![Text::new("guide.stored").with("count", registers)],
         Outcome::PresetStored(value) => vec![
             Text::new("guide.preset_stored")

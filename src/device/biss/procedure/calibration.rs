@@ -44,11 +44,15 @@ impl Guide<'_, '_> {
             None => None,
         };
         let first = Run::CalibrationCounterclockwise;
-        let Attended::Go(counterclockwise) = self.attend(Task::Turn(first))? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(counterclockwise) = self.attend(Task::Turn(first))? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
         self.enter(&procedure)?;
         self.calibrate_in(first, &procedure)?;
         let second = Run::CalibrationClockwise;
-        let Attended::Go(clockwise) = self.attend(Task::Turn(second))? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(clockwise) = self.attend(Task::Turn(second))? else {
+            return Ok(Outcome::Skipped { after: Some(first) });
+        };
         self.calibrate_in(second, &procedure)?;
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }

@@ -13,7 +13,7 @@ impl Guide<'_, '_> {
         let procedure = self.procedure(ProcedureKind::DataWrite)?;
         let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         // Manual 6.5: not during motor operation.
-        let Attended::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
         self.enter(&procedure)?;
         self.step(Step::Open);
         self.await_status(&procedure, DataStatus::Closed.byte())?;

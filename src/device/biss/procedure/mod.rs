@@ -40,8 +40,11 @@ use crate::protocol::biss::{Descriptions, DeviceMode, Filter, PresetValue, Regis
 /// What came of an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The person left it out.
-    Skipped,
+    /// The person left it out, or what comes after its first run.
+    Skipped {
+        /// The run that was done.
+        after: Option<Run>,
+    },
     /// Registers were written, saved where that belongs to it, and read back.
     Stored {
         /// How many.

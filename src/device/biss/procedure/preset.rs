@@ -37,7 +37,7 @@ impl Guide<'_, '_> {
 
     pub(super) fn fire_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::Preset)?;
-        let Attended::Go(_) = self.attend(Task::StandAtPlace)? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(_) = self.attend(Task::StandAtPlace)? else { return Ok(Outcome::Skipped { after: None }) };
         let from = self.master.position()?;
         self.enter(&procedure)?;
         self.step(Step::Fire);

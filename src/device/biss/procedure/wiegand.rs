@@ -27,10 +27,14 @@ impl Guide<'_, '_> {
     pub(super) fn test_wiegand(&mut self, save: bool) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::WiegandTest)?;
         let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
-        let Attended::Go(clockwise) = self.attend(Task::Turn(first))? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(clockwise) = self.attend(Task::Turn(first))? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
         self.enter(&procedure)?;
         self.collect(first, &procedure, clockwise)?;
-        let Attended::Go(counterclockwise) = self.attend(Task::Turn(second))? else { return Ok(Outcome::Skipped) };
+        let Attended::Go(counterclockwise) = self.attend(Task::Turn(second))? else {
+            return Ok(Outcome::Skipped { after: Some(first) });
+        };
         self.collect(second, &procedure, counterclockwise)?;
         self.step(Step::Results);
         let results = procedure.data.and_then(|error| error.plus(1));
