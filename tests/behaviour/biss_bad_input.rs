@@ -49,10 +49,15 @@ fn a_link_is_needed_and_has_to_be_one() {
         &["verify", &good],
         &["restore", &good, "--yes"],
     ];
-    let links: [(&str, i32, &[&str]); 12] = [
+    let links: [(&str, i32, &[&str]); 17] = [
         ("ttyUSB0", 2, &["ttyUSB0", "bridge:"]),
         ("serial:/dev/x?order=lsb", 2, &["order=lsb", "low-first"]),
         ("serial:/dev/x?clock=1000000", 2, &["clock", "order"]),
+        ("serial:/dev/x?baud=fast", 2, &["baud=fast", "300 to 4000000", "115200"]),
+        ("tcp:127.0.0.1:1?parity=mark", 2, &["parity=mark", "none, even or odd"]),
+        ("bridge:/dev/x?baud=115200", 2, &["baud", "clock"]),
+        ("sim:?foo=1", 2, &["foo", "bridge, baud, parity", "line (bridge=on)"]),
+        ("sim:?line=open", 2, &["line (bridge=on)"]),
         ("bridge:/dev/x?order=low-first", 2, &["order", "clock"]),
         ("bridge:/dev/x?clock=5", 2, &["clock=5", "80000"]),
         ("bridge:", 2, &["bridge:/dev/ttyACM0"]),

@@ -68,6 +68,22 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
+/// The encoder has one speed (UBICOM reference 1); a line at another is set so and not understood.
+#[test]
+fn the_speed_of_the_line_can_be_written_into_the_link() {
+    let bench = Bench::new();
+    let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
+    let ask = |parameters: &str| {
+        let link = format!("serial:{}?{parameters}", terminal.place);
+        bench.run(&["read", "biss", "0x66", "--link", &link, "--json"])
+    };
+    for parameters in ["baud=115200", "baud=115200&parity=none&echo=auto&order=low-first"] {
+        assert_eq!(ask(parameters).json()["value"], json!(75), "{parameters}");
+    }
+    assert_eq!(ask("baud=9600").status, Some(1));
+    terminal.end("INT");
+}
+
 /// Saving a preset restarts the encoder: it is silent for half a second, in operation afterwards.
 #[test]
 fn a_restart_is_silent_and_faults_are_those_asked_for() {
@@ -227,7 +243,7 @@ fn what_cannot_be_simulated_is_told() {
         ("rpm=fast", &["rpm=fast", "-12000 to 12000"][..]),
         ("motor=on", &["steady or reverse"]),
         ("model=skm36", &["model", "temperature"]),
-        ("line=open", &["line", "temperature"]),
+        ("line=open", &["line", "--bridge"]),
         ("rpm", &["NAME=VALUE"]),
     ] {
         bench.run(&[&["simulate", "biss", "--set", setting], &listen[..]].concat()).fails(2, words);

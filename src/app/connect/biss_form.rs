@@ -7,6 +7,8 @@ use crate::app::{Text, explain};
 use crate::device::biss::{Echo, Station, Way};
 use crate::link::{LinkUrl, Scheme};
 use crate::protocol::biss::ByteOrder;
+use crate::protocol::ubicom::FORMAT;
+use crate::units::Parity;
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +42,10 @@ pub struct BissForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
+    /// Bits a second on the configuration pin; empty: 115200.
+    pub baud: String,
+    /// Parity on the configuration pin.
+    pub parity: Parity,
     /// Which byte of a register's number comes first on the configuration pin; `None`: find out.
     pub order: Option<ByteOrder>,
     /// Whether the line gives our own bytes back; unknown: find out.
@@ -72,6 +78,8 @@ impl Default for BissForm {
             host: none(),
             tcp_port: none(),
             file: none(),
+            baud: none(),
+            parity: FORMAT.parity,
             order: None,
             echo: Echo::Unknown,
             clock: none(),
@@ -128,11 +136,17 @@ impl BissForm {
         let entry = match name {
             "margin" => &mut self.margin,
             "clock" => &mut self.clock,
+            "baud" => &mut self.baud,
             "rpm" if is_virtual => &mut self.rpm,
             "fault" if is_virtual => &mut self.fault,
             "bridge" if is_virtual => {
                 self.behind_adapter = value == BRIDGE.1;
                 return self.behind_adapter;
+            }
+            "parity" => {
+                let Some(parity) = Parity::from_word(value) else { return false };
+                self.parity = parity;
+                return true;
             }
             "order" => {
                 self.order = match value {
@@ -206,6 +220,11 @@ impl BissForm {
         if self.is_on_the_bus() {
             filled(&self.clock).iter().for_each(|clock| add("clock", clock));
         } else {
+            let usual = FORMAT.baud.to_string();
+            filled(&self.baud).filter(|baud| *baud != usual).iter().for_each(|baud| add("baud", baud));
+            if self.parity != FORMAT.parity {
+                add("parity", self.parity.word());
+            }
             match self.order {
                 None => {}
                 Some(ByteOrder::LowFirst) => add("order", "low-first"),
@@ -240,6 +259,8 @@ mod tests {
             "sim:?rpm=500&order=high-first&echo=on",
             "serial:/dev/ttyUSB0",
             "serial:COM3?order=low-first&echo=off&margin=200",
+            "serial:/dev/ttyUSB0?baud=57600&parity=even&echo=on",
+            "tcp:192.168.0.7:4001?baud=9600",
             "tcp:192.168.0.7:4001",
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
@@ -266,6 +287,9 @@ mod tests {
         assert_eq!(refused(|form| (form.way, form.network) = (BissWay::Bus, true)), "form.host_missing");
         assert_eq!(refused(|form| form.way = BissWay::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.other");
+        let fast =
+            |form: &mut BissForm| (form.way, form.port, form.baud) = (BissWay::Pin, "COM3".into(), "fast".into());
+        assert_eq!(refused(fast), "form.other");
         assert_eq!(refused(|form| (form.way, form.port) = (BissWay::Pin, "a?b".to_owned())), "form.characters");
     }
 }

@@ -26,6 +26,7 @@ const PHRASES: &[&str] = &[
     "phrase.auto_on_off",
     "phrase.time_out",
     "phrase.milliseconds",
+    "phrase.baud",
     "phrase.byte_order",
     "phrase.clock",
     "phrase.voltage",

@@ -92,6 +92,10 @@ impl Kind for Biss {
 
     fn simulated(&self, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         let settings = settings(arguments)?;
+        let adapters = |(name, _): &&(String, String)| bridge::Config::KEYS.contains(&name.as_str());
+        if let Some((name, _)) = settings.iter().find(adapters).filter(|_| !arguments.bridge) {
+            return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
+        }
         let refused = |error: ConfigError| Failure::Usage(error.to_string());
         Ok(match arguments.bridge {
             true => Box::new(bridge::Adapter::new(&bridge::Config::from_pairs(&settings).map_err(refused)?)),

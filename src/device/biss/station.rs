@@ -9,12 +9,12 @@ use crate::device::bridge::flow::Flow;
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
-use crate::protocol::ubicom::REPLY_TIME_OUT;
+use crate::protocol::ubicom::{FORMAT, REPLY_TIME_OUT};
 use crate::signal::Time;
-use crate::units::Moment;
+use crate::units::{Baud, CharacterFormat, Moment, Parity};
 
 /// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 6] = ["order", "echo", "timeout", "margin", "clock", "voltage"];
+pub const PARAMETERS: [&str; 8] = ["baud", "parity", "order", "echo", "timeout", "margin", "clock", "voltage"];
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ impl Way {
     /// Those of [`PARAMETERS`] that mean something over it.
     pub const fn parameters(self) -> &'static [&'static str] {
         match self {
-            Way::ConfigPin => &["order", "echo", "timeout", "margin"],
+            Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin"],
             Way::Adapter => &["margin", "clock", "voltage"],
         }
     }
@@ -40,6 +40,9 @@ impl Way {
 pub struct Station {
     /// How the encoder is reached.
     pub way: Way,
+    /// Speed and parity on the configuration pin. The encoder has 115200 8N1 and nothing to set; what stands between it and
+    /// us, a converter or a radio link, may have another.
+    pub format: CharacterFormat,
     /// Silences, echo and damage: what every line has.
     pub line: LineState,
     /// Which byte of a register's number comes first over the configuration pin; `None` until it was probed.
@@ -110,6 +113,7 @@ impl Station {
     pub fn new(way: Way, margin: Duration) -> Self {
         Station {
             way,
+            format: FORMAT,
             line: LineState::new(margin),
             order: None,
             timeout: REPLY_TIME_OUT,
@@ -137,6 +141,12 @@ impl Station {
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, way: Way, margin: Duration) -> Result<Self, UrlError> {
         let mut station = Station::new(way, margin);
+        if let Some(baud) = query.read("baud", "bit/s from 300 to 4000000, usually 115200", read_baud)? {
+            station.format.baud = baud;
+        }
+        if let Some(parity) = query.read("parity", "none, even or odd", Parity::from_word)? {
+            station.format.parity = parity;
+        }
         station.order = query.read("order", "auto, low-first or high-first", read_order)?.flatten();
         if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
             station.line.echo = echo;
@@ -207,7 +217,7 @@ impl Station {
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.way {
-            Way::ConfigPin => f.write_str("UBICOM"),
+            Way::ConfigPin => write!(f, "UBICOM at {}", self.format),
             Way::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
         }
     }
@@ -221,6 +231,11 @@ fn read_order(text: &str) -> Option<Option<ByteOrder>> {
         "high-first" => Some(Some(ByteOrder::HighFirst)),
         _ => None,
     }
+}
+
+/// What serial ports can be set to; the port itself may have fewer.
+fn read_baud(text: &str) -> Option<Baud> {
+    text.parse().ok().filter(|baud| (300..=4_000_000).contains(baud)).and_then(Baud::new)
 }
 
 fn read_timeout(text: &str) -> Option<Duration> {
@@ -250,6 +265,7 @@ mod tests {
     #[test]
     fn what_is_left_out_is_probed_or_usual() {
         let station = station("").unwrap();
+        assert_eq!(station.to_string(), "UBICOM at 115200 8N1");
         assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
         assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(100), Duration::from_millis(50)));
         assert_eq!((station.clock_hz, station.supply, station.frame().bits()), (1_000_000, None, 41));
@@ -257,7 +273,10 @@ mod tests {
 
     #[test]
     fn a_line_is_read_from_its_parameters() {
-        let station = station("order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75").unwrap();
+        let station =
+            station("baud=9600&parity=even&order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75")
+                .unwrap();
+        assert_eq!(station.to_string(), "UBICOM at 9600 8E1");
         assert_eq!((station.order, station.line.echo), (Some(ByteOrder::HighFirst), Echo::On));
         assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(250), Duration::from_millis(5)));
         assert_eq!(station.clock_hz, 80_000);
@@ -267,6 +286,8 @@ mod tests {
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         let cases = [
+            ("baud=0", "baud=0: bit/s from 300 to 4000000, usually 115200"),
+            ("parity=mark", "parity=mark: none, even or odd"),
             ("order=lsb", "order=lsb: auto, low-first or high-first"),
             ("echo=yes", "echo=yes: auto, on or off"),
             ("timeout=0", "timeout=0: milliseconds from 1 to 10000"),

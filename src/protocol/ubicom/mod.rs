@@ -27,8 +27,14 @@ const BAUD: Baud = match Baud::new(115_200) {
 
 /// How the line is set: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Bits of a character: start, eight of data, stop.
-pub const CHARACTER_BITS: u64 = 10;
+/// Bits of a character: start, eight of data, a parity where there is one, stop.
+pub const fn character_bits(format: CharacterFormat) -> u64 {
+    match format.parity {
+        Parity::None => 10,
+        Parity::Even | Parity::Odd => 11,
+    }
+}
+
 /// So long a reply may take (`U`).
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
 /// So long an encoder may stay silent while it calibrates (`U`).

@@ -8,7 +8,7 @@ use super::config::Config;
 use super::encoder::Encoder;
 use crate::protocol::biss::{ByteOrder, RegisterAddress};
 use crate::protocol::ubicom::{
-    BYTE_TIME_OUT, CHARACTER_BITS, FORMAT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written,
+    BYTE_TIME_OUT, FORMAT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
 use crate::sim::Faults;
 use crate::sim::line::{Line, Queue, Wires};
@@ -141,7 +141,7 @@ impl Port {
     /// Puts bytes on the line and gives the moment when the last one is through.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
-        let sent = self.wires.send(start, format.baud.time_of_bits(CHARACTER_BITS), bytes);
+        let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
             // Between different settings no byte is read as it was sent.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };

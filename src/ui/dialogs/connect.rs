@@ -225,14 +225,19 @@ fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
     entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
         let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
         choice(ui, &skin.say("settings_card.baud"), &mut form.baud, bauds);
-        let parities = [Parity::Even, Parity::Odd, Parity::None];
-        let parities = parities.map(|parity| (parity, skin.words(&words::parity(parity))));
-        ui.label(skin.label(skin.say("settings_card.parity")));
-        choice(ui, &skin.say("settings_card.parity"), &mut form.parity, parities);
+        parity(ui, skin, &mut form.parity);
     });
     entry(ui, skin, &skin.say("connect.address"), |ui| {
         text_entry(ui, &mut form.address, 96.0, &skin.say("connect.address"), "40");
     });
+}
+
+/// The parity, beside the speed.
+fn parity(ui: &mut Ui, skin: &Skin, own: &mut Parity) {
+    let parities = [Parity::Even, Parity::Odd, Parity::None];
+    let parities = parities.map(|parity| (parity, skin.words(&words::parity(parity))));
+    ui.label(skin.label(skin.say("settings_card.parity")));
+    choice(ui, &skin.say("settings_card.parity"), own, parities);
 }
 
 /// What is rarely needed.

@@ -28,6 +28,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     if is_virtual {
         // The virtual encoder's converter may echo; whether it does is learned as with a real one.
         station.line.echo = Echo::Unknown;
+        check_parameters(&url.query, url.scheme, &[&LINE_ONLY[..], &Config::KEYS].concat())?;
     } else {
         check_parameters(&url.query, url.scheme, &PARAMETERS)?;
     }

@@ -11,7 +11,7 @@ use crate::device::biss::position::PositionReading;
 use crate::device::biss::{Echo, Error};
 use crate::protocol::biss::{ByteOrder, RegisterAddress};
 use crate::protocol::ubicom::{
-    BYTE_TIME_OUT, CHARACTER_BITS, FORMAT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written,
+    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
 use crate::units::Moment;
 
@@ -83,7 +83,13 @@ impl Master<'_> {
 
     /// The time that an exchange takes at most.
     pub(super) fn longest_pin_exchange(&self) -> Duration {
-        characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
+        self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
+    }
+
+    /// The time of so many characters on the line.
+    fn characters(&self, count: usize) -> Duration {
+        let format = self.station.format;
+        format.baud.time_of_bits(character_bits(format) * count as u64)
     }
 
     fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<Timed> {
@@ -121,7 +127,7 @@ impl Master<'_> {
             let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut heard.receiver) {
                 if let Some(reply) = self.judge(request, &frame, &mut heard) {
-                    let at = last_at - characters(frame.len());
+                    let at = last_at - self.characters(frame.len());
                     self.line.show(at, MaskedBytes::clear(&frame));
                     self.understood(&heard);
                     return Ok(Ok(Timed { reply, at }));
@@ -170,8 +176,4 @@ impl Master<'_> {
             None => Trouble::Silence { echo_heard: heard.echo_heard },
         }
     }
-}
-
-fn characters(count: usize) -> Duration {
-    FORMAT.baud.time_of_bits(CHARACTER_BITS * count as u64)
 }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{Dialog, echo, link_text, margin, network, recording, serial, unfolded};
+use super::{Dialog, echo, link_text, margin, network, parity, recording, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{BissForm, BissWay};
 use crate::protocol::biss::ByteOrder;
@@ -54,6 +54,10 @@ pub(super) fn form_ui(
     }
     if form.way != BissWay::Replay && unfolded(ui, skin, more) {
         if !form.is_on_the_bus() {
+            entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+                text_entry(ui, &mut form.baud, 96.0, &skin.say("settings_card.baud"), "115200");
+                parity(ui, skin, &mut form.parity);
+            });
             let word = skin.say("connect.biss_order");
             entry(ui, skin, &word, |ui| {
                 let orders = [
