@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::Failure;
@@ -14,7 +15,7 @@ use crate::signal::quality::Family;
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
 /// window.
 #[derive(Parser)]
-#[command(name = "encoder-studio", version)]
+#[command(name = "encoder-studio", version, after_help = KINDS)]
 pub(super) struct Arguments {
     #[command(flatten)]
     pub(super) common: Common,
@@ -25,6 +26,15 @@ pub(super) struct Arguments {
     pub(super) command: Option<Command>,
 }
 
+/// Which commands are for which kinds of device.
+const KINDS: &str = "\
+Kinds of device: hiperface and biss; diff, verify and restore find it in the profile. find is for hiperface alone; do has
+other actions for each (help do). Without hardware: --link sim:, as in
+
+  encoder-studio identify biss --link sim:
+
+An address or a register is hexadecimal with 0x in front, else decimal.";
+
 #[derive(Args)]
 pub(super) struct Common {
     /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, bridge:PATH, bridge:tcp:HOST:PORT or replay:FILE, with
@@ -34,7 +44,7 @@ pub(super) struct Common {
     /// Print JSON.
     #[arg(long, global = true)]
     pub(super) json: bool,
-    /// An access code other than 55h, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
+    /// hiperface: an access code other than 55h, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
     // Taken as text: a message about a wrong argument repeats it, and this may be a code.
     pub(super) codes: Vec<String>,
@@ -47,15 +57,15 @@ pub(super) struct Common {
 pub(super) enum Command {
     /// Serial ports on this machine.
     Ports,
-    /// Every address, speed and parity that answers.
+    /// hiperface: every address, speed and parity that answers.
     Find(Find),
     /// Who is there.
     Identify(Device),
-    /// Errors and warnings, decoded; reads the whole error queue.
+    /// Errors and warnings, decoded; of hiperface the whole error queue.
     Status(Device),
     /// The position.
     Position(Position),
-    /// One value.
+    /// One value: a data field, a register, a setting.
     Read(Read),
     /// Read everything that can be restored, and what identifies the device.
     Save(Save),
@@ -67,7 +77,7 @@ pub(super) enum Command {
     Restore(Restore),
     /// Write one value.
     Write(Write),
-    /// An action: restart, check, set the position, data fields, access codes … (help do lists them).
+    /// An action: hiperface restart, check, data fields …; biss calibrate, filter, preset … (help do lists them).
     Do(Do),
     /// Explain captured bytes, offline.
     Decode(Decode),
@@ -79,6 +89,7 @@ pub(super) enum Command {
 
 #[derive(Args)]
 pub(super) struct Device {
+    /// The kind of device.
     pub(super) device: DeviceKind,
 }
 
@@ -86,12 +97,14 @@ pub(super) struct Device {
 pub(super) enum DeviceKind {
     /// HIPERFACE motor-feedback encoder.
     Hiperface,
-    /// POSITAL kit encoder with BiSS C, over UBICOM (serial:, tcp:) or an adapter (bridge:).
+    /// POSITAL kit encoder, or another with BiSS C; over UBICOM (serial:, tcp:) or an adapter (bridge:).
     Biss,
 }
 
 #[derive(Args)]
 pub(super) struct Find {
+    /// The kind of device: an encoder of another kind has no address and one speed.
+    #[arg(value_parser = PossibleValuesParser::new(["hiperface"]).map(|_| DeviceKind::Hiperface))]
     pub(super) device: DeviceKind,
     /// Exactly one encoder is connected: also ask by broadcast.
     #[arg(long)]
@@ -103,6 +116,7 @@ pub(super) struct Find {
 
 #[derive(Args)]
 pub(super) struct Position {
+    /// The kind of device.
     pub(super) device: DeviceKind,
     /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
     #[arg(long, allow_negative_numbers = true)]
@@ -117,19 +131,26 @@ pub(super) struct Position {
 
 #[derive(Args)]
 pub(super) struct Read {
+    /// The kind of device.
     pub(super) device: DeviceKind,
-    /// What to name: hiperface field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings; biss 0x66,
-    /// 0x24:0x10 (bank:offset), either with +COUNT behind it.
+    /// What to read, by its name.
+    ///
+    /// hiperface: field:N, field:N@ADDR+COUNT (without +COUNT the rest of the field), status:N, analogue:CH, counter,
+    /// address, settings.
+    ///
+    /// biss: 0x66 (a direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h); with +COUNT a run of them, as
+    /// 0x24:0x10+4.
     pub(super) item: String,
 }
 
 #[derive(Args)]
 pub(super) struct Save {
+    /// The kind of device.
     pub(super) device: DeviceKind,
     /// The profile to write.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub(super) file: PathBuf,
-    /// Fail when a data field cannot be read because its access code is not known.
+    /// hiperface: fail when a data field cannot be read because its access code is not known.
     #[arg(long)]
     pub(super) complete: bool,
 }
@@ -163,7 +184,7 @@ pub(super) struct Restore {
     /// Also restore values of the mounting onto another serial number.
     #[arg(long)]
     pub(super) with_mounting: bool,
-    /// Delete and create again where a field has another size and is not the last.
+    /// hiperface: delete and create again where a field has another size and is not the last.
     #[arg(long)]
     pub(super) recreate: bool,
 }
@@ -180,11 +201,17 @@ pub(super) struct Consenting {
 
 #[derive(Args)]
 pub(super) struct Write {
+    /// The kind of device.
     pub(super) device: DeviceKind,
-    /// What to name: hiperface field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings; biss
-    /// 0x24:0x10 (bank:offset), 0x24:0x10+COUNT, 0x40 to 0x7F.
+    /// What to write, by its name.
+    ///
+    /// hiperface: field:N, field:N@ADDR+COUNT (without +COUNT as many bytes as are given), status:N, counter (to 0),
+    /// address, settings.
+    ///
+    /// biss: 0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (a run of four), 0x40 to 0x7F (direct). Registers that a procedure
+    /// writes (filter, preset, calibration) are changed with "do biss …".
     pub(super) item: String,
-    /// A number (decimal or 0x), or hex bytes for a field or a run of registers.
+    /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT).
     #[arg(allow_hyphen_values = true)]
     pub(super) value: String,
     #[command(flatten)]
@@ -193,54 +220,61 @@ pub(super) struct Write {
 
 #[derive(Args)]
 pub(super) struct Do {
+    /// The kind of device.
     pub(super) device: DeviceKind,
+    /// What to do.
     pub(super) action: Action,
+    /// What the action takes, as said there.
     #[arg(allow_negative_numbers = true)]
     pub(super) arguments: Vec<String>,
     #[command(flatten)]
     pub(super) consent: Consenting,
-    /// set-position: exactly this value, also when it breaks the phase to the sine signal.
+    /// hiperface set-position: exactly this value, also when it breaks the phase to the sine signal.
     #[arg(long)]
     pub(super) exact: bool,
-    /// synchronise: the encoder is a kit, where its type does not tell.
+    /// hiperface synchronise: the encoder is a kit, where its type does not tell.
     #[arg(long)]
     pub(super) kit: bool,
-    /// biss: how long the motor may take to turn as a run needs it; 30 without a terminal, 300 on one.
+    /// biss: how long the motor may take to turn, or the shaft to rest, as an action needs it; 30 without a terminal, 300
+    /// on one.
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
     pub(super) timeout: Option<u16>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Action {
-    /// Restart the encoder and read its status.
+    /// hiperface: restart the encoder and read its status.
     Reset,
-    /// The start-up sequence with a verdict a line; "check restart" restarts first.
+    // Two kinds of device have it.
+    #[value(
+        help = "hiperface: the start-up sequence with a verdict a line, with restart behind it after a restart; biss: identity, errors, position, data sheet, limits, wear with a verdict a line"
+    )]
     Check,
-    /// POSITION: the nearest value that keeps the phase to the sine signal.
+    /// hiperface: POSITION, the nearest value that keeps the phase to the sine signal.
     SetPosition,
-    /// POSITION: for kit encoders, aligns the code tracks as well.
+    /// hiperface: POSITION, for kit encoders, aligns the code tracks as well.
     Synchronise,
-    /// NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1].
+    // Brackets in what rustdoc reads would be links.
+    #[value(help = "hiperface: NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1]")]
     CreateField,
-    /// NUMBER SIZE: the last field only.
+    /// hiperface: NUMBER SIZE, the last field only.
     ResizeField,
-    /// NUMBER: write protect.
+    /// hiperface: NUMBER, write protect.
     LockField,
-    /// NUMBER: make writable.
+    /// hiperface: NUMBER, make writable.
     UnlockField,
-    /// NUMBER: the last field only.
+    /// hiperface: NUMBER, the last field only.
     DeleteField,
-    /// NUMBER HEX: the present code is given with --code.
+    /// hiperface: NUMBER HEX, the present code is given with --code.
     ChangeCode,
-    /// Counter + 1.
+    /// hiperface: counter + 1.
     IncrementCounter,
-    /// Counter to 0.
+    /// hiperface: counter to 0.
     ClearCounter,
-    /// SETTINGS: interface settings until the next restart.
+    /// hiperface: SETTINGS, interface settings until the next restart.
     ConfigureForNow,
     /// biss: calibrate the singleturn; the motor turns counterclockwise, then clockwise, at 500 ± 2 rpm.
     Calibrate,
-    // Brackets in what rustdoc reads would be links.
     #[value(
         help = "biss: [save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm"
     )]
@@ -323,6 +357,7 @@ impl Limits {
 
 #[derive(Args)]
 pub(super) struct Simulate {
+    /// The kind of device.
     pub(super) device: DeviceKind,
     /// Make a pseudo-terminal and a symbolic link to it here.
     #[arg(long, value_name = "PATH", conflicts_with = "listen")]
@@ -339,7 +374,8 @@ pub(super) struct Simulate {
     /// drop:P, flip:P, garbage:P, delay:MS, silent-after:N, die-in-store:N; comma separated.
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<String>,
-    /// A property of the virtual encoder, as after sim:? (model=sel37, rpm=60, echo=on …); repeatable.
+    /// A property of the virtual encoder, as after sim:? (rpm=60, echo=on; hiperface model=sel37; biss firmware=1.2.0 …);
+    /// repeatable. One that there is not is answered with all that there are.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) settings: Vec<String>,
 }

@@ -33,5 +33,5 @@ fn value(range: RegisterRange, is_run: bool, text: &str) -> Result<Vec<u8>> {
     if bytes.len() == usize::from(range.count()) {
         return Ok(bytes);
     }
-    Err(Failure::Usage(format!("{range} takes {} bytes, {} are given", range.count(), bytes.len())))
+    Err(Failure::Usage(format!("bytes for {range}: {} needed, {} given", range.count(), bytes.len())))
 }

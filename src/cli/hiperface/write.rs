@@ -55,7 +55,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
                 return Err(Failure::Usage("there are no bytes to write".to_owned()));
             }
             if let Some(count) = range.count.filter(|count| *count != bytes.len()) {
-                return Err(Failure::Usage(format!("{range} takes {count} bytes, {} are given", bytes.len())));
+                return Err(Failure::Usage(format!("bytes for {range}: {count} needed, {} given", bytes.len())));
             }
             Ok(Change::Store(vec![(range, bytes)]))
         }

@@ -45,6 +45,8 @@ pub struct Interrupted {
     pub cause: Failure,
     /// In which state the encoder was left.
     pub left: Left,
+    /// A register that is written by itself, and of which is not known whether it took its value.
+    pub unclear: Option<RegisterAddress>,
 }
 
 /// In which state an encoder was left.
@@ -119,7 +121,7 @@ pub fn carry_out(
         Ok(description) => description,
         Err(error) => {
             let (at, cause, left) = (Step::LeadBack, Failure::Device(error), Left::Operation);
-            return Err(Box::new(Interrupted { done, at, cause, left }));
+            return Err(Box::new(Interrupted { done, at, cause, left, unclear: None }));
         }
     };
     let standing = Standing::in_operation(confirmed.password);
@@ -143,9 +145,19 @@ pub fn carry_out(
         };
         let standing = guide.standing();
         let left = if standing.is_in_operation() { Left::Operation } else { Left::Unknown(standing.clone()) };
-        return Err(Box::new(Interrupted { done, at, cause, left }));
+        let unclear = unclear(op, &cause);
+        return Err(Box::new(Interrupted { done, at, cause, left, unclear }));
     }
     Ok(done)
+}
+
+/// The register of an operation that may have written it. What was refused, or ended before it was sent, has not.
+fn unclear(op: &Op, cause: &Failure) -> Option<RegisterAddress> {
+    match (op, cause) {
+        (Op::WriteRegister { .. }, Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
+        (Op::WriteRegister { address, .. }, _) => Some(*address),
+        _ => None,
+    }
 }
 
 /// Back to operation, as far as there is a line to say so.

@@ -90,8 +90,12 @@ pub enum ChangeKind {
     Guided,
     /// The same with a calibration among them: no backup holds its table.
     Calibration,
-    /// One thing, which is done or not.
-    Single,
+    /// A Wiegand test alone: it stores nothing but its result.
+    WiegandTest,
+    /// Another filter.
+    Filter,
+    /// A preset: its value, the shaft's place, or both.
+    Preset,
 }
 
 impl Change {
@@ -101,8 +105,10 @@ impl Change {
             Change::Restore { .. } => ChangeKind::Restore,
             Change::Write(_) => ChangeKind::Bytes,
             Change::Guided { run, .. } if run.calibrate => ChangeKind::Calibration,
+            Change::Guided { run, .. } if run.preset.is_none() && run.data.is_none() => ChangeKind::WiegandTest,
             Change::Guided { .. } => ChangeKind::Guided,
-            Change::SelectFilter(_) | Change::Preset { .. } => ChangeKind::Single,
+            Change::SelectFilter(_) => ChangeKind::Filter,
+            Change::Preset { .. } => ChangeKind::Preset,
         }
     }
 }

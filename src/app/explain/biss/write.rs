@@ -142,16 +142,20 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         Left::Operation => vec![Text::new("biss_left.operation")],
         Left::Unknown(standing) => left(standing),
     });
-    // An operation that may have been carried out counts as a write cycle, where it costs one.
-    let id = match kind {
+    let what_next = match (interrupted.unclear, kind) {
+        (Some(register), _) => Text::new("biss_write.unclear").with("register", register),
         // The table may be lost without a write, and no backup holds it.
-        ChangeKind::Calibration => "write.backup_calibration",
-        _ if done.write_cycles == 0 && done.written == 0 => "write.untouched",
-        ChangeKind::Restore => "write.backup",
-        ChangeKind::Bytes => "write.backup_bytes",
-        ChangeKind::Guided | ChangeKind::Single => "write.backup_single",
+        (None, ChangeKind::Calibration) => Text::new("write.backup_calibration"),
+        // An operation that may have been carried out counts as a write cycle, where it costs one.
+        _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
+        (None, ChangeKind::Restore) => Text::new("write.backup"),
+        (None, ChangeKind::Bytes) => Text::new("write.backup_bytes"),
+        (None, ChangeKind::Guided) => Text::new("biss_write.guided"),
+        (None, ChangeKind::WiegandTest) => Text::new("biss_write.wiegand"),
+        (None, ChangeKind::Filter) => Text::new("biss_write.filter"),
+        (None, ChangeKind::Preset) => Text::new("biss_write.preset"),
     };
-    texts.push(Text::new(id).with("backup", backup.display()));
+    texts.push(what_next.with("backup", backup.display()));
     texts
 }
 
@@ -162,10 +166,13 @@ pub fn weight(text: &Text) -> Severity {
         "biss_left.at"
         | "write.backup"
         | "write.backup_bytes"
-        | "write.backup_single"
         | "write.backup_calibration"
-        | "write.untouched" => Severity::Note,
-        "write.cancelled" => Severity::Warning,
+        | "write.untouched"
+        | "biss_write.guided"
+        | "biss_write.wiegand"
+        | "biss_write.filter"
+        | "biss_write.preset" => Severity::Note,
+        "write.cancelled" | "biss_write.unclear" => Severity::Warning,
         _ => Severity::Error,
     }
 }
@@ -252,14 +259,45 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::device::biss::Error;
     use crate::device::biss::procedure::{Blocker, Possible, Step, Task};
-    use crate::protocol::biss::DeviceMode;
+    use crate::protocol::biss::{DeviceMode, RegisterAddress};
+
+    fn cut_off(write_cycles: u64, cause: Failure, left: Left) -> Interrupted {
+        let done = Written { ops: 1, write_cycles, ..Written::default() };
+        Interrupted { done, at: Step::Run(Run::CalibrationClockwise), cause, left, unclear: None }
+    }
 
     fn told(cause: Failure, left: Left) -> (Vec<String>, Vec<String>) {
-        let done = Written { ops: 1, write_cycles: 1, ..Written::default() };
-        let at = Step::Run(Run::CalibrationClockwise);
-        let texts = interruption(&Interrupted { done, at, cause, left }, Path::new("b.ron"), 3, ChangeKind::Guided);
+        let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
         let words = |language| texts.iter().map(|text| text.words(language)).collect();
         (words(English), words(German))
+    }
+
+    /// Each action in words of its own, also at a terminal; and nothing is told as untouched that may be otherwise.
+    #[test]
+    fn what_to_do_about_a_write_that_was_cut_off_fits_its_kind() {
+        let last = |interrupted: &Interrupted, kind| {
+            let text = interruption(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
+            assert!(text.terminal().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
+            text.terminal()
+        };
+        let lost = || Failure::Device(Error::NeverSilent);
+        let cases = [
+            (ChangeKind::Restore, "restoring the profile again"),
+            (ChangeKind::Bytes, "Give the command again"),
+            (ChangeKind::Guided, "done before stands"),
+            (ChangeKind::WiegandTest, "changes nothing but its saved result"),
+            (ChangeKind::Filter, "status biss"),
+            (ChangeKind::Preset, "position biss"),
+        ];
+        for (kind, part) in cases {
+            let words = last(&cut_off(1, lost(), Left::Operation), kind);
+            assert!(words.contains(part), "{words}");
+            assert!(last(&cut_off(0, lost(), Left::Operation), kind).contains("Nothing was changed"));
+        }
+        let mut interrupted = cut_off(0, lost(), Left::Operation);
+        interrupted.unclear = RegisterAddress::direct(0x6A);
+        let words = last(&interrupted, ChangeKind::Bytes);
+        assert!(words.contains("not known") && words.contains("read biss 0x6A"), "{words}");
     }
 
     fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Left {
