@@ -306,9 +306,11 @@ pub(super) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
 #[derive(Args)]
 pub(super) struct Decode {
     pub(super) protocol: DeviceKind,
-    /// A frame as hex bytes; several frames as one argument each. biss: UBICOM frames, bridge packets (up to their 00), or
-    /// position frames of the kit encoder: 41 bits right-justified (16 turns, 17 steps, error, warning, CRC-6), one word
-    /// of 11 hex digits or with 0x.
+    /// A frame as hex bytes; several frames as one argument each.
+    ///
+    /// biss: UBICOM frames, bridge packets (up to their 00), position frames of the kit encoder (41 bits right-justified:
+    /// 16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as "position"
+    /// prints them (024698000h, or raw=610893824 from JSON or a table).
     #[arg(required = true)]
     pub(super) hex: Vec<String>,
 }

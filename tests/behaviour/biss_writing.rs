@@ -1,5 +1,7 @@
 //! Writing into a kit encoder that is not our program: over its configuration pin and over an adapter.
 
+use encoder_studio::store::{DeviceKey, Logbook, Outcome};
+use jiff::Timestamp;
 use serde_json::{Value, json};
 
 use super::biss_profile::PROFILE;
@@ -235,6 +237,37 @@ fn filter_and_preset_are_actions() {
         assert_eq!(preset(&["0"]), 2);
         assert_eq!(place(encoder), (0, 0));
     }
+}
+
+/// Manual 6.1: 1000 write cycles. From 800 on it is said; beyond 1000 nothing is written unless that is wished.
+#[test]
+fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
+    let bench = Bench::new();
+    let write = |more: &[&str]| {
+        let words = ["do", "biss", "preset", "98304", "0", "--yes", "--link", "sim:", "--json"];
+        bench.run(&[&words[..], more].concat())
+    };
+    let first = write(&[]);
+    assert_eq!((first.json()["write_cycles"].as_u64(), first.err.contains("write cycles")), (Some(2), false));
+    let device = DeviceKey {
+        kind: "biss".to_owned(),
+        device_type: "4672-010168110001".to_owned(),
+        serial_number: "1234567".to_owned(),
+        is_virtual: true,
+    };
+    let log = bench.path("data").join("encoder-studio").join("logbook.sqlite");
+    let wear_to = |cycles: u64| {
+        let mut logbook = Logbook::open(&log).unwrap();
+        let spent = cycles - logbook.write_cycles(&device).unwrap();
+        let id = logbook.intend(Timestamp::now(), &device, "long ago", spent, None).unwrap();
+        logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
+    };
+    wear_to(798);
+    write(&[]).says(&["at least 800 of the 1000"]);
+    wear_to(999);
+    write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
+    assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));
+    assert_eq!(Logbook::open(&log).unwrap().write_cycles(&device).unwrap(), 1001);
 }
 
 /// Once in the reading and in three places of the writing.

@@ -6,7 +6,7 @@ use crate::app::review::{self, OpWords, Reviewed, Toggle};
 use crate::app::{Text, explain};
 use crate::profile::PlanId;
 use crate::profile::biss::{Op, RestoreOptions};
-use crate::worker::biss::{Change, Committed, Prepared, WEAR_LIMIT, WEAR_WARNING};
+use crate::worker::biss::{Change, Committed, Prepared, WEAR_LIMIT};
 
 /// A write on its way.
 pub type Review = review::Review<Change, Prepared, Committed>;
@@ -53,10 +53,7 @@ impl Reviewed for Review {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
-        let after = prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles());
-        if after >= WEAR_WARNING && prepared.plan.write_cycles() > 0 {
-            warnings.push(Text::new("biss_review.wear").with("cycles", after).with("limit", WEAR_LIMIT));
-        }
+        warnings.extend(explain::biss::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(Text::new("biss_review.table"));
         }

@@ -6,7 +6,7 @@ mod write;
 
 pub use damage::damage;
 pub use guide::{advice, blocker, mode, outcome, procedure, step, task};
-pub use write::{change, failure, op, plan, weight, written};
+pub use write::{change, failure, op, plan, wear, weight, written};
 
 use super::{adapter, file, link, store};
 use crate::app::Text;

@@ -1,5 +1,6 @@
-//! `decode`: captured UBICOM frames, bridge packets and position frames in words, offline. Which of them bytes are is
-//! found by what fits: the sum, the CRC.
+//! `decode`: captured UBICOM frames, bridge packets, position frames and position words in words, offline. Which of them
+//! bytes are is found by what fits: the sum, the CRC. A position word has neither, so it is written as `position` prints it:
+//! `024698000h`, or `raw=610893824`.
 
 mod bridge;
 mod position;
@@ -9,6 +10,7 @@ use serde_json::{Map, json};
 
 use super::KIND;
 use crate::cli::decode::{self, Explained, show};
+use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 use crate::protocol::ubicom::{Request, SYNC};
@@ -17,6 +19,8 @@ use crate::protocol::ubicom::{Request, SYNC};
 enum Captured {
     /// The bits of a position frame, as they were written.
     Bits(String, u64),
+    /// A position word, as it was written.
+    Word(String, u64),
     Bytes(Vec<u8>),
 }
 
@@ -26,28 +30,55 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     for captured in captured(words)? {
         match captured {
             Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
+            Captured::Word(written, raw) => explained.push(position::explain_word(raw, written)),
             Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut asked)),
         }
     }
     show(output, &explained)
 }
 
-/// A word of 11 hex digits, or a short one with 0x, is a number of bits; others are bytes.
+/// A word of 11 hex digits, or a short one with 0x, is the bits of a frame; one with raw= or a final h a position word;
+/// others are bytes.
 fn captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
         (false, digits) => digits.len() == 11 && digits.chars().all(|c| c.is_ascii_hexdigit()),
     };
-    if !words.iter().any(is_bits) {
+    let is_word = |word: &String| word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H']));
+    if !words.iter().any(|word| is_bits(word) || is_word(word)) {
+        words.iter().try_for_each(|word| ensure_no_word(word))?;
         return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
     }
     let one = |word: &String| match digits(word) {
+        _ if is_word(word) => position_word(word).map(|raw| Captured::Word(word.clone(), raw)),
         (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
             .map(|raw| Captured::Bits(word.clone(), raw))
             .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
-        _ => decode::bytes(word).map(Captured::Bytes),
+        _ => ensure_no_word(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
     };
     words.iter().map(one).collect()
+}
+
+/// In front of a position word as JSON and tables have it.
+const RAW: &str = "raw=";
+
+fn position_word(word: &str) -> Result<u64> {
+    let number = match word.strip_prefix(RAW) {
+        Some(number) => parse_number(number).and_then(|number| u64::try_from(number).ok()),
+        None => u64::from_str_radix(word.trim_end_matches(['h', 'H']), 16).ok(),
+    };
+    number.ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, as 024698000h or raw=610893824")))
+}
+
+/// An odd number of digits is no bytes, and may be a position word, decimal or hexadecimal: that has to be said.
+fn ensure_no_word(word: &str) -> Result<()> {
+    let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
+    if !is_number {
+        return Ok(());
+    }
+    let why = "has an odd number of digits, so it is not bytes; a position word is written 024698000h (hexadecimal) or \
+               raw=610893824 (as JSON and tables have it), a position frame with 11 digits or 0x";
+    Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
 /// Whether a word begins with 0x, and what stands behind it.

@@ -19,7 +19,7 @@ use crate::device::biss::write::Written;
 use crate::profile::biss::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::profile::{Consent, Operation as _};
 use crate::protocol::biss::PresetValue;
-use crate::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT, WEAR_WARNING};
+use crate::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT};
 
 /// Manual 6.4.
 pub(super) const CALIBRATION: &str =
@@ -45,9 +45,8 @@ pub(super) fn commit(
     if prepared.plan.is_empty() {
         return Ok((Spent::default(), Vec::new()));
     }
-    if let Some(seen) = prepared.cycles_seen.filter(|seen| *seen >= WEAR_WARNING) {
-        output
-            .remark(&format!("This computer has seen {seen} write cycles of the {WEAR_LIMIT} that the flash stands."));
+    if let Some(wear) = explain::biss::wear(&prepared) {
+        output.remark(&wear.terminal());
     }
     agree(output, consent, &shown(&prepared).text)?;
     let granted = Consent::to(prepared.plan.id());

@@ -6,7 +6,7 @@ use crate::bits::parse_hex;
 use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::{out_of_range, parse_number};
-use crate::cli::output::Output;
+use crate::cli::output::{Output, count};
 use crate::cli::profiles::show_changed;
 use crate::cli::{Failure, Result};
 use crate::profile::biss::RegisterRange;
@@ -33,5 +33,5 @@ fn value(range: RegisterRange, is_run: bool, text: &str) -> Result<Vec<u8>> {
     if bytes.len() == usize::from(range.count()) {
         return Ok(bytes);
     }
-    Err(Failure::Usage(format!("bytes for {range}: {} needed, {} given", range.count(), bytes.len())))
+    Err(Failure::Usage(format!("{range} takes {}, given: {}", count(range.count().into(), "byte"), bytes.len())))
 }

@@ -8,7 +8,7 @@ use crate::cli::args::{Common, Consenting, Write};
 use crate::cli::consent::{agree, require_consent};
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
-use crate::cli::output::{Lines, Output};
+use crate::cli::output::{Lines, Output, count as plural};
 use crate::cli::profiles::{Spent, show_changed};
 use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
@@ -55,7 +55,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
                 return Err(Failure::Usage("there are no bytes to write".to_owned()));
             }
             if let Some(count) = range.count.filter(|count| *count != bytes.len()) {
-                return Err(Failure::Usage(format!("bytes for {range}: {count} needed, {} given", bytes.len())));
+                return Err(Failure::Usage(format!("{range} takes {}, given: {}", plural(count, "byte"), bytes.len())));
             }
             Ok(Change::Store(vec![(range, bytes)]))
         }

@@ -189,7 +189,7 @@ pub enum Error {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// Bytes that are no frame.
-    #[error("{bytes} bytes without a whole frame")]
+    #[error("bytes without a whole frame: {bytes}")]
     NoFrame {
         /// How many.
         bytes: usize,

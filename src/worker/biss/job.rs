@@ -132,6 +132,15 @@ pub struct Prepared {
     pub mounting_left: Vec<RegisterRange>,
 }
 
+impl Prepared {
+    /// Write cycles that the flash will have taken at least, where a person should know that they are numbered.
+    pub fn wear(&self) -> Option<u64> {
+        let cost = self.plan.write_cycles();
+        let after = self.cycles_seen.unwrap_or(0).saturating_add(cost);
+        (cost > 0 && after >= WEAR_WARNING).then_some(after)
+    }
+}
+
 /// A plan that a person consented to.
 #[derive(Clone, Debug)]
 pub struct Commit {

@@ -14,7 +14,7 @@ use crate::device::biss::procedure::{Activity, Failure, Run, Standing};
 use crate::device::biss::write::{Interrupted, Left, Written};
 use crate::profile::biss::{Op, PlanError, PresetParts, RegisterChange, RegisterRange};
 use crate::protocol::biss::{CalibrationStatus, PresetValue, ProcedureKind, WiegandStatus};
-use crate::worker::biss::{Change, ChangeKind};
+use crate::worker::biss::{Change, ChangeKind, Prepared, WEAR_LIMIT};
 
 /// A change in words.
 pub fn change(change: &Change) -> Text {
@@ -121,6 +121,12 @@ fn kind_of(kind: ProcedureKind) -> Text {
         ProcedureKind::FilterSelection => "guide.filter",
         ProcedureKind::Preset => "guide.store_preset",
     })
+}
+
+/// That the write cycles of the flash are numbered, where a plan comes near their end.
+pub fn wear(prepared: &Prepared) -> Option<Text> {
+    let cycles = prepared.wear()?;
+    Some(Text::new("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
 /// A write that is done.

@@ -1,11 +1,13 @@
-//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6.
+//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6. A position word is its turns
+//! and steps alone.
 
 use serde_json::{Map, Value as Json, json};
 
 use super::form;
 use crate::bits::{hex, hex_compact};
 use crate::cli::decode::Explained;
-use crate::protocol::biss::{FrameError, Layout};
+use crate::protocol::biss::{FrameError, Layout, Reading};
+use crate::protocol::ubicom::PositionWord;
 
 /// Bytes that hold a frame, right-justified.
 pub(super) const BYTES: usize = 6;
@@ -24,25 +26,35 @@ pub(super) fn explain(raw: u64, shown: String) -> Explained {
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
+/// What a position word says.
+pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
+    let layout = Layout::default();
+    let mut more = form("position word");
+    let bits = layout.multiturn_bits() + layout.singleturn_bits();
+    let meaning = match PositionWord::new(raw).and_then(|word| word.reading(&layout)) {
+        Some(reading) => Ok(vec![place(&layout, &reading, raw, &mut more)]),
+        None => Err(format!("the position word of this encoder has {bits} bits, this one more")),
+    };
+    Explained { compact: shown.clone(), shown, meaning, more }
+}
+
+/// Turns, steps and angle, for a person and for a script.
+fn place(layout: &Layout, reading: &Reading, raw: u64, more: &mut Map<String, Json>) -> String {
+    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
+    let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
+    more.extend(pairs.map(|(key, value)| (key.to_owned(), value)));
+    format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
+}
+
 /// A line each; or why they are no frame.
 pub(super) fn meaning(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {
         Ok(reading) => {
-            let degrees = layout.degrees(&reading);
-            let (turns, steps) = (reading.multiturn, reading.singleturn);
-            for (key, value) in [
-                ("raw", json!(raw)),
-                ("turns", json!(turns)),
-                ("steps", json!(steps)),
-                ("degrees", json!(degrees)),
-                ("error", json!(reading.error)),
-                ("warning", json!(reading.warning)),
-            ] {
-                more.insert(key.to_owned(), value);
-            }
-            let steps_of_turn = 1u64 << layout.singleturn_bits();
-            let mut lines = vec![format!("turn {turns}, step {steps} of {steps_of_turn}, {degrees:.6}°")];
+            let word = layout.steps(&reading);
+            let mut lines = vec![place(&layout, &reading, word, more)];
+            let flags = [("error", reading.error), ("warning", reading.warning)];
+            more.extend(flags.map(|(key, value)| (key.to_owned(), json!(value))));
             lines.push(match (reading.error, reading.warning) {
                 (true, true) => "error and warning bit: the position is invalid".to_owned(),
                 (true, false) => "error bit: the position is invalid".to_owned(),
