@@ -268,6 +268,8 @@ pub enum FileQuestion {
     Open,
     /// Which capture to open.
     OpenCapture,
+    /// Which recorded trace to connect to.
+    Recording,
     /// Where to save; with a name to begin with.
     Save {
         /// Whose profile it is.
@@ -299,6 +301,7 @@ impl FileQuestion {
         match self {
             FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
             FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
+            FileQuestion::Recording => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
             FileQuestion::Picture { .. } => &["png"],
         }
@@ -307,7 +310,7 @@ impl FileQuestion {
     /// A name to begin with, where a file is to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
-            FileQuestion::Open | FileQuestion::OpenCapture => None,
+            FileQuestion::Open | FileQuestion::OpenCapture | FileQuestion::Recording => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),

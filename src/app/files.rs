@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
 use super::closing::MUCH;
+use super::connect;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
 use super::studio::{SessionId, Studio};
@@ -27,6 +28,7 @@ impl Studio {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
             FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
+            FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {

@@ -96,13 +96,18 @@ pub(super) fn modal<R>(
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     let frame = skin.card().inner_margin(skin.space.groups);
-    egui::Modal::new(egui::Id::unique(name))
-        .frame(frame)
-        .show(ctx, |ui| {
-            ui.set_width(width.max(MODAL));
-            content(ui)
-        })
-        .inner
+    let id = egui::Id::unique(name);
+    let shown = egui::Modal::new(id).frame(frame).show(ctx, |ui| {
+        ui.set_width(width.max(MODAL));
+        content(ui)
+    });
+    // It stands in the middle only once its size is known, which nothing else would draw.
+    let place = shown.response.rect;
+    if ctx.data(|data| data.get_temp(id)) != Some(place) {
+        ctx.data_mut(|data| data.insert_temp(id, place));
+        ctx.request_repaint();
+    }
+    shown.inner
 }
 
 /// A button with an icon and a word.
@@ -194,7 +199,23 @@ pub(super) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
 
 /// A one-line entry with a name for screen readers.
 pub(super) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
-    let edit = egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(FIELD);
+    entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
+}
+
+/// A one-line entry for what is spelled exactly.
+pub(super) fn mono_entry(ui: &mut Ui, skin: &Skin, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
+    entry_in(ui, text, width, label, hint, egui::FontId::monospace(skin.sizes.body).into())
+}
+
+fn entry_in(
+    ui: &mut Ui,
+    text: &mut String,
+    width: f32,
+    label: &str,
+    hint: &str,
+    font: egui::FontSelection,
+) -> Response {
+    let edit = egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(FIELD).font(font);
     let response = ui.add(edit);
     let value = text.clone();
     response.widget_info(|| {

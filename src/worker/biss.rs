@@ -13,7 +13,7 @@ pub use job::{
     Attendance, BissJob, BissOutput, Change, ChangeKind, Commit, Committed, Doing, JobError, Prepared, ReadRegisters,
     Remark, WEAR_LIMIT, WEAR_WARNING, device_key,
 };
-pub use open::open;
+pub use open::{check, open};
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::biss::{

@@ -13,7 +13,7 @@ pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark,
     SavedProfile, Value, WEAR_LIMIT,
 };
-pub use open::open;
+pub use open::{check, open};
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::hiperface::find::News;

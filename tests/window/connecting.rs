@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use encoder_studio::app::Action;
-use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
+use encoder_studio::app::connect::{
+    Action as Connect, BissForm, BissWay, Connect as Dialog, LinkForm, LinkKind, Search, is_missing,
+};
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::{Phase, Source};
+use encoder_studio::app::{Action, FileQuestion, Language, Tab};
 use encoder_studio::device::hiperface::find::FindOptions;
 use encoder_studio::units::{Baud, Parity};
 
@@ -45,6 +47,7 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     ];
     for (slip, id) in cases {
         edit(&mut desk, slip);
+        assert_eq!(dialog(&desk).url().unwrap_err().id(), id);
         for action in [Connect::Connect, Connect::Search(FindOptions::default())] {
             desk.connect(action);
             assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some(id));
@@ -54,11 +57,67 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     }
     edit(&mut desk, |_| {});
     assert!(dialog(&desk).problem.is_none(), "with the entry goes the sentence");
-    desk.connect(Connect::Use("no link".to_owned()));
-    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("link.url"));
     desk.connect(Connect::Connect);
     desk.until_read();
     assert!(desk.studio.connect.is_none());
+}
+
+/// The form follows a link that is typed, and the link follows the form; what is no link for this device is named.
+#[test]
+fn a_link_is_typed_or_pasted() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    let wrong = [
+        (Tab::Hiperface, "", "form.other", "is not a link"),
+        (Tab::Hiperface, "/dev/ttyUSB0", "form.other", "it begins with sim:, serial:"),
+        (Tab::Hiperface, "serial:", "form.other", "serial:/dev/ttyUSB0"),
+        (Tab::Hiperface, "tcp:moxa", "form.other", "tcp:192.168.0.7:4001"),
+        (Tab::Hiperface, "bridge:/dev/ttyACM0", "form.other", "do not lead to this device"),
+        (Tab::Hiperface, "serial:x?clock=1", "form.other", "clock is not a parameter"),
+        (Tab::Hiperface, "serial:x?baud=fast", "form.parameter", "baud=fast"),
+        (Tab::Biss, "serial:x?address=0x40", "form.other", "address is not a parameter"),
+        (Tab::Biss, "bridge:x?clock=9", "form.clock", "9 is not possible"),
+        (Tab::Biss, "sim:?motor=none", "form.parameter", "motor=none"),
+        (Tab::Biss, "sim:?noise=0.1", "form.other", "noise"),
+    ];
+    for (device, link, id, words) in wrong {
+        desk.connect(Connect::Device(device));
+        let before = dialog(&desk).link();
+        desk.connect(Connect::Use(link.to_owned()));
+        assert_eq!(dialog(&desk).link(), link, "what is typed stays as it is typed");
+        let why = dialog(&desk).url().unwrap_err();
+        assert_eq!(why.id(), id, "{link}");
+        assert!(why.words(Language::English).contains(words), "{link}: {}", why.words(Language::English));
+        desk.connect(Connect::Connect);
+        assert!(desk.studio.devices().is_empty());
+        desk.connect(Connect::Device(device));
+        assert_eq!(dialog(&desk).link(), before, "the form is as it was");
+    }
+    desk.connect(Connect::Device(Tab::Biss));
+    desk.connect(Connect::Use("bridge:tcp:adapter:5000?clock=2000000".to_owned()));
+    let form = dialog(&desk).biss.clone();
+    assert_eq!((form.way, form.host.as_str(), form.clock.as_str()), (BissWay::Bus, "adapter", "2000000"));
+    desk.connect(Connect::EditBiss(Box::new(BissForm { clock: String::new(), ..form })));
+    assert_eq!(dialog(&desk).link(), "bridge:tcp:adapter:5000");
+
+    desk.connect(Connect::Device(Tab::Hiperface));
+    desk.connect(Connect::Use(format!(" serial:{PORT}?baud=9600 ")));
+    assert_eq!(dialog(&desk).form.port, PORT);
+    desk.connect(Connect::Connect);
+    desk.until_read();
+    assert_eq!(desk.encoder().session.source, Source::Link(format!("serial:{PORT}?baud=9600").parse().unwrap()));
+}
+
+#[test]
+fn a_recording_is_chosen_from_a_list_of_files() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    edit(&mut desk, |form| form.kind = LinkKind::Replay);
+    assert!(is_missing(&dialog(&desk).url().unwrap_err()));
+    desk.connect(Connect::AskRecording);
+    assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Recording)));
+    desk.act(Action::Chosen(FileQuestion::Recording, "monday.trace".into()));
+    assert_eq!(dialog(&desk).link(), "replay:monday.trace");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Every page, at both sizes, in both themes and languages: it is drawn, and what leads on is in reach.
 
-use egui::{Key, Rect, Vec2};
+use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperface::Action as Hiperface;
@@ -140,9 +140,17 @@ fn the_connection_dialog_opens_by_click_and_closes_with_escape() {
         screen.check_language();
         assert!(screen.shows(&screen.say("connect.title")));
         screen.click("connect.serial");
-        screen.click("connect.connect");
-        assert!(screen.studio().connect.as_ref().unwrap().problem.is_some(), "there is no port in it");
+        assert!(!screen.is_enabled("connect.connect"), "there is no port in it");
         assert!(screen.shows(&screen.say("form.port_missing")));
+        screen.harness.get_by_role_and_label(Role::TextInput, &screen.say("connect.link")).focus();
+        screen.steps();
+        screen
+            .harness
+            .get_by_role_and_label(Role::TextInput, &screen.say("connect.link"))
+            .type_text("serial:/dev/enc7");
+        screen.steps();
+        assert!(screen.is_enabled("connect.connect"));
+        assert_eq!(screen.studio().connect.as_ref().unwrap().form.port, "/dev/enc7");
         screen.key(Key::Escape);
         assert!(screen.studio().connect.is_none());
         assert!(!screen.shows(&screen.say("connect.title")));

@@ -2,14 +2,13 @@
 
 use crossbeam_channel::Receiver;
 
-use super::{Action, BissForm, Connect, LinkForm, Search, list_ports};
-use crate::app::action::Done;
+use super::{Action, Connect, Search, list_ports};
+use crate::app::action::{Done, FileQuestion};
 use crate::app::leaving::Leaver;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
-use crate::app::{AnyDevice, Text, explain};
+use crate::app::{AnyDevice, Text};
 use crate::device::hiperface::find::FindOptions;
-use crate::link::LinkUrl;
 use crate::worker::hiperface::Hiperface;
 
 impl Studio {
@@ -34,18 +33,17 @@ impl Studio {
             }
             Action::Device(device) => {
                 self.end_search();
-                self.edit(|connect| (connect.device, connect.search) = (device, None));
+                self.edit(|connect| (connect.device, connect.search, connect.typed) = (device, None, None));
                 self.list_ports();
             }
-            Action::Edit(form) => self.edit(|connect| connect.form = *form),
-            Action::EditBiss(form) => self.edit(|connect| connect.biss = *form),
-            Action::Use(link) => match link.parse::<LinkUrl>() {
-                Ok(url) => self.edit(|connect| match connect.device {
-                    Tab::Biss => connect.biss = BissForm::from_url(&url),
-                    Tab::Hiperface | Tab::Signals => connect.form = LinkForm::from_url(&url),
-                }),
-                Err(error) => self.refuse(Text::new("link.url").with_text("why", explain::url(&error))),
-            },
+            Action::Edit(form) => self.edit(|connect| (connect.form, connect.typed) = (*form, None)),
+            Action::EditBiss(form) => self.edit(|connect| (connect.biss, connect.typed) = (*form, None)),
+            Action::Use(link) => self.edit(|connect| connect.take(link)),
+            Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
+            Action::Recording(path) => self.edit(|connect| {
+                let path = path.display().to_string();
+                (connect.form.file, connect.biss.file, connect.typed) = (path.clone(), path, None);
+            }),
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };
                 let device = connect.device;
@@ -90,7 +88,7 @@ impl Studio {
 
     fn search_for(&mut self, options: FindOptions) {
         let Some(connect) = &mut self.connect else { return };
-        let url = match connect.form.url() {
+        let url = match connect.url() {
             Ok(url) => url,
             Err(problem) => {
                 connect.problem = Some(problem);

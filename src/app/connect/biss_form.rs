@@ -1,14 +1,14 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use std::time::Duration;
-
-use super::target::{assemble, entered, filled, host_and_port};
-use crate::app::{Text, explain};
-use crate::device::biss::{Echo, Station, Way};
+use super::target::{assemble, entered, filled, host_and_port, refused};
+use crate::app::Text;
+use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::link::{LinkUrl, Scheme};
 use crate::protocol::biss::ByteOrder;
 use crate::protocol::ubicom::FORMAT;
+use crate::sim::{biss, bridge};
 use crate::units::Parity;
+use crate::worker::biss::check;
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum BissWay {
 pub struct BissForm {
     /// How the encoder is reached.
     pub way: BissWay,
-    /// The virtual encoder stands behind a virtual adapter.
+    /// The virtual encoder stands behind a virtual adapter; what was recorded passed an adapter.
     pub behind_adapter: bool,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
@@ -139,7 +139,7 @@ impl BissForm {
             "baud" => &mut self.baud,
             "rpm" if is_virtual => &mut self.rpm,
             "fault" if is_virtual => &mut self.fault,
-            "bridge" if is_virtual => {
+            "bridge" if self.may_say_what_is_between() => {
                 self.behind_adapter = value == BRIDGE.1;
                 return self.behind_adapter;
             }
@@ -176,16 +176,19 @@ impl BissForm {
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         let (scheme, target) = self.target()?;
-        let refused = |error| Text::new("form.other").with_text("why", explain::url(&error));
-        let url = assemble(scheme, &target, &self.parameters())?.map_err(refused)?;
-        let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
-        Station::from_query(&url.query, way, Duration::ZERO).map_err(refused)?;
+        let url = assemble(scheme, &target, &self.parameters())?;
+        check(&url).map_err(|error| refused(&url, &error))?;
         Ok(url)
     }
 
     /// The encoder is reached over its bus.
     pub fn is_on_the_bus(&self) -> bool {
-        self.way == BissWay::Bus || (self.way == BissWay::Virtual && self.behind_adapter)
+        self.way == BissWay::Bus || (self.may_say_what_is_between() && self.behind_adapter)
+    }
+
+    /// A link of this kind leads to the configuration pin or to the bus.
+    pub fn may_say_what_is_between(&self) -> bool {
+        matches!(self.way, BissWay::Virtual | BissWay::Replay)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -209,10 +212,10 @@ impl BissForm {
     fn parameters(&self) -> Vec<(String, String)> {
         let mut parameters = Vec::new();
         let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
+        if self.may_say_what_is_between() && self.behind_adapter {
+            add(BRIDGE.0, BRIDGE.1);
+        }
         if self.way == BissWay::Virtual {
-            if self.behind_adapter {
-                add(BRIDGE.0, BRIDGE.1);
-            }
             // A German keyboard has a comma where the point should be.
             filled(&self.rpm).iter().for_each(|rpm| add("rpm", &rpm.replace(',', ".")));
             filled(&self.fault).iter().for_each(|fault| add("fault", fault));
@@ -238,11 +241,20 @@ impl BissForm {
         }
         filled(&self.margin).iter().for_each(|margin| add("margin", margin));
         for (name, value) in &self.rest {
-            if parameters.iter().all(|(own, _)| own != name) {
+            if self.belongs(name) && parameters.iter().all(|(own, _)| own != name) {
                 parameters.push((name.clone(), value.clone()));
             }
         }
         parameters
+    }
+
+    /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
+    fn belongs(&self, name: &str) -> bool {
+        let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
+        let (encoder, adapter) = (biss::Config::KEYS.contains(&name), bridge::Config::KEYS.contains(&name));
+        let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
+        let elsewhere = PARAMETERS.contains(&name) || encoder || adapter || name == BRIDGE.0;
+        way.parameters().contains(&name) || of_the_virtual || !elsewhere
     }
 }
 
@@ -266,6 +278,7 @@ mod tests {
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
             "replay:monday.trace",
+            "replay:monday.trace?bridge=on&clock=2000000",
             "sim:?bridge=on&noise=0.1&temperature=80",
         ] {
             let url: LinkUrl = link.parse().unwrap();
@@ -273,6 +286,20 @@ mod tests {
         }
         assert_eq!(BissForm::usual().to_string(), "sim:?bridge=on");
         assert_eq!(BissForm::default().url().unwrap(), BissForm::usual());
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let other = |link: &str, change: fn(&mut BissForm)| {
+            let mut form = BissForm::from_url(&link.parse().unwrap());
+            change(&mut form);
+            form.url().unwrap().to_string()
+        };
+        let to_pin: fn(&mut BissForm) = |form| (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+        assert_eq!(other("sim:?bridge=on&noise=0.1&temperature=80&rpm=5&margin=7", to_pin), "serial:COM3?margin=7");
+        assert_eq!(other("bridge:COM3?clock=2000000&voltage=5", to_pin), "serial:COM3");
+        assert_eq!(other("serial:COM3?timeout=50&order=low-first", |form| form.way = BissWay::Bus), "bridge:COM3");
+        assert_eq!(other("sim:?bridge=on&noise=0.1&rpm=5", |form| form.behind_adapter = false), "sim:?rpm=5");
     }
 
     #[test]
@@ -286,10 +313,19 @@ mod tests {
         assert_eq!(refused(|form| form.way = BissWay::Bus), "form.port_missing");
         assert_eq!(refused(|form| (form.way, form.network) = (BissWay::Bus, true)), "form.host_missing");
         assert_eq!(refused(|form| form.way = BissWay::Replay), "form.file_missing");
-        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.other");
+        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
+        assert_eq!(refused(|form| form.clock = "1".to_owned()), "form.clock");
+        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
+        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
+        assert_eq!(refused(|form| form.rest = vec![("motor".to_owned(), "none".to_owned())]), "form.parameter");
         let fast =
             |form: &mut BissForm| (form.way, form.port, form.baud) = (BissWay::Pin, "COM3".into(), "fast".into());
-        assert_eq!(refused(fast), "form.other");
+        assert_eq!(refused(fast), "form.parameter");
         assert_eq!(refused(|form| (form.way, form.port) = (BissWay::Pin, "a?b".to_owned())), "form.characters");
+        let colour = |form: &mut BissForm| {
+            (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+            form.rest = vec![("colour".to_owned(), "green".to_owned())];
+        };
+        assert_eq!(refused(colour), "form.other");
     }
 }

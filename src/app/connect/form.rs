@@ -3,14 +3,16 @@
 
 use std::time::Duration;
 
-use super::target::{assemble, entered, filled, host_and_port};
-use crate::app::{Text, explain};
+use super::target::{assemble, entered, filled, host_and_port, refused};
+use crate::app::Text;
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::hiperface::{BROADCAST, DeviceAddress};
 use crate::sim::ConfigError;
 use crate::sim::hiperface::{Config, MODELS};
 use crate::units::{Baud, CharacterFormat, Parity};
+use crate::worker::OpenError;
+use crate::worker::hiperface::check;
 
 /// What is to be connected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,12 +159,8 @@ impl LinkForm {
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters()?)?.map_err(|error| self.refused(error))?;
-        Station::from_query(&url.query, Duration::ZERO).map_err(|error| self.refused(error))?;
-        if self.kind == LinkKind::Virtual {
-            let own = url.query.without(&line_only());
-            Config::from_pairs(&own).map_err(|error| self.refused_virtual(error))?;
-        }
+        let url = assemble(scheme, &target, &self.parameters()?)?;
+        check(&url).map_err(|error| self.refused(&url, &error))?;
         Ok(url)
     }
 
@@ -229,49 +227,33 @@ impl LinkForm {
         u8::from_str_radix(digits, 16).map_err(|_| Text::new("form.address").with("value", entry))
     }
 
-    fn refused(&self, error: UrlError) -> Text {
-        let UrlError::Value { name, value, allowed } = error else {
-            return Text::new("form.other").with_text("why", explain::url(&error));
+    fn refused(&self, url: &LinkUrl, error: &OpenError) -> Text {
+        let (OpenError::Url(UrlError::Value { name, value, .. })
+        | OpenError::Sim(ConfigError::Value { key: name, value, .. })) = error
+        else {
+            return refused(url, error);
         };
         let id = match name.as_str() {
-            "address" => return Text::new("form.address").with("value", self.address.trim()),
-            "margin" => "form.margin",
+            "address" => {
+                let of_the_virtual = matches!(error, OpenError::Sim(_));
+                let id = if of_the_virtual { "form.address_virtual" } else { "form.address" };
+                return Text::new(id).with("value", self.address.trim());
+            }
+            "model" => {
+                let models = Self::models().collect::<Vec<_>>().join(", ");
+                return Text::new("form.model").with("value", value).with("models", models);
+            }
             "periods" => "form.periods",
             "turns" if self.periods.trim().is_empty() => "form.turns_alone",
             "turns" => "form.turns",
-            _ => return parameter(&name, &value, &allowed),
+            _ => return refused(url, error),
         };
         Text::new(id).with("value", value)
     }
-
-    fn refused_virtual(&self, error: ConfigError) -> Text {
-        match error {
-            ConfigError::Fault(_) => Text::new("form.fault").with("value", self.fault.trim()),
-            ConfigError::Key { .. } => Text::new("form.other").with_text("why", explain::setting(&error)),
-            ConfigError::Value { key, value, allowed } => match key.as_str() {
-                "address" => Text::new("form.address_virtual").with("value", self.address.trim()),
-                "rpm" => Text::new("form.rpm").with("value", self.rpm.trim()),
-                "model" => {
-                    let models = Self::models().collect::<Vec<_>>().join(", ");
-                    Text::new("form.model").with("value", value).with("models", models)
-                }
-                _ => parameter(&key, &value, &allowed),
-            },
-        }
-    }
-}
-
-fn parameter(name: &str, value: &str, why: &str) -> Text {
-    Text::new("form.parameter").with("name", name).with("value", value).with_text("why", explain::phrase(why))
 }
 
 fn address_words(address: u8) -> String {
     if address == BROADCAST { BROADCAST_WORD.to_owned() } else { format!("{address:02X}") }
-}
-
-/// Parameters that describe the line and nothing of the virtual encoder.
-fn line_only() -> Vec<&'static str> {
-    PARAMETERS.into_iter().filter(|name| !Config::KEYS.contains(name)).collect()
 }
 
 fn virtual_only(name: &str) -> bool {

@@ -10,6 +10,9 @@ mod target;
 pub use biss_form::{BissForm, BissWay};
 pub use form::{LinkForm, LinkKind};
 pub use ports::{Offer, offered_ports};
+pub use target::is_missing;
+
+use std::path::PathBuf;
 
 use super::line::Line;
 use super::services::Services;
@@ -18,8 +21,8 @@ use super::{Text, explain};
 use crate::app::action::{Done, OpenFailed, Opened};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::link::LinkUrl;
-use crate::worker::hiperface::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
-use crate::worker::{Event, Progress};
+use crate::worker::hiperface::{self, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
+use crate::worker::{Event, Progress, biss};
 
 /// What can be done in the dialog.
 pub enum Action {
@@ -35,8 +38,12 @@ pub enum Action {
     Edit(Box<LinkForm>),
     /// The form for a BiSS encoder was edited.
     EditBiss(Box<BissForm>),
-    /// Fill the form in from a link.
+    /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
+    /// Ask for a recording.
+    AskRecording,
+    /// A recording was chosen.
+    Recording(PathBuf),
     /// Connect as the form says.
     Connect,
     /// Look for encoders on the line of the form.
@@ -55,9 +62,11 @@ pub struct Connect {
     pub form: LinkForm,
     /// The link to a BiSS encoder as a form.
     pub biss: BissForm,
+    /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
+    pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
     pub ports: Option<Result<Vec<Offer>, Text>>,
-    /// Why the form cannot be used.
+    /// Why what was asked for was not done.
     pub problem: Option<Text>,
     /// The search.
     pub search: Option<Search>,
@@ -84,17 +93,48 @@ impl Connect {
     pub(super) fn new(device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let form = LinkForm::from_url(&last(Tab::Hiperface).unwrap_or_else(LinkUrl::sim));
         let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
-        Connect { device, form, biss, ports: None, problem: None, search: None }
+        Connect { device, form, biss, typed: None, ports: None, problem: None, search: None }
     }
 
-    /// The link that the form stands for.
+    /// The link that was typed, else the one that the form stands for.
     ///
     /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
+    /// A sentence that says what cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        match self.device {
-            Tab::Biss => self.biss.url(),
-            Tab::Hiperface | Tab::Signals => self.form.url(),
+        match &self.typed {
+            Some(link) => self.read(link),
+            None if self.device == Tab::Biss => self.biss.url(),
+            None => self.form.url(),
+        }
+    }
+
+    /// Why this is no link to the kind of device that is chosen, or the link.
+    fn read(&self, link: &str) -> Result<LinkUrl, Text> {
+        let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
+        let checked = match self.device {
+            Tab::Biss => biss::check(&url),
+            Tab::Hiperface | Tab::Signals => hiperface::check(&url),
+        };
+        checked.map_err(|error| target::refused(&url, &error))?;
+        Ok(url)
+    }
+
+    /// A link was typed; the form follows it where it can be used.
+    pub(super) fn take(&mut self, link: String) {
+        if let Ok(url) = self.read(&link) {
+            match self.device {
+                Tab::Biss => self.biss = BissForm::from_url(&url),
+                Tab::Hiperface | Tab::Signals => self.form = LinkForm::from_url(&url),
+            }
+        }
+        self.typed = Some(link);
+    }
+
+    /// The link as text: as it was typed, else as the form stands for it; empty where it stands for none.
+    pub fn link(&self) -> String {
+        match &self.typed {
+            Some(link) => link.clone(),
+            None => self.url().map(|url| url.to_string()).unwrap_or_default(),
         }
     }
 }

@@ -4,8 +4,10 @@
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
 
-use crate::app::Text;
+use crate::app::{Text, explain};
 use crate::link::{LinkUrl, Scheme, UrlError};
+use crate::sim::ConfigError;
+use crate::worker::OpenError;
 
 /// An entry without the blanks around it.
 ///
@@ -19,6 +21,41 @@ pub(super) fn entered(entry: &str, missing: &'static str) -> Result<String, Text
 /// An entry, unless it is empty.
 pub(super) fn filled(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
+}
+
+/// Sentences that say that something is still to be entered.
+const MISSING: [&str; 4] = ["form.port_missing", "form.host_missing", "form.tcp_port_missing", "form.file_missing"];
+
+/// Whether a sentence names something that is still to be entered, and nothing that is wrong.
+pub fn is_missing(problem: &Text) -> bool {
+    MISSING.contains(&problem.id())
+}
+
+/// Why a link cannot be used: in the words of the entry that stands for what is wrong, where there is one.
+pub(super) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
+    let (name, value, allowed) = match error {
+        OpenError::Url(UrlError::Value { name, value, allowed })
+        | OpenError::Sim(ConfigError::Value { key: name, value, allowed }) => (name, value, allowed),
+        OpenError::Sim(ConfigError::Fault(_)) => {
+            return Text::new("form.fault").with("value", url.query.get("fault").unwrap_or_default());
+        }
+        OpenError::Url(error) => return other(explain::url(error)),
+        OpenError::Sim(error) => return other(explain::setting(error)),
+        error => return explain::open(error),
+    };
+    let own = [("margin", "form.margin"), ("rpm", "form.rpm"), ("clock", "form.clock")];
+    match own.iter().find(|(own, _)| own == name) {
+        Some((_, id)) => Text::new(id).with("value", value),
+        None => Text::new("form.parameter")
+            .with("name", name)
+            .with("value", value)
+            .with_text("why", explain::phrase(allowed)),
+    }
+}
+
+/// A link that no entry stands for cannot be used.
+pub(super) fn other(why: Text) -> Text {
+    Text::new("form.other").with_text("why", why)
 }
 
 /// Host and port as a link takes them.
@@ -41,15 +78,11 @@ pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
-/// Puts a link together. The inner error is for whoever knows which entry a parameter comes from.
+/// Puts a link together.
 ///
 /// # Errors
-/// A sentence where a character would end a part of the link.
-pub(super) fn assemble(
-    scheme: Scheme,
-    target: &str,
-    parameters: &[(String, String)],
-) -> Result<Result<LinkUrl, UrlError>, Text> {
+/// A sentence where a character would end a part of the link, or the parts make none.
+pub(super) fn assemble(scheme: Scheme, target: &str, parameters: &[(String, String)]) -> Result<LinkUrl, Text> {
     let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
     let unfit = unfit(target, &['?'])
         .or_else(|| parameters.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));
@@ -58,5 +91,6 @@ pub(super) fn assemble(
     }
     let words: Vec<String> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let question = if words.is_empty() { "" } else { "?" };
-    Ok(format!("{}:{target}{question}{}", scheme.word(), words.join("&")).parse())
+    let link = format!("{}:{target}{question}{}", scheme.word(), words.join("&"));
+    link.parse().map_err(|error| other(explain::url(&error)))
 }

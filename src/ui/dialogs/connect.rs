@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search};
+use crate::app::connect::{Action as Connect, Connect as Dialog, LinkForm, LinkKind, Search, is_missing};
 use crate::app::explain::hiperface as words;
 use crate::app::{Action, Studio, Tab, Text};
 use crate::device::hiperface::Echo;
@@ -15,8 +15,8 @@ use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
-    LABELS, button, choice, enabled_button, entry, fill, icon_button, modal, name, paragraph, primary, spinner,
-    text_entry,
+    LABELS, allowed_button, button, choice, entry, fill, icon_button, modal, mono_entry, name, paragraph, primary,
+    problem, spinner, text_entry,
 };
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -34,6 +34,8 @@ const POWER_CYCLE: Duration = Duration::from_secs(30);
 /// Links offered that were used before.
 const LINKS: usize = 5;
 const WIDTH: f32 = 600.0;
+/// Height of two lines that say why it cannot go on.
+const WHY: f32 = 40.0;
 
 /// Draws the dialog, when it is open.
 pub(in crate::ui) fn connect_ui(
@@ -44,7 +46,7 @@ pub(in crate::ui) fn connect_ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(dialog) = &studio.connect else { return };
-    let height = (ctx.content_rect().height() - 190.0).min(560.0);
+    let height = (ctx.content_rect().height() - 250.0).min(540.0);
     let (mut form, mut biss) = (dialog.form.clone(), dialog.biss.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
@@ -61,14 +63,15 @@ pub(in crate::ui) fn connect_ui(
                 Tab::Hiperface | Tab::Signals => hiperface(ui, skin, dialog, &mut form, view, actions),
             }
         });
-        if let Some(problem) = &dialog.problem {
-            paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
-        }
         ui.add_space(skin.space.between);
+        let url = dialog.url();
+        link_ui(ui, skin, dialog, url.as_ref().ok(), actions);
+        let searching = dialog.search.as_ref().is_some_and(Search::is_running).then(|| Text::new("connect.searching"));
+        let refused = searching.or(url.err());
+        why_ui(ui, skin, refused.as_ref().or(dialog.problem.as_ref()));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let searching = dialog.search.as_ref().is_some_and(Search::is_running);
             let word = skin.say("connect.connect");
-            if primary(ui, skin, !searching, icons::PLUGS_CONNECTED, &word).clicked() {
+            if primary(ui, skin, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
                 actions.push(Action::Connect(Connect::Connect));
             }
             if button(ui, "", &skin.say("connect.cancel")).clicked() {
@@ -111,13 +114,12 @@ fn hiperface(
         LinkKind::Virtual => simulated(ui, skin, form),
         LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
         LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
-        LinkKind::Replay => recording(ui, skin, &mut form.file),
+        LinkKind::Replay => recording(ui, skin, &mut form.file, actions),
     }
     if form.kind != LinkKind::Replay {
         line(ui, skin, form);
         more(ui, skin, form, &mut view.more);
     }
-    link_text(ui, skin, form.url());
     if form.kind != LinkKind::Replay {
         ui.add_space(skin.space.between);
         search(ui, skin, dialog, view, actions);
@@ -129,12 +131,15 @@ fn used_before(ui: &mut Ui, skin: &Skin, links: &[String], actions: &mut Vec<Act
         return;
     }
     ui.label(skin.caption(skin.say("connect.used")));
-    for link in links.iter().take(LINKS) {
-        let response = ui.add(egui::Button::new(skin.mono(link)).frame_when_inactive(false).truncate());
-        if response.clicked() {
-            actions.push(Action::Connect(Connect::Use(link.clone())));
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for link in links.iter().take(LINKS) {
+            let response = ui.add(egui::Button::new(skin.mono(link)).frame_when_inactive(false).truncate());
+            if response.clicked() {
+                actions.push(Action::Connect(Connect::Use(link.clone())));
+            }
         }
-    }
+    });
     ui.add_space(skin.space.between);
 }
 
@@ -215,9 +220,12 @@ fn network(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String) {
     ui.label(skin.caption(skin.say("connect.tcp_words")));
 }
 
-fn recording(ui: &mut Ui, skin: &Skin, file: &mut String) {
+fn recording(ui: &mut Ui, skin: &Skin, file: &mut String, actions: &mut Vec<Action>) {
     entry(ui, skin, &skin.say("connect.file"), |ui| {
         text_entry(ui, file, 360.0, &skin.say("connect.file"), "capture.trace");
+        if icon_button(ui, true, icons::FOLDER_OPEN, &skin.say("connect.choose_file")).clicked() {
+            actions.push(Action::Connect(Connect::AskRecording));
+        }
     });
 }
 
@@ -286,16 +294,32 @@ fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
     });
 }
 
-/// The link as the command line takes it.
-fn link_text(ui: &mut Ui, skin: &Skin, url: Result<LinkUrl, Text>) {
-    let Ok(url) = url else { return };
-    let link = url.to_string();
-    entry(ui, skin, &skin.say("connect.link"), |ui| {
-        if icon_button(ui, true, icons::COPY, &skin.say("shell.copy_link")).clicked() {
-            ui.copy_text(link.clone());
+/// The link as the command line takes it: it follows the form, and the form follows it.
+fn link_ui(ui: &mut Ui, skin: &Skin, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
+    let (word, hint) = (skin.say("connect.link"), skin.say("connect.link_hint"));
+    let mut link = dialog.link();
+    entry(ui, skin, &word, |ui| {
+        let width = (ui.available_width() - 52.0).max(0.0);
+        if mono_entry(ui, skin, &mut link, width, &word, &hint).changed() {
+            actions.push(Action::Connect(Connect::Use(link)));
         }
-        ui.add(egui::Label::new(skin.mono(&link).color(skin.palette.muted)).truncate());
+        if icon_button(ui, url.is_some(), icons::COPY, &skin.say("shell.copy_link")).clicked()
+            && let Some(url) = url
+        {
+            ui.copy_text(url.to_string());
+        }
     });
+}
+
+/// Why it cannot go on. Two lines stand free for it, so that the buttons do not jump away under the pointer.
+fn why_ui(ui: &mut Ui, skin: &Skin, why: Option<&Text>) {
+    let top = ui.cursor().top();
+    match why {
+        Some(why) if is_missing(why) => paragraph(ui, skin.label(skin.words(why))),
+        why => problem(ui, skin, why),
+    }
+    let rest = top + WHY - ui.cursor().top();
+    ui.add_space(rest.max(0.0));
 }
 
 fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, actions: &mut Vec<Action>) {
@@ -316,7 +340,15 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, skin);
-            } else if enabled_button(ui, true, icons::MAGNIFYING_GLASS, &skin.say("find.start")).clicked() {
+            } else if allowed_button(
+                ui,
+                skin,
+                &dialog.url().map(drop),
+                icons::MAGNIFYING_GLASS,
+                &skin.say("find.start"),
+            )
+            .clicked()
+            {
                 let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
                 let options = FindOptions { one_encoder: view.one_encoder, power_cycle };
                 actions.push(Action::Connect(Connect::Search(options)));

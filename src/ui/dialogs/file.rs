@@ -29,8 +29,8 @@ pub(in crate::ui) fn ask(question: FileQuestion, skin: &Skin, mailbox: Mailbox) 
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
         let dialog = rfd::FileDialog::new().add_filter(filter, question.endings());
-        // Loggers end the names of their tables in many ways.
-        let any = question == FileQuestion::OpenCapture;
+        // Loggers end the names of their tables in many ways, and a trace is named as its user likes.
+        let any = matches!(question, FileQuestion::OpenCapture | FileQuestion::Recording);
         let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
         let chosen = match question.suggested() {
             None => dialog.pick_file(),
@@ -68,6 +68,7 @@ fn kind(question: &FileQuestion) -> &'static str {
     match question {
         FileQuestion::Open | FileQuestion::Save { .. } => "file.profiles",
         FileQuestion::OpenCapture => "file.captures",
+        FileQuestion::Recording => "file.recordings",
         FileQuestion::Table { .. } => "file.tables",
         FileQuestion::Picture { .. } => "file.pictures",
     }
@@ -89,6 +90,7 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
     let (title, confirm, icon) = match view.question {
         FileQuestion::Open => ("file.open_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::OpenCapture => ("file.capture_title", "file.open", icons::FOLDER_OPEN),
+        FileQuestion::Recording => ("file.recording_title", "file.choose", icons::FOLDER_OPEN),
         FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use super::Biss;
 use crate::device::biss::{Echo, Station, Way};
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, SimLink, UrlError};
+use crate::sim::ConfigError;
 use crate::sim::biss::{Config, Motor, Port};
 use crate::sim::bridge::{self, Adapter};
 use crate::store::Store;
@@ -16,12 +17,34 @@ const BRIDGE: &str = "bridge";
 /// Link parameters that describe the line and nothing of the virtual device; `echo` and `order` describe both.
 const LINE_ONLY: [&str; 7] = [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage"];
 
+/// Everything about a link to a BiSS encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
 /// Opens a link to a BiSS encoder: `serial:` and `tcp:` lead to its configuration pin, `bridge:` to an adapter on its bus,
 /// `sim:` and `replay:` to the one or, with `bridge=on`, to the other.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
+    let (station, simulated) = read(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let mut motor = None;
+    let wire = open_bytes(url, station.format, &clock, || {
+        let (mut link, turning) = simulated.connect(&clock);
+        link.set_format(station.format)?;
+        motor = Some(turning);
+        Ok(link)
+    })?;
+    Ok(Session::over(wire, clock, station, store, motor))
+}
+
+/// The line, and the virtual encoder, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = way(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
     if is_virtual {
@@ -32,19 +55,12 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
         check_parameters(&url.query, url.scheme, &known)?;
     }
     let mut station = Station::from_query(&url.query, way, margin(url.scheme))?;
-    if is_virtual {
-        // Echo and order are the virtual encoder's: they are learned as with a real one.
-        (station.line.echo, station.order) = (Echo::Unknown, None);
+    if !is_virtual {
+        return Ok((station, Simulated::new(way, &[])?));
     }
-    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let mut motor = None;
-    let wire = open_bytes(url, station.format, &clock, || {
-        let (mut link, turning) = simulated(&url.query.without(&LINE_ONLY), way, &clock)?;
-        link.set_format(station.format)?;
-        motor = Some(turning);
-        Ok(link)
-    })?;
-    Ok(Session::over(wire, clock, station, store, motor))
+    // Echo and order are the virtual encoder's: they are learned as with a real one.
+    (station.line.echo, station.order) = (Echo::Unknown, None);
+    Ok((station, Simulated::new(way, &url.query.without(&LINE_ONLY))?))
 }
 
 fn way(url: &LinkUrl) -> Result<Way, UrlError> {
@@ -78,21 +94,32 @@ fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
     Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
 }
 
-fn simulated(
-    pairs: &[(String, String)],
-    way: Way,
-    clock: &Arc<dyn Clock>,
-) -> Result<(Box<dyn ByteLink>, Motor), OpenError> {
-    match way {
-        Way::ConfigPin => {
-            let port = Port::new(&Config::from_pairs(pairs)?);
-            let motor = port.encoder().motor();
-            Ok((Box::new(SimLink::connect(Arc::new(Mutex::new(port)), clock.clone())), motor))
-        }
-        Way::Adapter => {
-            let adapter = Adapter::new(&bridge::Config::from_pairs(pairs)?);
-            let motor = adapter.encoder().motor();
-            Ok((Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())), motor))
+/// The virtual encoder as its parameters say, at the end of either way.
+enum Simulated {
+    Pin(Box<Config>),
+    Bus(Box<bridge::Config>),
+}
+
+impl Simulated {
+    fn new(way: Way, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        Ok(match way {
+            Way::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
+            Way::Adapter => Simulated::Bus(Box::new(bridge::Config::from_pairs(pairs)?)),
+        })
+    }
+
+    fn connect(&self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Motor) {
+        match self {
+            Simulated::Pin(config) => {
+                let port = Port::new(config);
+                let motor = port.encoder().motor();
+                (Box::new(SimLink::connect(Arc::new(Mutex::new(port)), clock.clone())), motor)
+            }
+            Simulated::Bus(config) => {
+                let adapter = Adapter::new(config);
+                let motor = adapter.encoder().motor();
+                (Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())), motor)
+            }
         }
     }
 }

@@ -13,31 +13,43 @@ use crate::worker::{OpenError, Session};
 /// Link parameters that describe the line and nothing of the virtual encoder.
 const LINE_ONLY: [&str; 6] = ["baud", "parity", "timeout", "margin", "periods", "turns"];
 
+/// Everything about a link to a HIPERFACE encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
 /// Opens a link to a HIPERFACE encoder.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
-    if url.scheme == Scheme::Bridge {
-        let known = "sim:, serial:, tcp: and replay:";
-        return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
-    }
+    let (station, config) = read(url)?;
     let types = store.encoder_types()?;
-    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
-    let is_virtual = url.scheme == Scheme::Sim;
-    if is_virtual {
-        // The virtual encoder's converter may echo; whether it does is learned as with a real one.
-        station.line.echo = Echo::Unknown;
-        check_parameters(&url.query, url.scheme, &[&LINE_ONLY[..], &Config::KEYS].concat())?;
-    } else {
-        check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-    }
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let wire = open_bytes(url, station.format, &clock, || {
-        let config = Config::from_pairs(&url.query.without(&LINE_ONLY))?;
         let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
         link.set_format(station.format)?;
         Ok(Box::new(link))
     })?;
-    Ok(Session::new(wire, clock, station, store, types, is_virtual))
+    Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
+}
+
+/// The line, and the virtual encoder, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
+    if url.scheme == Scheme::Bridge {
+        let known = "sim:, serial:, tcp: and replay:";
+        return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+    }
+    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
+    if url.scheme != Scheme::Sim {
+        check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+        return Ok((station, Config::default()));
+    }
+    // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+    station.line.echo = Echo::Unknown;
+    check_parameters(&url.query, url.scheme, &[&LINE_ONLY[..], &Config::KEYS].concat())?;
+    Ok((station, Config::from_pairs(&url.query.without(&LINE_ONLY))?))
 }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{Dialog, echo, link_text, margin, network, parity, recording, serial, unfolded};
+use super::{Dialog, echo, margin, network, parity, recording, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{BissForm, BissWay};
 use crate::protocol::biss::ByteOrder;
@@ -44,7 +44,10 @@ pub(super) fn form_ui(
                 serial(ui, skin, dialog, &mut form.port, actions);
             }
         }
-        BissWay::Replay => recording(ui, skin, &mut form.file),
+        BissWay::Replay => {
+            recording(ui, skin, &mut form.file, actions);
+            reached(ui, skin, form);
+        }
     }
     if form.is_on_the_bus() {
         entry(ui, skin, &skin.say("connect.biss_clock"), |ui| {
@@ -71,15 +74,19 @@ pub(super) fn form_ui(
         }
         margin(ui, skin, &mut form.margin);
     }
-    link_text(ui, skin, form.url());
 }
 
-fn simulated(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
+/// Whether it is, or was, the configuration pin or the bus.
+fn reached(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
     let word = skin.say("connect.biss_reached");
     entry(ui, skin, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
         choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, skin.say(id))));
     });
+}
+
+fn simulated(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
+    reached(ui, skin, form);
     entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
     entry(ui, skin, &skin.say("connect.fault"), |ui| {
         text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
