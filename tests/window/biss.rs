@@ -128,26 +128,6 @@ fn a_register_is_watched_beside_the_position() {
 }
 
 #[test]
-fn an_edit_stays_over_a_lost_link_and_a_crash() {
-    let mut desk = open("sim:?bridge=on");
-    ask(&mut desk, Biss::Put { start: at("0x24:0x10"), bytes: vec![0x5A] });
-    assert!(!encoder(&desk).is_dirty(), "nobody knows what it would replace");
-    ask(&mut desk, Biss::ReadBank(Some(0x24)));
-    desk.until("it is read", |studio| {
-        studio.biss().is_some_and(|own| own.session.is_ready() && own.memory.read(at("0x24:0x10")).is_some())
-    });
-    ask(&mut desk, Biss::Put { start: at("0x24:0x10"), bytes: vec![0x5A] });
-    assert_eq!(encoder(&desk).memory.edits(), [(0x950, 0x5A)]);
-    desk.until("the draft is kept", |studio| !studio.biss().unwrap().memory.edits().is_empty());
-    desk.settle();
-    let mut desk = desk.crash();
-    desk.act(Action::ShowTab(Tab::Biss));
-    desk.studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
-    desk.until("the edit is back", |studio| studio.biss().is_some_and(|own| own.is_dirty()));
-    assert_eq!(encoder(&desk).memory.edits(), [(0x950, 0x5A)]);
-}
-
-#[test]
 fn a_link_is_for_the_tab_that_asks_for_it() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(Tab::Biss));

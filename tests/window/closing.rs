@@ -18,28 +18,6 @@ fn with_nothing_to_lose_it_closes() {
 }
 
 #[test]
-fn with_edits_it_asks_once_and_keeps_them() {
-    let mut desk = Desk::begun("");
-    desk.put(0, 0, b"X");
-    desk.act(Action::Close);
-    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.edits");
-    desk.settle();
-    assert!(!desk.studio.may_close());
-    desk.act(Action::Escape);
-    assert!(desk.studio.question.is_none());
-    desk.settle();
-    assert!(!desk.studio.may_close(), "one stays");
-    desk.put(0, 1, b"Y");
-    desk.act(Action::Close);
-    desk.act(Action::Confirm);
-    desk.until("it may close", |studio| studio.may_close());
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
-    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
-    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
-}
-
-#[test]
 fn a_write_ends_at_a_safe_point_before_it_closes() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
@@ -122,24 +100,6 @@ fn a_review_that_writes_stays_until_it_is_over() {
     desk.wire().release();
     desk.until_written();
     assert!(!desk.encoder().staged.is_dirty());
-}
-
-#[test]
-fn a_session_with_edits_asks_before_it_is_closed_and_they_come_back() {
-    let mut desk = Desk::begun("");
-    desk.put(0, 0, b"X");
-    desk.settle();
-    let id = desk.encoder().session.id;
-    desk.act(Action::CloseSession(id));
-    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_edits");
-    desk.act(Action::Confirm);
-    assert!(desk.studio.hiperface().is_none() && desk.studio.devices().is_empty());
-    // Nobody is shown: what is asked of nobody does nothing.
-    desk.ask(Hiperface::Read);
-    desk.act(Action::Stop);
-    desk.open("sim:");
-    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
-    assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }
 
 #[test]

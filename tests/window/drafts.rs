@@ -11,28 +11,6 @@ use crate::support::Desk;
 const DRAFT: &str = "data/drafts/hiperface-virtual/37-GB0450179.ron";
 
 #[test]
-fn edits_survive_a_crash_and_are_no_draft_once_they_are_written() {
-    let mut desk = Desk::begun("");
-    desk.put(0, 0, b"X");
-    desk.put(0, 5, b"YZ");
-    desk.until_kept();
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
-    desk.until("the edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
-    desk.until_ready();
-    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 5, b'Y'), (0, 6, b'Z')]);
-    assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
-    let path = desk.outside.path(DRAFT);
-    assert!(path.exists());
-    desk.write();
-    desk.until("the draft is gone", |_| !path.exists());
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
-    desk.until_read();
-    assert!(desk.edits().is_empty() && desk.told(Severity::Warning).is_empty());
-}
-
-#[test]
 fn edits_taken_back_are_no_draft() {
     let mut desk = Desk::begun("");
     let path = desk.outside.path(DRAFT);

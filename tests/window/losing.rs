@@ -82,36 +82,6 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
 }
 
 #[test]
-fn edits_survive_an_unplugged_cable_and_are_written_afterwards() {
-    let mut desk = Desk::at_port("");
-    desk.put(0, 0, b"X");
-    desk.wire().unplug();
-    desk.until("it is lost", lost);
-    let Phase::Lost(why) = desk.phase() else { panic!() };
-    assert_eq!(why.id(), "link.lost");
-    assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
-    assert!(!desk.encoder().session.is_busy() && desk.encoder().session.line().is_none());
-    // One goes on editing what is known.
-    desk.put(0, 1, b"Y");
-    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
-    desk.ask(Hiperface::Review);
-    assert_eq!(desk.times_told("session.not_connected"), 1);
-
-    assert!(desk.studio.services.log.standing().is_some());
-    desk.ask(Hiperface::Reconnect);
-    assert_eq!(*desk.phase(), Phase::Opening);
-    desk.until("it is still not there", lost);
-    desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
-    desk.until_read();
-    assert_eq!(*desk.phase(), Phase::Connected);
-    assert_eq!(desk.edits(), [(0, 0, b'X'), (0, 1, b'Y')]);
-    desk.write();
-    assert_eq!(desk.wire().field(0)[..3], *b"XYD");
-    assert!(!desk.encoder().staged.is_dirty());
-}
-
-#[test]
 fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     let mut desk = Desk::at_port("");
     for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {

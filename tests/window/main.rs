@@ -11,6 +11,7 @@ mod closing;
 mod commutation;
 mod connecting;
 mod drafts;
+mod each_kind;
 mod leaving;
 mod losing;
 mod monkey;

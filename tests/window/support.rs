@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
+use encoder_studio::device::biss::Way;
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
+use encoder_studio::worker::{Session, biss};
 
 use crate::texts;
 use crate::wire::{TestLink, Wire};
@@ -43,11 +44,28 @@ pub(crate) const HANGING: &str = "tcp:hanging:1";
 /// A link to the encoder at [`PORT`] that opens only when it is told to; with another address at once.
 pub(crate) const SLOW: &str = "tcp:slow:1";
 
+/// The port at which a BiSS encoder's configuration pin is.
+pub(crate) const KIT: &str = "/dev/kit0";
+/// The port of an adapter on another BiSS encoder's bus.
+pub(crate) const ADAPTER: &str = "/dev/adapter0";
+/// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as links name them.
+pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
+
 impl Outside {
-    /// Encoders at [`PORT`] as `query` describes them, and an SKS36 at [`OTHER_PORT`].
+    /// Encoders at [`PORT`] as `query` describes them, an SKS36 at [`OTHER_PORT`], kit encoders at [`KIT`] and behind
+    /// [`ADAPTER`].
     pub(crate) fn new(query: &str) -> Self {
-        let wires = [Wire::new(PORT, query), Wire::new(OTHER_PORT, "model=sks36")];
-        let wires = wires.into_iter().map(|wire| (wire.target().to_owned(), wire)).collect();
+        let wires = [
+            Wire::new(PORT, query),
+            Wire::new(OTHER_PORT, "model=sks36"),
+            Wire::to_pin(KIT, ""),
+            Wire::to_adapter(ADAPTER, ""),
+        ];
+        let mut wires: BTreeMap<String, Arc<Wire>> =
+            wires.into_iter().map(|wire| (wire.target().to_owned(), wire)).collect();
+        for (server, port) in SERVERS {
+            wires.insert(server.to_owned(), wires[port].clone());
+        }
         let (wakes, opens, patience) = (Arc::default(), Arc::default(), Patience::default());
         Outside { folder: tempfile::tempdir().unwrap(), wires, wakes, opens, patience }
     }
@@ -66,7 +84,15 @@ impl Outside {
 
     pub(crate) fn world(&self) -> World {
         let (wires, opens) = (self.wires.clone(), self.opens.clone());
+        let kits = self.wires.clone();
         World {
+            open_biss: Arc::new(move |url, store| {
+                let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
+                let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
+                let station = encoder_studio::device::biss::Station::from_query(&url.query, way, MARGIN)?;
+                let link = Box::new(TestLink::plug_into(wire)?);
+                Ok(Session::over(link, wire.clock(), station, store, None))
+            }),
             open_hiperface: Arc::new(move |url, store| {
                 if url.to_string() == HANGING {
                     loop {

@@ -1,9 +1,12 @@
-//! A cable with virtual encoders at its end: they stay when it is pulled, and it can be held at a request.
+//! A cable with virtual encoders, or an adapter, at its end: they stay when it is pulled, and it can be held at a request.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
-use encoder_studio::sim::hiperface::{Bus, Config};
+use encoder_studio::sim::biss::Port;
+use encoder_studio::sim::bridge::Adapter;
+use encoder_studio::sim::hiperface::Bus;
+use encoder_studio::sim::{ByteDevice, biss, bridge, hiperface};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;
@@ -11,10 +14,39 @@ use crate::support::LONG;
 /// A cable with virtual encoders at its end.
 pub(crate) struct Wire {
     target: String,
-    bus: Arc<Mutex<Bus>>,
+    end: End,
     clock: Arc<VirtualClock>,
     state: Mutex<State>,
     changed: Condvar,
+}
+
+/// What stands at the end of a cable.
+enum End {
+    /// HIPERFACE encoders.
+    Hiperface(Arc<Mutex<Bus>>),
+    /// A BiSS encoder's configuration pin.
+    Pin(Arc<Mutex<Port>>),
+    /// An adapter on a BiSS encoder's bus.
+    Adapter(Arc<Mutex<Adapter>>),
+}
+
+impl End {
+    fn device(&self) -> Arc<Mutex<dyn ByteDevice>> {
+        match self {
+            End::Hiperface(bus) => bus.clone(),
+            End::Pin(port) => port.clone(),
+            End::Adapter(adapter) => adapter.clone(),
+        }
+    }
+
+    /// The command of a request; that of a packet to an adapter is not looked for.
+    fn command(&self, frame: &[u8]) -> Option<u8> {
+        match self {
+            End::Hiperface(_) => frame.get(1).copied(),
+            End::Pin(_) => frame.get(2).copied(),
+            End::Adapter(_) => None,
+        }
+    }
 }
 
 #[derive(Default)]
@@ -30,10 +62,26 @@ struct State {
 }
 
 impl Wire {
+    /// To HIPERFACE encoders as `sim:?…` describes them.
     pub(crate) fn new(target: &str, query: &str) -> Arc<Self> {
+        Self::to(target, End::Hiperface(Arc::new(Mutex::new(bus(query)))))
+    }
+
+    /// To the configuration pin of a BiSS encoder.
+    pub(crate) fn to_pin(target: &str, query: &str) -> Arc<Self> {
+        Self::to(target, End::Pin(Arc::new(Mutex::new(port(query)))))
+    }
+
+    /// To an adapter on the bus of a BiSS encoder.
+    pub(crate) fn to_adapter(target: &str, query: &str) -> Arc<Self> {
+        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap());
+        Self::to(target, End::Adapter(Arc::new(Mutex::new(adapter))))
+    }
+
+    fn to(target: &str, end: End) -> Arc<Self> {
         Arc::new(Wire {
             target: target.to_owned(),
-            bus: Arc::new(Mutex::new(bus(query))),
+            end,
             clock: Arc::default(),
             state: Mutex::default(),
             changed: Condvar::new(),
@@ -52,14 +100,19 @@ impl Wire {
         self.clock.clone()
     }
 
-    /// The encoders.
+    /// The HIPERFACE encoders.
     fn bus(&self) -> MutexGuard<'_, Bus> {
-        self.bus.lock().unwrap()
+        let End::Hiperface(bus) = &self.end else { panic!("{} leads to no HIPERFACE encoder", self.target) };
+        bus.lock().unwrap()
     }
 
     /// Other encoders from now on.
     pub(crate) fn exchange(&self, query: &str) {
-        *self.bus() = bus(query);
+        match &self.end {
+            End::Hiperface(own) => *own.lock().unwrap() = bus(query),
+            End::Pin(own) => *own.lock().unwrap() = port(query),
+            End::Adapter(_) => panic!("the encoder is behind it"),
+        }
     }
 
     pub(crate) fn unplug(&self) {
@@ -104,7 +157,7 @@ impl Wire {
 
     /// How often a command was sent.
     pub(crate) fn count(&self, command: u8) -> usize {
-        self.state().sent.iter().filter(|frame| frame[1] == command).count()
+        self.state().sent.iter().filter(|frame| self.end.command(frame) == Some(command)).count()
     }
 
     /// The bytes of a data field, looked at in the encoder.
@@ -132,8 +185,8 @@ impl Wire {
         }
         state.sent.push(frame.to_vec());
         match &mut state.hold {
-            Some((command, 0)) if *command == frame[1] => {}
-            Some((command, left)) if *command == frame[1] => {
+            Some((command, 0)) if Some(*command) == self.end.command(frame) => {}
+            Some((command, left)) if Some(*command) == self.end.command(frame) => {
                 *left -= 1;
                 return;
             }
@@ -156,7 +209,7 @@ impl TestLink {
     pub(crate) fn plug_into(wire: &Arc<Wire>) -> Result<Self, LinkError> {
         let missing = |_| LinkError::new(&wire.target, LinkErrorKind::NotFound);
         wire.check_plug().map_err(missing)?;
-        Ok(TestLink { wire: wire.clone(), line: SimLink::connect(wire.bus.clone(), wire.clock.clone()) })
+        Ok(TestLink { wire: wire.clone(), line: SimLink::connect(wire.end.device(), wire.clock.clone()) })
     }
 }
 
@@ -183,9 +236,15 @@ impl ByteLink for TestLink {
     }
 }
 
-/// A virtual line as `sim:?…` describes it.
-fn bus(query: &str) -> Bus {
+fn pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
-    let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
-    Bus::new(&Config::from_pairs(&pairs).unwrap())
+    pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
+}
+
+fn bus(query: &str) -> Bus {
+    Bus::new(&hiperface::Config::from_pairs(&pairs(query)).unwrap())
+}
+
+fn port(query: &str) -> Port {
+    Port::new(&biss::Config::from_pairs(&pairs(query)).unwrap())
 }

@@ -1,0 +1,316 @@
+//! What holds for every kind of device on the desk, with the same words for all: edits are kept, writes end before anything
+//! closes, and every link that the connection dialog takes leads to its device.
+
+use encoder_studio::app::biss::Action as Biss;
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::session::{Phase, Source};
+use encoder_studio::app::{Action, AnyDevice, JobEnd, ReviewAction, Severity, Studio, Tab, Wish};
+
+use crate::support::{ADAPTER, Desk, KIT, PORT};
+use crate::wire::Wire;
+
+/// A kind of device at a cable.
+struct Case {
+    tab: Tab,
+    port: &'static str,
+    /// The command that stores bytes.
+    writes: u8,
+    /// A command that reading everything begins with.
+    reads: u8,
+    /// An encoder like the one at the cable, with another serial number.
+    other: &'static str,
+}
+
+const CASES: [Case; 2] = [
+    Case { tab: Tab::Hiperface, port: PORT, writes: 0x4B, reads: 0x52, other: "serial=OTHER0001" },
+    Case { tab: Tab::Biss, port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
+];
+
+impl Case {
+    /// Its encoder is connected and read.
+    fn desk(&self) -> Desk {
+        let mut desk = Desk::fresh("");
+        self.connect(&mut desk);
+        desk
+    }
+
+    /// The studio is gone without being closed, and starts again with the same encoder.
+    fn crash(&self, desk: Desk) -> Desk {
+        let mut desk = desk.crash();
+        self.connect(&mut desk);
+        desk
+    }
+
+    fn connect(&self, desk: &mut Desk) {
+        desk.act(Action::ShowTab(self.tab));
+        desk.open(&format!("serial:{}", self.port));
+        until_ready(desk);
+    }
+
+    fn wire(&self, desk: &Desk) -> std::sync::Arc<Wire> {
+        desk.outside.wire(self.port).clone()
+    }
+
+    /// Edits the first bytes that can be edited.
+    fn edit(&self, desk: &mut Desk, bytes: &[u8]) {
+        let id = shown(&desk.studio).unwrap().id();
+        match self.tab {
+            Tab::Biss => {
+                let start = "0x24:0x00".parse().unwrap();
+                if desk.studio.biss().unwrap().memory.read(start).is_none() {
+                    desk.act(Action::Biss(id, Biss::ReadBank(Some(0x24))));
+                    until_ready(desk);
+                }
+                desk.act(Action::Biss(id, Biss::Put { start, bytes: bytes.to_vec() }));
+            }
+            _ => desk.act(Action::Hiperface(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
+        }
+        assert_eq!(shown(&desk.studio).unwrap().edits(), bytes.len());
+    }
+}
+
+fn shown(studio: &Studio) -> Option<&AnyDevice> {
+    studio.shown()
+}
+
+fn wish(desk: &mut Desk, wish: Wish) {
+    let action = shown(&desk.studio).unwrap().wish(wish);
+    desk.act(action);
+}
+
+fn review(desk: &mut Desk, action: ReviewAction) {
+    let id = shown(&desk.studio).unwrap().id();
+    desk.act(Action::Review(id, action));
+}
+
+#[track_caller]
+fn until_ready(desk: &mut Desk) {
+    desk.until("it is read", |studio| {
+        let is_ready = |own: &AnyDevice| own.is_ready() && *own.phase() == Phase::Connected && own.backups().is_some();
+        shown(studio).is_some_and(is_ready)
+    });
+    desk.settle();
+}
+
+#[track_caller]
+fn until_lost(desk: &mut Desk) {
+    desk.until("it is lost", |studio| matches!(shown(studio).unwrap().phase(), Phase::Lost(_)));
+}
+
+#[track_caller]
+fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
+    desk.until("the review is there", |studio| {
+        let device = shown(studio).unwrap();
+        device.sheet().is_some_and(|sheet| wanted(&sheet.stage)) && !device.is_writing()
+    });
+}
+
+/// Reviews what is edited, and consents to it.
+#[track_caller]
+fn begin_to_write(desk: &mut Desk) {
+    wish(desk, Wish::Review);
+    until_stage(desk, |stage| matches!(stage, Stage::Ready(_)));
+    until_ready(desk);
+    let Stage::Ready(plan) = shown(&desk.studio).unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    review(desk, ReviewAction::Write(plan));
+}
+
+#[track_caller]
+fn write(desk: &mut Desk) {
+    begin_to_write(desk);
+    until_stage(desk, |stage| matches!(stage, Stage::Done { .. }));
+    until_ready(desk);
+    assert!(!shown(&desk.studio).unwrap().is_dirty());
+}
+
+/// How many drafts are on disk.
+fn drafts(desk: &Desk) -> usize {
+    let kinds = std::fs::read_dir(desk.outside.path("data/drafts")).into_iter().flatten();
+    let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
+    files.filter(|file| file.as_ref().unwrap().path().extension().is_some_and(|own| own == "ron")).count()
+}
+
+#[track_caller]
+fn until_kept(desk: &mut Desk) {
+    let folder = desk.outside.path("data/drafts");
+    desk.until("the edits are kept", |_| folder.exists());
+    desk.settle();
+    assert_eq!(drafts(desk), 1);
+}
+
+#[test]
+fn edits_outlive_a_crash_until_they_are_written() {
+    for case in CASES {
+        let mut desk = case.desk();
+        case.edit(&mut desk, &[0x5A, 0x5B]);
+        until_kept(&mut desk);
+        let mut desk = case.crash(desk);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
+        assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
+        write(&mut desk);
+        desk.settle();
+        assert_eq!(drafts(&desk), 0);
+        let desk = case.crash(desk);
+        assert!(!shown(&desk.studio).unwrap().is_dirty() && desk.told(Severity::Warning).is_empty());
+    }
+}
+
+#[test]
+fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
+    for case in CASES {
+        let mut desk = case.desk();
+        let wire = case.wire(&desk);
+        case.edit(&mut desk, &[0x5A]);
+        until_kept(&mut desk);
+        wire.unplug();
+        until_lost(&mut desk);
+        assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+        case.edit(&mut desk, &[0x5A, 0x5B]);
+        wish(&mut desk, Wish::Review);
+        assert_eq!(desk.times_told("session.not_connected"), 1);
+        wish(&mut desk, Wish::Reconnect);
+        until_lost(&mut desk);
+        wire.plug();
+        wish(&mut desk, Wish::Reconnect);
+        until_ready(&mut desk);
+        assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
+        // Another one is behind the same adapter now, and nobody has told us.
+        wire.exchange(case.other);
+        wish(&mut desk, Wish::Review);
+        desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());
+        until_ready(&mut desk);
+        assert_eq!(desk.times_told("session.other_encoder"), 1);
+        assert!(!shown(&desk.studio).unwrap().is_reviewing());
+        wire.exchange("");
+        wish(&mut desk, Wish::Read);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
+        until_ready(&mut desk);
+        write(&mut desk);
+    }
+}
+
+#[test]
+fn a_cable_pulled_while_it_writes_leaves_a_report_and_the_edits() {
+    for case in CASES {
+        let mut desk = case.desk();
+        let wire = case.wire(&desk);
+        case.edit(&mut desk, &[0x5A]);
+        wire.hold_at(case.writes, 1);
+        begin_to_write(&mut desk);
+        wire.wait_until_held();
+        wire.unplug();
+        wire.release();
+        until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { begun: true, .. }));
+        until_lost(&mut desk);
+        assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
+        review(&mut desk, ReviewAction::Close);
+        wire.plug();
+        wish(&mut desk, Wish::Reconnect);
+        until_ready(&mut desk);
+        assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
+        write(&mut desk);
+    }
+}
+
+#[test]
+fn with_edits_it_asks_before_a_session_or_the_window_is_closed() {
+    for case in CASES {
+        let mut desk = case.desk();
+        case.edit(&mut desk, &[0x5A]);
+        desk.settle();
+        let asked = |desk: &Desk| desk.studio.question.as_ref().unwrap().text.id();
+        desk.act(Action::Close);
+        assert_eq!(asked(&desk), "question.edits");
+        desk.act(Action::Escape);
+        assert!(desk.studio.question.is_none() && !desk.studio.may_close());
+        let id = shown(&desk.studio).unwrap().id();
+        desk.act(Action::CloseSession(id));
+        assert_eq!(asked(&desk), "question.session_edits");
+        desk.act(Action::Confirm);
+        assert!(desk.studio.devices().is_empty());
+        case.connect(&mut desk);
+        desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 1);
+        desk.act(Action::Close);
+        desk.act(Action::Confirm);
+        desk.until("it may close", |studio| studio.may_close());
+    }
+}
+
+#[test]
+fn a_write_ends_at_a_safe_point_before_the_window_closes() {
+    for case in CASES {
+        let mut desk = case.desk();
+        let wire = case.wire(&desk);
+        case.edit(&mut desk, &[0x5A]);
+        wire.hold_at(case.writes, 1);
+        begin_to_write(&mut desk);
+        wire.wait_until_held();
+        desk.act(Action::Close);
+        assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
+        desk.act(Action::Confirm);
+        desk.settle();
+        assert!(!desk.studio.may_close(), "it still writes");
+        wire.release();
+        desk.until("it may close", |studio| studio.may_close());
+        let ends: Vec<&JobEnd> = desk.studio.services.jobs().map(|job| &job.end).collect();
+        assert!(matches!(ends.last().unwrap(), JobEnd::Cancelled | JobEnd::Done), "{ends:?}");
+    }
+}
+
+#[test]
+fn escape_stops_what_runs_before_it_closes_anything() {
+    for case in CASES {
+        let mut desk = case.desk();
+        let wire = case.wire(&desk);
+        wire.hold_at(case.reads, 1);
+        wish(&mut desk, Wish::Read);
+        desk.connect(Connect::Open);
+        wire.wait_until_held();
+        desk.act(Action::Escape);
+        assert!(desk.studio.connect.is_some());
+        wire.release();
+        desk.until("it has stopped", |studio| shown(studio).unwrap().is_ready());
+        assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
+        desk.act(Action::Escape);
+        assert!(desk.studio.connect.is_none());
+    }
+}
+
+#[test]
+fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
+    let links = [
+        (Tab::Hiperface, "sim:".to_owned()),
+        (Tab::Hiperface, format!("serial:{PORT}")),
+        (Tab::Hiperface, "tcp:moxa:4001".to_owned()),
+        (Tab::Biss, "sim:".to_owned()),
+        (Tab::Biss, "sim:?bridge=on".to_owned()),
+        (Tab::Biss, format!("serial:{KIT}?order=low-first")),
+        (Tab::Biss, "tcp:moxa:4002".to_owned()),
+        (Tab::Biss, format!("bridge:{ADAPTER}?clock=2000000")),
+        (Tab::Biss, "bridge:tcp:adapter:5000".to_owned()),
+    ];
+    let mut desk = Desk::fresh("");
+    for (tab, link) in links {
+        for typed in [true, false] {
+            desk.act(Action::ShowTab(tab));
+            desk.connect(Connect::Open);
+            desk.connect(Connect::Use(link.clone()));
+            let dialog = desk.studio.connect.as_ref().unwrap();
+            if !typed {
+                let (form, biss) = (Box::new(dialog.form.clone()), Box::new(dialog.biss.clone()));
+                desk.connect(if tab == Tab::Biss { Connect::EditBiss(biss) } else { Connect::Edit(form) });
+                assert_eq!(desk.studio.connect.as_ref().unwrap().link(), link);
+            }
+            desk.connect(Connect::Connect);
+            assert!(desk.studio.connect.is_none(), "{link}");
+            until_ready(&mut desk);
+            let device = shown(&desk.studio).unwrap();
+            assert_eq!((device.tab(), device.source()), (tab, &Source::Link(link.parse().unwrap())));
+            let id = device.id();
+            desk.act(Action::CloseSession(id));
+        }
+        assert!(desk.told(Severity::Warning).is_empty(), "{link}");
+    }
+}
