@@ -232,7 +232,7 @@ mod tests {
             let error = text.parse::<LinkUrl>().unwrap_err();
             check(&url(&error), &error);
         }
-        let error = UrlError::Device { scheme: "bridge", known: "sim:, serial:, tcp: and replay:" };
+        let error = UrlError::Device { scheme: "bridge", known: "sim:, serial:, tcp:, replay:" };
         assert_eq!(url(&error).words(English), error.to_string());
         assert_ne!(url(&error).words(German), error.to_string());
         let known = "baud, parity".to_owned();

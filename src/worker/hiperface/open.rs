@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
 /// The line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if url.scheme == Scheme::Bridge {
-        let known = "sim:, serial:, tcp: and replay:";
+        let known = "sim:, serial:, tcp:, replay:";
         return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
     }
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
