@@ -7,6 +7,7 @@ use super::connect;
 use super::hiperface;
 use super::keep::SettingsRead;
 use super::recorder::{self, Exported};
+use super::review::Permit;
 use super::session::{DraftDone, Kind, Listed};
 use super::signals;
 use super::studio::SessionId;
@@ -96,8 +97,8 @@ pub enum Action {
 pub enum ReviewAction {
     /// Write the plan that was shown, and no other.
     Write(PlanId),
-    /// The toggle with this number the other way round: another plan.
-    Toggle(usize),
+    /// This allowed, or no more: another plan.
+    Toggle(Permit),
     /// Write although the device counts as worn.
     ForceWear(bool),
     /// Close it.

@@ -251,7 +251,7 @@ impl AnyDevice {
     pub(super) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
         each!(self, own => match action {
             ReviewAction::Write(plan) => own.write(plan, services),
-            ReviewAction::Toggle(at) => own.plan_with(at, services),
+            ReviewAction::Toggle(permit) => own.plan_with(permit, services),
             ReviewAction::ForceWear(force) => own.force_wear(force),
             ReviewAction::Close => own.close_review(),
         })

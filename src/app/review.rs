@@ -13,6 +13,8 @@ pub struct Review<C, P, D> {
     pub state: ReviewState<P, D>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
+    /// What is wanted was made for another device.
+    pub is_for_another: bool,
     pub(in crate::app) change: C,
 }
 
@@ -36,8 +38,8 @@ pub enum ReviewState<P, D> {
 }
 
 impl<C, P, D> Review<C, P, D> {
-    pub(in crate::app) fn new(what: Text, change: C) -> Self {
-        Review { what, state: ReviewState::Planning, force_wear: false, change }
+    pub(in crate::app) fn new(what: Text, change: C, is_for_another: bool) -> Self {
+        Review { what, state: ReviewState::Planning, force_wear: false, is_for_another, change }
     }
 
     /// The plan as it was shown, from then to its end.
@@ -76,21 +78,103 @@ impl<C, P, D> Review<C, P, D> {
 pub struct OpWords {
     /// What it changes.
     pub item: Text,
+    /// Each thing that it changes, in its order; at least one.
+    pub changes: Vec<ChangeWords>,
+}
+
+/// One thing that an operation changes, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChangeWords {
+    /// Which part of the item; `None`: all of it.
+    pub part: Option<Text>,
     /// What is there now.
     pub old: Text,
     /// What will be there.
     pub new: Text,
 }
 
+impl OpWords {
+    /// An operation that changes one thing.
+    pub fn one(item: Text, old: Text, new: Text) -> Self {
+        OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
+    }
+
+    /// All its texts.
+    pub fn texts(&self) -> impl Iterator<Item = &Text> {
+        let changes = self.changes.iter().flat_map(|own| own.part.iter().chain([&own.old, &own.new]));
+        std::iter::once(&self.item).chain(changes)
+    }
+}
+
+/// What the user may allow beyond the usual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Permit {
+    /// To write what was made for another device.
+    OtherDevice,
+    /// To write what belongs to the mounting of another device.
+    Mounting,
+    /// To delete and create again.
+    Recreate,
+}
+
 /// Something that the user may allow beyond the usual, and that makes another plan.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
-    /// Its words, as a row of the texts.
-    pub word: &'static str,
-    /// What it means, as a row of the texts.
-    pub hint: Option<&'static str>,
+    /// What.
+    pub permit: Permit,
     /// It is allowed.
     pub is_on: bool,
+}
+
+impl Permit {
+    /// Its words, as a row of the texts.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Permit::OtherDevice => "review.allow_other",
+            Permit::Mounting => "review.with_mounting",
+            Permit::Recreate => "review.recreate",
+        }
+    }
+
+    /// What it means, as a row of the texts.
+    pub const fn hint(self) -> Option<&'static str> {
+        match self {
+            Permit::OtherDevice => None,
+            Permit::Mounting => Some("review.with_mounting_hint"),
+            Permit::Recreate => Some("review.recreate_hint"),
+        }
+    }
+}
+
+/// How a plan is carried out, and what starts it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// From end to end.
+    Writes,
+    /// Step by step, with somebody at the device.
+    Leads,
+    /// Step by step, and nothing is written.
+    Tests,
+}
+
+impl Manner {
+    /// What starts it, as a row of the texts.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Manner::Writes => "review.write",
+            Manner::Leads => "review.begin",
+            Manner::Tests => "review.test",
+        }
+    }
+
+    /// What will be done, as a row of the texts.
+    pub const fn way(self) -> &'static str {
+        match self {
+            Manner::Writes => "review.way",
+            Manner::Leads => "review.way_led",
+            Manner::Tests => "review.way_test",
+        }
+    }
 }
 
 /// A review as a person sees it, whatever the device.
@@ -108,6 +192,8 @@ pub struct Sheet {
     pub needs: Vec<Text>,
     /// What it costs, beside what this computer has seen the device take.
     pub cost: Option<Text>,
+    /// How it is carried out.
+    pub manner: Manner,
     /// What may be allowed beyond the usual.
     pub toggles: Vec<Toggle>,
     /// The device counts as worn after it: whether it is to be written all the same.
@@ -155,11 +241,13 @@ pub trait Reviewed {
     /// Its operations.
     fn lines(prepared: &Self::Prepared) -> Vec<OpWords>;
     /// What should make somebody stop and look.
-    fn warnings(prepared: &Self::Prepared) -> Vec<Text>;
+    fn warnings(&self, prepared: &Self::Prepared) -> Vec<Text>;
     /// What it needs from the person in front of the device.
-    fn needs(prepared: &Self::Prepared) -> Vec<Text>;
+    fn needs(&self, prepared: &Self::Prepared) -> Vec<Text>;
     /// What it costs.
     fn cost(prepared: &Self::Prepared) -> Text;
+    /// How it is carried out.
+    fn manner(prepared: &Self::Prepared) -> Manner;
     /// The device counts as worn after it.
     fn is_worn(prepared: &Self::Prepared) -> bool;
     /// What may be allowed beyond the usual.
@@ -193,9 +281,10 @@ where
             what: self.what.clone(),
             stage,
             lines: prepared.map(Self::lines).unwrap_or_default(),
-            warnings: shown.map(Self::warnings).unwrap_or_default(),
-            needs: shown.map(Self::needs).unwrap_or_default(),
+            warnings: shown.map(|own| self.warnings(own)).unwrap_or_default(),
+            needs: shown.map(|own| self.needs(own)).unwrap_or_default(),
             cost: costs.map(Self::cost),
+            manner: prepared.map_or(Manner::Writes, Self::manner),
             toggles: self.toggles(),
             force_wear: costs.filter(|own| Self::is_worn(own)).map(|_| self.force_wear),
         }

@@ -5,8 +5,8 @@ use egui::{RichText, ScrollArea, Ui};
 
 use super::controls::{enabled_button, modal, paragraph, primary, row, spinner};
 use super::{Skin, icons};
-use crate::app::review::{OpWords, Sheet, Stage};
-use crate::app::{Action, AnyDevice, ReviewAction};
+use crate::app::review::{ChangeWords, Manner, OpWords, Sheet, Stage, Toggle};
+use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the dialog, where a write is on its way.
 pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
@@ -42,10 +42,10 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             operations(ui, skin, &sheet.lines, None);
             remarks(ui, skin, sheet);
             options(ui, skin, device, sheet, actions);
-            ui.label(skin.label(skin.say("review.way")));
+            ui.label(skin.label(skin.say(sheet.manner.way())));
             buttons(ui, skin, device, actions, "review.cancel", |ui, actions| {
-                let word = skin.say("review.write");
-                if primary(ui, skin, device.is_ready(), icons::DOWNLOAD_SIMPLE, &word).clicked() {
+                let icon = if sheet.manner == Manner::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
+                if primary(ui, skin, device.is_ready(), icon, &skin.say(sheet.manner.word())).clicked() {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
             });
@@ -119,32 +119,46 @@ fn operations(ui: &mut Ui, skin: &Skin, lines: &[OpWords], done: Option<usize>) 
                 if at > 0 {
                     ui.separator();
                 }
+                let is_done = done.is_some_and(|done| at < done);
                 ui.horizontal(|ui| {
-                    let is_done = done.is_some_and(|done| at < done);
                     let icon = if is_done { icons::CHECK } else { icons::PENCIL_SIMPLE };
                     let colour = if is_done { palette.good } else { palette.muted };
                     ui.label(RichText::new(icon).color(colour));
                     ui.label(skin.words(&line.item));
                 });
+                // What was read back is no longer what is only meant to be.
+                let ink = if is_done { palette.good } else { palette.staged };
                 let heads = if done == Some(usize::MAX) {
                     ["review.before", "review.after"]
                 } else {
                     ["review.old", "review.new"]
                 };
-                let words = [(&line.old, palette.muted), (&line.new, palette.staged)];
-                for (head, (words, colour)) in heads.into_iter().zip(words) {
-                    ui.horizontal_top(|ui| {
-                        ui.spacing_mut().interact_size.y = 18.0;
-                        ui.add_space(skin.space.around);
-                        let head = ui.label(skin.caption(skin.say(head)));
-                        ui.add_space((HEADS - head.rect.width()).max(0.0));
-                        paragraph(ui, skin.mono(skin.words(words)).color(colour));
-                    });
-                }
+                line.changes.iter().for_each(|change| change_ui(ui, skin, change, heads, ink));
             }
         });
     });
     ui.add_space(skin.space.between);
+}
+
+/// One thing that changes: what it is, what is there before, and what after it.
+fn change_ui(ui: &mut Ui, skin: &Skin, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
+    if let Some(part) = &change.part {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().interact_size.y = 18.0;
+            ui.add_space(skin.space.around);
+            ui.label(skin.mono(skin.words(part)));
+        });
+    }
+    let words = [(&change.old, skin.palette.muted), (&change.new, ink)];
+    for (head, (words, colour)) in heads.into_iter().zip(words) {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().interact_size.y = 18.0;
+            ui.add_space(skin.space.around);
+            let head = ui.label(skin.caption(skin.say(head)));
+            ui.add_space((HEADS - head.rect.width()).max(0.0));
+            paragraph(ui, skin.mono(skin.words(words)).color(colour));
+        });
+    }
 }
 
 /// Width of the column that says which is old and which is new.
@@ -163,7 +177,7 @@ fn remarks(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
     }
 }
 
-fn remark(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: &str) {
+fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
         paragraph(ui, words);
@@ -175,14 +189,13 @@ fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
     if !sheet.toggles.is_empty() {
         ui.add_space(skin.space.inside);
     }
-    for (at, toggle) in sheet.toggles.iter().enumerate() {
-        let mut is_on = toggle.is_on;
-        let mut response = ui.checkbox(&mut is_on, skin.say(toggle.word));
-        if let Some(hint) = toggle.hint {
+    for Toggle { permit, mut is_on } in sheet.toggles.iter().copied() {
+        let mut response = ui.checkbox(&mut is_on, skin.say(permit.word()));
+        if let Some(hint) = permit.hint() {
             response = response.on_hover_text(skin.say(hint));
         }
         if response.changed() {
-            actions.push(Action::Review(device.id(), ReviewAction::Toggle(at)));
+            actions.push(Action::Review(device.id(), ReviewAction::Toggle(permit)));
         }
     }
     if let Some(mut force) = sheet.force_wear

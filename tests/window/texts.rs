@@ -94,7 +94,7 @@ fn check_encoder(encoder: &Encoder) {
     }
     let Some(prepared) = review.prepared() else { return };
     for line in review::lines(&prepared.plan) {
-        [&line.item, &line.old, &line.new].into_iter().for_each(check);
+        line.texts().for_each(check);
     }
     let mut texts = review::needs(&prepared.plan);
     texts.extend(review::warnings(prepared));

@@ -75,7 +75,7 @@ impl Guide {
     }
 
     /// What it carries out.
-    pub(super) fn ops(&self) -> &[Op] {
+    pub fn ops(&self) -> &[Op] {
         &self.ops
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::app::review::{self, OpWords, Reviewed, Toggle};
+use crate::app::review::{self, Manner, OpWords, Permit, Reviewed, Toggle};
 use crate::app::{Text, explain};
 use crate::profile::PlanId;
 use crate::profile::biss::{Op, RestoreOptions};
@@ -15,15 +15,30 @@ pub type ReviewState = review::ReviewState<Prepared, Committed>;
 
 impl Review {
     /// What is wanted, with one of the review's toggles the other way round.
-    pub(super) fn toggled(&self, at: usize) -> Option<Change> {
+    pub(super) fn toggled(&self, permit: Permit) -> Option<Change> {
         let Change::Restore { profile, options } = &self.change else { return None };
         let mut options = *options;
-        let own = match at {
-            0 => &mut options.allow_other_device,
-            _ => &mut options.with_mounting,
+        let own = match permit {
+            Permit::OtherDevice => &mut options.allow_other_device,
+            Permit::Mounting => &mut options.with_mounting,
+            Permit::Recreate => return None,
         };
         *own = !*own;
         Some(Change::Restore { profile: profile.clone(), options })
+    }
+
+    /// What was chosen for a mounting and is not in its plan, because it is so already.
+    fn left_out(&self, ops: &[Op]) -> impl Iterator<Item = Text> {
+        let run = match &self.change {
+            Change::Guided { run, .. } => Some(run),
+            _ => None,
+        };
+        let preset = run.is_some_and(|run| run.preset.is_some());
+        let data = run.is_some_and(|run| run.data.is_some());
+        let stores = ops.iter().any(|op| matches!(op, Op::StorePreset { .. }));
+        let writes = ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::WriteRegister { .. }));
+        let preset = (preset && !stores).then(|| Text::new("biss_review.preset_stored"));
+        preset.into_iter().chain((data && !writes).then(|| Text::new("biss_review.data_equal")))
     }
 
     fn options(&self) -> Option<RestoreOptions> {
@@ -48,10 +63,11 @@ impl Reviewed for Review {
     }
 
     fn lines(prepared: &Prepared) -> Vec<OpWords> {
-        prepared.plan.ops.iter().map(explain::biss::op).collect()
+        let layout = &prepared.identity.layout;
+        prepared.plan.ops.iter().map(|op| explain::biss::op(op, layout)).collect()
     }
 
-    fn warnings(prepared: &Prepared) -> Vec<Text> {
+    fn warnings(&self, prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(explain::biss::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
@@ -68,7 +84,7 @@ impl Reviewed for Review {
         warnings
     }
 
-    fn needs(prepared: &Prepared) -> Vec<Text> {
+    fn needs(&self, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
         if ops.iter().any(|op| matches!(op, Op::Calibrate | Op::WiegandTest { .. })) {
@@ -81,11 +97,15 @@ impl Reviewed for Review {
         if ops.iter().any(restarts) {
             needs.push(Text::new("biss_review.needs_restart"));
         }
+        needs.extend(self.left_out(ops));
         needs
     }
 
     fn cost(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
+        if cycles == 0 {
+            return Text::new("biss_review.cost_nothing");
+        }
         match prepared.cycles_seen {
             Some(seen) => Text::new("biss_review.cost").with("cycles", cycles).with("seen", seen),
             None => Text::new("biss_review.cost_unknown").with("cycles", cycles),
@@ -99,11 +119,23 @@ impl Reviewed for Review {
 
     fn toggles(&self) -> Vec<Toggle> {
         let Some(options) = self.options() else { return Vec::new() };
-        let hint = Some("review.with_mounting_hint");
-        vec![
-            Toggle { word: "review.allow_other", hint: None, is_on: options.allow_other_device },
-            Toggle { word: "review.with_mounting", hint, is_on: options.with_mounting },
+        let leaves = self.prepared().is_some_and(|prepared| !prepared.mounting_left.is_empty());
+        [
+            (Permit::OtherDevice, options.allow_other_device, self.is_for_another),
+            (Permit::Mounting, options.with_mounting, leaves),
         ]
+        .into_iter()
+        .filter(|(_, is_on, matters)| *is_on || *matters)
+        .map(|(permit, is_on, _)| Toggle { permit, is_on })
+        .collect()
+    }
+
+    fn manner(prepared: &Prepared) -> Manner {
+        match prepared.plan.ops.iter().any(is_guided) {
+            false => Manner::Writes,
+            true if prepared.plan.write_cycles() == 0 => Manner::Tests,
+            true => Manner::Leads,
+        }
     }
 
     fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {

@@ -6,12 +6,13 @@ use std::time::Duration;
 use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
+use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::device::biss::Error;
 use crate::device::biss::procedure::{Answer, Task, Unattended};
 use crate::device::biss::write::Left;
-use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions};
+use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
 use crate::worker::biss::{Attendance, BissJob, Change, Commit, Committed, JobError, Prepared};
 
@@ -45,18 +46,25 @@ impl Encoder {
             services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }
-        self.review = Some(Review::new(explain::biss::change(&change), change.clone()));
+        let is_for_another = self.is_for_another(&change);
+        self.review = Some(Review::new(explain::biss::change(&change), change.clone(), is_for_another));
         if !self.try_submit(BissJob::Prepare(change), services) {
             self.review = None;
         }
     }
 
+    /// It is a profile of another encoder than this one.
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        check_device(profile, &own.profile()).is_err()
+    }
+
     /// Makes the plan again with one of the review's toggles the other way round.
-    pub(in crate::app) fn plan_with(&mut self, toggle: usize, services: &mut Services) {
+    pub(in crate::app) fn plan_with(&mut self, permit: Permit, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
-        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(toggle)) {
+        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
             self.plan(change, services);
         }
     }

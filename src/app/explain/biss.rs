@@ -5,8 +5,8 @@ mod guide;
 mod write;
 
 pub use damage::damage;
-pub use guide::{advice, blocker, mode, outcome, procedure, step, task};
-pub use write::{change, failure, op, plan, wear, weight, written};
+pub use guide::{advice, blocker, mode, outcome, procedure, report, step, task};
+pub use write::{change, failure, op, plan, preset, wear, weight, written};
 
 use super::{adapter, file, link, store};
 use crate::app::Text;

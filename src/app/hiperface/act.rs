@@ -10,12 +10,13 @@ use super::encoder::Encoder;
 use super::review::{Review, ReviewState};
 use super::rules;
 use crate::app::action::{FileQuestion, ReadError};
+use crate::app::review::Permit;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Phase, Source};
 use crate::app::{Severity, Text, explain};
 use crate::bits::hex;
 use crate::device::hiperface::{SaveOptions, Watch};
-use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions};
+use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions, check_device};
 use crate::profile::{Body, Consent, Document, PlanId};
 use crate::protocol::hiperface::LineSettings;
 use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
@@ -171,7 +172,8 @@ impl Encoder {
             services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }
-        let mut review = Review::new(explain::hiperface::change(&change), change.clone());
+        let is_for_another = self.is_for_another(&change);
+        let mut review = Review::new(explain::hiperface::change(&change), change.clone(), is_for_another);
         if let Err(why) = rules::change(&self.staged, &change) {
             review.fail(vec![why], false);
             self.review = Some(review);
@@ -181,6 +183,12 @@ impl Encoder {
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.review = None;
         }
+    }
+
+    /// It is a profile of another encoder than this one.
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
+        check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
     }
 
     fn plan_again(&mut self, options: RestoreOptions, services: &mut Services) {
@@ -203,8 +211,8 @@ impl Encoder {
     }
 
     /// Makes the plan again with one of the review's toggles the other way round.
-    pub(in crate::app) fn plan_with(&mut self, toggle: usize, services: &mut Services) {
-        if let Some(options) = self.review.as_ref().and_then(|review| review.toggled(toggle)) {
+    pub(in crate::app) fn plan_with(&mut self, permit: Permit, services: &mut Services) {
+        if let Some(options) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
             self.plan_again(options, services);
         }
     }

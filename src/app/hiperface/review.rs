@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::app::Text;
 use crate::app::explain;
-use crate::app::review::{self, OpWords, Reviewed, Toggle};
+use crate::app::review::{self, Manner, OpWords, Permit, Reviewed, Toggle};
 use crate::profile::PlanId;
 use crate::profile::hiperface::{HiperfacePlan, Op, RestoreOptions};
 use crate::protocol::hiperface::CodeNumber;
@@ -31,12 +31,12 @@ impl Review {
     }
 
     /// The options of a restore with one of the review's toggles the other way round.
-    pub(super) fn toggled(&self, at: usize) -> Option<RestoreOptions> {
+    pub(super) fn toggled(&self, permit: Permit) -> Option<RestoreOptions> {
         let mut options = self.options()?;
-        let own = match at {
-            0 => &mut options.allow_other_device,
-            1 => &mut options.with_mounting,
-            _ => &mut options.recreate,
+        let own = match permit {
+            Permit::OtherDevice => &mut options.allow_other_device,
+            Permit::Mounting => &mut options.with_mounting,
+            Permit::Recreate => &mut options.recreate,
         };
         *own = !*own;
         Some(options)
@@ -55,11 +55,11 @@ impl Reviewed for Review {
         lines(&prepared.plan)
     }
 
-    fn warnings(prepared: &Prepared) -> Vec<Text> {
+    fn warnings(&self, prepared: &Prepared) -> Vec<Text> {
         warnings(prepared)
     }
 
-    fn needs(prepared: &Prepared) -> Vec<Text> {
+    fn needs(&self, prepared: &Prepared) -> Vec<Text> {
         needs(&prepared.plan)
     }
 
@@ -73,15 +73,20 @@ impl Reviewed for Review {
 
     fn toggles(&self) -> Vec<Toggle> {
         let Some(options) = self.options() else { return Vec::new() };
-        vec![
-            Toggle { word: "review.allow_other", hint: None, is_on: options.allow_other_device },
-            Toggle {
-                word: "review.with_mounting",
-                hint: Some("review.with_mounting_hint"),
-                is_on: options.with_mounting,
-            },
-            Toggle { word: "review.recreate", hint: Some("review.recreate_hint"), is_on: options.recreate },
+        let leaves = self.prepared().is_some_and(|prepared| !prepared.mounting_left.is_empty());
+        [
+            (Permit::OtherDevice, options.allow_other_device, self.is_for_another),
+            (Permit::Mounting, options.with_mounting, leaves),
+            (Permit::Recreate, options.recreate, true),
         ]
+        .into_iter()
+        .filter(|(_, is_on, matters)| *is_on || *matters)
+        .map(|(permit, is_on, _)| Toggle { permit, is_on })
+        .collect()
+    }
+
+    fn manner(_prepared: &Prepared) -> Manner {
+        Manner::Writes
     }
 
     fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {

@@ -172,8 +172,8 @@ fn change_words(op: &Op) -> (String, String) {
         }
         Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
         op => {
-            let words = explain::hiperface::op(op);
-            (words.old.terminal(), words.new.terminal())
+            let changes = explain::hiperface::op(op).changes.into_iter();
+            changes.map(|own| (own.old.terminal(), own.new.terminal())).next().unwrap_or_default()
         }
     }
 }

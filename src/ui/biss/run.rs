@@ -4,8 +4,8 @@
 use egui::{RichText, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
-use crate::app::{Action, Text, explain::biss as says};
-use crate::device::biss::procedure::{Answer, Demand, Detail, Outcome, Task};
+use crate::app::{Action, Severity, Text, explain::biss as says};
+use crate::device::biss::procedure::{Answer, Demand, Detail, Task};
 use crate::profile::biss::Op;
 use crate::ui::controls::{button, card, enabled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
@@ -14,7 +14,7 @@ use crate::ui::{Skin, icons};
 pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     if let Some(end) = &guide.end {
-        end_ui(ui, skin, encoder, end, actions);
+        end_ui(ui, skin, encoder, guide.ops(), end, actions);
         ui.add_space(skin.space.groups);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
@@ -133,7 +133,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
     gauges
 }
 
-fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let title = match end {
         End::Done(_) => "guide.report",
@@ -145,23 +145,15 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
             End::Failed { before, .. } => before,
         };
         if let End::Failed { texts, .. } = end {
-            for text in texts {
-                let (icon, ink) = severity(skin, says::weight(text));
-                ui.horizontal_top(|ui| {
-                    ui.label(RichText::new(icon).color(ink));
-                    paragraph(ui, skin.words(text));
-                });
-            }
+            texts.iter().for_each(|text| line(ui, skin, says::weight(text), &skin.words(text)));
         }
-        let lines = report(skin, outcomes);
-        for (is_done, line) in &lines {
-            ui.horizontal_top(|ui| {
-                let (icon, ink) =
-                    if *is_done { (icons::CHECK_CIRCLE, skin.palette.good) } else { (icons::X, skin.palette.muted) };
-                ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, line);
-            });
-        }
+        let lines: Vec<(Severity, String)> = ops
+            .iter()
+            .zip(outcomes)
+            .flat_map(|(op, own)| says::report(op, own))
+            .map(|(severity, text)| (severity, skin.words(&text)))
+            .collect();
+        lines.iter().for_each(|(severity, words)| line(ui, skin, *severity, words));
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
                 let word = skin.say("lead_back_card.button");
@@ -171,8 +163,8 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
             }
             if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));
-                let report: String = lines.iter().map(|(_, line)| format!("{line}\n")).collect();
-                ui.ctx().copy_text(format!("{head}{report}"));
+                let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
+                ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
             if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
                 actions.push(Action::Biss(id, Biss::CloseGuide));
@@ -181,11 +173,11 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, end: &End, actions: &mut 
     });
 }
 
-/// What came of the operations, and whether that was done.
-fn report(skin: &Skin, outcomes: &[Outcome]) -> Vec<(bool, String)> {
-    let lines = |own: &Outcome| {
-        let is_done = !matches!(own, Outcome::Skipped { .. });
-        says::outcome(own).into_iter().map(move |text| (is_done, text))
-    };
-    outcomes.iter().flat_map(lines).map(|(is_done, text)| (is_done, skin.words(&text))).collect()
+/// A line of the end: how much it matters, and what it is.
+fn line(ui: &mut Ui, skin: &Skin, own: Severity, words: &str) {
+    let (icon, ink) = severity(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, words);
+    });
 }

@@ -1,6 +1,6 @@
 //! Guided procedures in words: their steps, what a person is to do, why a start is not possible, what came of them.
 
-use crate::app::Text;
+use crate::app::{Severity, Text};
 use crate::device::biss::procedure::{
     Advice, Blocker, CalibrationReport, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
 };
@@ -132,6 +132,30 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
+/// What came of an operation, a line each with how much it matters; of one that was left out, which.
+pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
+    let lines = outcome(own);
+    if let Outcome::Skipped { .. } = own {
+        let named = |words| Text::new("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
+        return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
+    }
+    // The first says what was done, or is a result of its own; the rest is beside it.
+    let severity = |at: usize| match own {
+        Outcome::Tested(report) => match at {
+            0 => verdict(report.result.lowest_cw),
+            1 => verdict(report.result.lowest_ccw),
+            _ => Severity::Note,
+        },
+        _ if at == 0 => Severity::Good,
+        _ => Severity::Note,
+    };
+    lines.into_iter().enumerate().map(|(at, text)| (severity(at), text)).collect()
+}
+
+fn verdict(lowest: PulseVoltage) -> Severity {
+    if lowest > PulseVoltage::LIMIT { Severity::Good } else { Severity::Warning }
+}
+
 fn calibrated(report: &CalibrationReport) -> Vec<Text> {
     let mut texts = vec![Text::new("guide.calibrated")];
     texts.extend(report.celsius.map(|celsius| Text::new("guide.at_temperature").with("celsius", celsius)));
@@ -192,5 +216,15 @@ mod tests {
         let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
         assert!(words[0].contains("6.3") && words[0].contains("5.4") && words[0].contains("above"), "{words:?}");
         assert!(words[1].contains("5.3") && words[1].contains("not above"), "{words:?}");
+        let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
+        let weights: Vec<Severity> = report.iter().map(|(severity, _)| *severity).collect();
+        assert_eq!(weights, [Severity::Good, Severity::Warning, Severity::Note]);
+    }
+
+    #[test]
+    fn what_was_left_out_is_named() {
+        let report = report(&Op::Calibrate, &Outcome::Skipped { after: None });
+        let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
+        assert!(text.words(English).contains("Calibration") && text.words(German).contains("Kalibrierung"));
     }
 }

@@ -7,13 +7,13 @@ use super::encoder;
 use super::guide::{blocker, mode, step, task};
 use crate::app::biss::words::filter;
 use crate::app::explain::plain;
-use crate::app::review::OpWords;
+use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::device::biss::procedure::{Activity, Failure, Run, Standing};
 use crate::device::biss::write::{Interrupted, Left, Written};
 use crate::profile::biss::{Op, PlanError, PresetParts, RegisterChange, RegisterRange};
-use crate::protocol::biss::{CalibrationStatus, PresetValue, ProcedureKind, WiegandStatus};
+use crate::protocol::biss::{CalibrationStatus, Layout, PresetValue, ProcedureKind, WiegandStatus};
 use crate::worker::biss::{Change, ChangeKind, Prepared, WEAR_LIMIT};
 
 /// A change in words.
@@ -31,54 +31,63 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// An operation in words.
-pub fn op(op: &Op) -> OpWords {
+/// An operation in words; each run of registers by itself, named as everywhere.
+pub fn op(op: &Op, layout: &Layout) -> OpWords {
     match op {
         Op::StoreData { area, registers } => {
-            let addresses = registers.iter().map(|own| own.address);
-            let ranges: Vec<String> = RegisterRange::runs(addresses).iter().map(ToString::to_string).collect();
-            let bytes = |value: fn(&RegisterChange) -> u8| hex(&registers.iter().map(value).collect::<Vec<u8>>());
-            OpWords {
-                item: Text::new("biss_op.data").with("area", &area.name).with("ranges", ranges.join(", ")),
-                old: plain(bytes(|own| own.old)),
-                new: plain(bytes(|own| own.new)),
-            }
+            OpWords { item: Text::new("biss_op.data").with("area", &area.name), changes: runs(registers) }
         }
         Op::StorePreset { from, to } => {
-            OpWords { item: Text::new("biss_op.preset"), old: preset(*from), new: preset(*to) }
+            OpWords::one(Text::new("biss_op.preset"), preset(*from, layout), preset(*to, layout))
         }
-        Op::FirePreset { parts, value } => OpWords {
-            item: Text::new("biss_op.fire"),
-            old: Text::new("biss_op.place"),
-            new: match parts {
-                PresetParts::Both => preset(*value),
-                PresetParts::Singleturn => Text::new("biss_op.singleturn").with("value", value.singleturn()),
-                PresetParts::Multiturn => Text::new("biss_op.multiturn").with("value", value.multiturn()),
-            },
-        },
-        Op::SelectFilter { from, to } => {
-            OpWords { item: Text::new("biss_op.filter"), old: filter(*from), new: filter(*to) }
+        Op::FirePreset { parts, value } => {
+            let new = match parts {
+                PresetParts::Both => preset(*value, layout),
+                PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, layout),
+                PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, layout),
+            };
+            OpWords::one(Text::new("biss_op.fire"), Text::new("biss_op.place"), new)
         }
-        Op::Calibrate => OpWords {
-            item: Text::new("guide.calibration"),
-            old: Text::new("biss_op.present_table"),
-            new: Text::new("biss_op.new_table"),
-        },
-        Op::WiegandTest { save } => OpWords {
-            item: Text::new("guide.wiegand"),
-            old: Text::new("biss_op.last_result"),
-            new: Text::new(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
-        },
-        Op::WriteRegister { address, old, new, .. } => OpWords {
-            item: Text::new("biss_op.register").with("address", address),
-            old: old.map_or_else(|| Text::new("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
-            new: plain(format!("{new:02X}")),
-        },
+        Op::SelectFilter { from, to } => OpWords::one(Text::new("biss_op.filter"), filter(*from), filter(*to)),
+        Op::Calibrate => OpWords::one(
+            Text::new("guide.calibration"),
+            Text::new("biss_op.present_table"),
+            Text::new("biss_op.new_table"),
+        ),
+        Op::WiegandTest { save } => OpWords::one(
+            Text::new("guide.wiegand"),
+            Text::new("biss_op.last_result"),
+            Text::new(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
+        ),
+        Op::WriteRegister { address, old, new, .. } => OpWords::one(
+            Text::new("biss_op.register").with("address", address),
+            old.map_or_else(|| Text::new("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
+            plain(format!("{new:02X}")),
+        ),
     }
 }
 
-fn preset(value: PresetValue) -> Text {
-    Text::new("biss_op.preset_value").with("singleturn", value.singleturn()).with("multiturn", value.multiturn())
+/// Registers that follow each other are one line.
+fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
+    let words = |range: RegisterRange| {
+        let own = registers.iter().filter(|own| range.contains(own.address));
+        let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
+        ChangeWords { part: Some(plain(range)), old: plain(hex(&old)), new: plain(hex(&new)) }
+    };
+    RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
+}
+
+/// A preset value as angle, step and turn.
+pub fn preset(value: PresetValue, layout: &Layout) -> Text {
+    preset_words("biss_op.preset_value", value, layout)
+}
+
+fn preset_words(id: &'static str, value: PresetValue, layout: &Layout) -> Text {
+    let steps = (1_u64 << layout.singleturn_bits()) as f64;
+    Text::new(id)
+        .with_number("degrees", f64::from(value.singleturn()) * 360.0 / steps, 3)
+        .with("singleturn", value.singleturn())
+        .with("multiturn", value.multiturn())
 }
 
 /// Why something cannot be planned.

@@ -12,29 +12,25 @@ use crate::protocol::hiperface::DataFieldStatus;
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),
-        Op::Store { field, address, old, new, .. } => OpWords {
-            item: bytes(*field, usize::from(*address), new.len()),
-            old: old.as_ref().map_or_else(|| Text::new("op.new_field"), |old| plain(hex(old))),
-            new: plain(hex(new)),
-        },
-        Op::ChangeCode { number, .. } => OpWords {
-            item: Text::new("op.access_code").with("number", number),
-            old: Text::new("op.present_code"),
-            new: Text::new("op.changed_code"),
-        },
+        Op::Store { field, address, old, new, .. } => OpWords::one(
+            bytes(*field, usize::from(*address), new.len()),
+            old.as_ref().map_or_else(|| Text::new("op.new_field"), |old| plain(hex(old))),
+            plain(hex(new)),
+        ),
+        Op::ChangeCode { number, .. } => OpWords::one(
+            Text::new("op.access_code").with("number", number),
+            Text::new("op.present_code"),
+            Text::new("op.changed_code"),
+        ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OpWords { item: Text::new(item), old: plain(from), new: plain(to) }
+            OpWords::one(Text::new(item), plain(from), plain(to))
         }
-        Op::SetAddress { from, to } => {
-            OpWords { item: Text::new("op.address"), old: plain(format!("{from:02X}h")), new: plain(to) }
-        }
-        Op::Configure { from, to } => {
-            OpWords { item: Text::new("op.settings"), old: line_settings(*from), new: line_settings(*to) }
-        }
-        Op::ClearCounter { from } => OpWords { item: Text::new("op.counter"), old: plain(from), new: plain(0) },
+        Op::SetAddress { from, to } => OpWords::one(Text::new("op.address"), plain(format!("{from:02X}h")), plain(to)),
+        Op::Configure { from, to } => OpWords::one(Text::new("op.settings"), line_settings(*from), line_settings(*to)),
+        Op::ClearCounter { from } => OpWords::one(Text::new("op.counter"), plain(from), plain(0)),
         Op::IncrementCounter { from } => {
-            OpWords { item: Text::new("op.counter"), old: plain(from), new: plain((from + 1) & 0x00FF_FFFF) }
+            OpWords::one(Text::new("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
         }
     }
 }
@@ -52,15 +48,13 @@ fn bytes(field: u8, first: usize, count: usize) -> Text {
 fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OpWords {
     let item = Text::new("op.field").with("field", field);
     match from {
-        Some(from) if from.exists() && !to.exists() => {
-            OpWords { item, old: field_status(from), new: Text::new("op.deleted") }
-        }
+        Some(from) if from.exists() && !to.exists() => OpWords::one(item, field_status(from), Text::new("op.deleted")),
         Some(from) if from.exists() => {
             let (old, new) = differing(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| Text::new("op.parts").with_list("parts", texts);
-            OpWords { item, old: parts(old), new: parts(new) }
+            OpWords::one(item, parts(old), parts(new))
         }
-        _ => OpWords { item, old: Text::new("op.not_there"), new: field_status(to) },
+        _ => OpWords::one(item, Text::new("op.not_there"), field_status(to)),
     }
 }
 
@@ -107,14 +101,11 @@ mod tests {
             (Op::IncrementCounter { from: 0x00FF_FFFF }, "counter: 16777215 → 0"),
         ];
         for (operation, english) in cases {
-            let OpWords { item, old, new } = op(&operation);
-            let words = [item.words(English), old.words(English), new.words(English)];
-            let [item, old, new] = words;
+            let words: Vec<String> = op(&operation).texts().map(|text| text.words(English)).collect();
+            let [item, old, new] = words.as_slice() else { panic!("{words:?}") };
             assert_eq!(format!("{item}: {old} → {new}"), english);
         }
-        let OpWords { item, old, new } = op(&define(Some(0xE8), 0xA9));
-        assert_eq!(item.words(German), "Datenfeld 1");
-        assert_eq!(old.words(German), "16 Bytes, beschreibbar");
-        assert_eq!(new.words(German), "32 Bytes, schreibgeschützt");
+        let words: Vec<String> = op(&define(Some(0xE8), 0xA9)).texts().map(|text| text.words(German)).collect();
+        assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
     }
 }
