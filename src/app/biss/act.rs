@@ -91,6 +91,8 @@ impl Encoder {
 
     /// Starts a job, or says why not and gives false.
     pub(super) fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
+        // What is wanted next decides anew.
+        self.refusal = None;
         let what = words::job(&job);
         let writes = matches!(job, BissJob::Commit(_) | BissJob::LeadBack);
         self.session.submit(job, what, writes, services)

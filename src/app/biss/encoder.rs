@@ -44,6 +44,8 @@ pub struct Encoder {
     pub review: Option<Review>,
     /// A procedure on its way, or as it ended.
     pub guide: Option<Guide>,
+    /// Why data were not read the last time that somebody wanted it.
+    pub refusal: Option<Text>,
     /// What turns the virtual encoder's shaft.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
@@ -72,6 +74,7 @@ impl Encoder {
             record: Record::default(),
             review: None,
             guide: None,
+            refusal: None,
             motor: None,
             meaning: Meaning::default(),
             seen: BTreeSet::new(),
@@ -249,6 +252,7 @@ impl Encoder {
         self.read_after.clear();
         self.review = None;
         self.guide = None;
+        self.refusal = None;
     }
 
     /// Reads the list of backups and writes again, on a thread.

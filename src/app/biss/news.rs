@@ -8,6 +8,7 @@ use crate::app::line::Line;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
+use crate::device::biss::Error;
 use crate::sim::biss::Motor;
 use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
 use crate::worker::{Event, JobId, Session};
@@ -186,7 +187,7 @@ impl Encoder {
         let texts = explain::biss::job(error);
         let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
         services.job_ends(self.session.id, id, JobEnd::Failed(first.clone()));
-        self.session.save_to = None;
+        let saves = self.session.save_to.take().is_some();
         let stands_there = self.write_failed(error, &texts);
         let begun = matches!(error, JobError::Interrupted { .. });
         let silent = is_silence(error) || (self.session.just_connected && explain::biss::loss(error).is_none());
@@ -199,7 +200,12 @@ impl Encoder {
             }
             None => {
                 self.session.answers();
-                if stands_there {
+                let moving = matches!(error, JobError::Device(Error::Moving { .. })) && !stands_there && !saves;
+                if moving {
+                    // It stands on the pages that show data.
+                    self.refusal = Some(first);
+                }
+                if stands_there || moving {
                     services.note(Severity::Error, texts, Some(&self.session.name()));
                 } else {
                     services.tell(Severity::Error, texts, Some(&self.session.name()));

@@ -51,7 +51,7 @@ impl Review {
 
 /// A person has to be there for it, or may lead it.
 pub(super) fn is_guided(op: &Op) -> bool {
-    matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::FirePreset { .. })
+    op.turns() || matches!(op, Op::FirePreset { .. })
 }
 
 impl Reviewed for Review {
@@ -87,7 +87,7 @@ impl Reviewed for Review {
     fn needs(&self, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
-        if ops.iter().any(|op| matches!(op, Op::Calibrate | Op::WiegandTest { .. })) {
+        if ops.iter().any(Op::turns) {
             needs.push(Text::new("biss_review.needs_motor"));
         }
         if ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::FirePreset { .. })) {

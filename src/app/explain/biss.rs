@@ -95,14 +95,18 @@ pub fn encoder(error: &Error) -> Text {
         Error::OutOfRange { start, count } => Text::new("biss.out_of_range").with("start", start).with("count", count),
         Error::NoDescription(found) => Text::new("biss.no_description").with("found", found),
         Error::NotIdentified => Text::new("biss.not_identified"),
-        Error::Moving { readings } => {
-            let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
-            Text::new("encoder.moving").with("readings", words.join(", "))
-        }
+        Error::Moving { rpm } => moving(*rpm),
         Error::NotInOperation { mode } => Text::new("biss.not_in_operation").with_text("mode", self::mode(*mode)),
         Error::Changed { item } => Text::new("biss.changed").with("item", item),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
+}
+
+/// A shaft that has to stand and does not.
+fn moving(rpm: Option<f64>) -> Text {
+    let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return Text::new("biss.moving") };
+    let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
+    Text::new(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
 /// What was asked of an encoder.
@@ -181,6 +185,8 @@ mod tests {
             (Error::OrderUnknown { answer: 3 }, vec!["03h", "order="]),
             (Error::TooWide { word: 0x2_0000, multiturn: 0, singleturn: 17 }, vec!["20000h", "0+17"]),
             (Error::OutOfRange { start: address, count: 70_000 }, vec!["0x24:0x10", "70000"]),
+            (Error::Moving { rpm: Some(-499.6) }, vec!["500"]),
+            (Error::Moving { rpm: None }, vec![]),
             (Error::NoDescription(kind), vec!["6129h"]),
             (Error::NotIdentified, vec![]),
             (Error::Adapter(AdapterError::Silent), vec![]),

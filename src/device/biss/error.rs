@@ -163,10 +163,10 @@ pub enum Error {
     #[error("the encoder was not identified")]
     NotIdentified,
     /// The shaft turns where it must stand still.
-    #[error("the shaft moves: {readings:?}")]
+    #[error("the shaft moves")]
     Moving {
-        /// The positions read one after the other, in steps.
-        readings: Vec<u64>,
+        /// Revolutions a minute, above 0 clockwise; `None` where the encoder counts too few revolutions to tell.
+        rpm: Option<f64>,
     },
     /// The encoder is in a device mode, in which its registers may show what was entered and never saved.
     #[error("the encoder is in device mode {mode}")]

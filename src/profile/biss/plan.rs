@@ -129,6 +129,11 @@ impl Operation for Op {
 }
 
 impl Op {
+    /// A motor turns the shaft for it.
+    pub fn turns(&self) -> bool {
+        matches!(self, Op::Calibrate | Op::WiegandTest { .. })
+    }
+
     /// Runs of registers that it changes, as `read` takes them; empty for what changes no register that can be read.
     pub fn ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();

@@ -51,6 +51,7 @@ pub(super) fn page_ui(
         ui.label(skin.caption(skin.words(&text)));
     });
     ui.add_space(skin.space.inside);
+    super::refusal_ui(ui, skin, encoder, actions);
     match encoder.memory.area(area) {
         Some((read, wanted)) => bytes(ui, skin, encoder, area, (&read, &wanted), view, actions),
         None => {

@@ -2,12 +2,11 @@
 
 use egui::{RichText, Ui};
 
-use super::{frame, sheet, wiring};
+use super::{frame, motor, sheet, wiring};
 use crate::app::biss::{Action as Biss, Encoder, words};
 use crate::app::{Action, Text, explain};
 use crate::device::biss::{Bits, FrameSource, Identity};
-use crate::sim::biss::Motor;
-use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -25,7 +24,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             status(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
-                motor_ui(ui, skin, encoder, motor, actions);
+                motor::card_ui(ui, skin, encoder, motor, actions);
             }
         },
         |ui, _| {
@@ -140,23 +139,4 @@ fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate
             paragraph(ui, name.clone().unwrap_or_else(|| skin.say("biss_status.unknown_bit")));
         });
     }
-}
-
-/// Speeds that the procedures ask for, and rest.
-const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
-
-/// What turns the virtual encoder's shaft.
-pub(super) fn motor_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
-    card(ui, skin, "motor_card.title", |ui| {
-        paragraph(ui, skin.caption(skin.say("motor_card.words")));
-        ui.horizontal_wrapped(|ui| {
-            for rpm in SPEEDS {
-                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
-                if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
-                    actions.push(Action::Biss(encoder.session.id, Biss::Turn(rpm)));
-                }
-            }
-            ui.label(skin.label(skin.say("unit.revolutions_per_minute")));
-        });
-    });
 }

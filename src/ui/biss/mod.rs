@@ -3,6 +3,7 @@
 mod data;
 mod encoder;
 mod frame;
+mod motor;
 mod procedures;
 mod registers;
 mod run;
@@ -11,6 +12,7 @@ mod wiring;
 
 use egui::{ScrollArea, Ui};
 
+use super::controls::paragraph;
 use super::{Skin, backups, icons};
 use crate::app::biss::Encoder;
 use crate::app::{Action, AnyDevice, Studio};
@@ -91,6 +93,16 @@ impl View {
         }
         self.serial_number = Some(own.to_owned());
     }
+}
+
+/// Why data were not read, where somebody wanted it.
+fn refusal_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(why) = &encoder.refusal else { return };
+    ui.horizontal_top(|ui| {
+        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, skin.words(why));
+    });
+    motor::turning_ui(ui, skin, encoder, actions);
 }
 
 /// Draws the open page.

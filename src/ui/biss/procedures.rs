@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui};
 
-use super::run;
+use super::{motor, run};
 use crate::app::biss::{Action as Biss, Encoder, forms::PresetForm, words};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, SessionId, Studio, Text, explain};
@@ -62,7 +62,13 @@ pub(super) fn page_ui(
         ui,
         skin,
         (actions, &mut mounting),
-        |ui, (actions, mounting)| mounting_ui(ui, skin, studio, encoder, mounting, actions),
+        |ui, (actions, mounting)| {
+            mounting_ui(ui, skin, studio, encoder, mounting, actions);
+            if let Some(motor) = &encoder.motor {
+                ui.add_space(skin.space.groups);
+                motor::card_ui(ui, skin, encoder, motor, actions);
+            }
+        },
         |ui, (actions, mounting)| {
             preset_ui(ui, skin, encoder, mounting.form, actions);
             ui.add_space(skin.space.groups);

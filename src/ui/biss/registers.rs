@@ -36,6 +36,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
     head(ui, skin, encoder, view, actions);
+    super::refusal_ui(ui, skin, encoder, actions);
     ui.add_space(skin.space.inside);
     let height = ui.available_height();
     if ui.available_width() < BESIDE {

@@ -3,6 +3,7 @@
 
 use egui::{RichText, Ui};
 
+use super::motor;
 use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
 use crate::app::{Action, Severity, Text, explain::biss as says};
 use crate::device::biss::procedure::{Answer, Demand, Detail, Task};
@@ -18,7 +19,7 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
         ui.add_space(skin.space.groups);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
-        super::encoder::motor_ui(ui, skin, encoder, motor, actions);
+        motor::card_ui(ui, skin, encoder, motor, actions);
         ui.add_space(skin.space.groups);
     }
     card(ui, skin, "guide.title", |ui| {
@@ -154,6 +155,12 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
             .map(|(severity, text)| (severity, skin.words(&text)))
             .collect();
         lines.iter().for_each(|(severity, words)| line(ui, skin, *severity, words));
+        if encoder.motor.is_some() {
+            motor::turning_ui(ui, skin, encoder, actions);
+        } else if ops.iter().any(Op::turns) {
+            line(ui, skin, Severity::Note, &skin.say("guide.stop_motor"));
+        }
+        ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
                 let word = skin.say("lead_back_card.button");
