@@ -191,34 +191,24 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     }
 }
 
-/// The notice that stands in the window until it is read, at its foot, over everything.
-pub(super) fn notice_ui(ctx: &egui::Context, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
+/// The notice that stands in the window: a strip that covers nothing, and is closed by a click.
+pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
     let (icon, colour) = severity(skin, notice.severity);
-    let width = (ctx.content_rect().width() - 320.0).clamp(240.0, 760.0);
-    egui::Area::new(egui::Id::unique("notice"))
-        .order(egui::Order::Tooltip)
-        .anchor(egui::Align2::CENTER_BOTTOM, [0.0, -skin.space.groups])
-        .show(ctx, |ui| {
-            let frame = skin.card().stroke(Stroke::new(1.0, colour)).inner_margin(egui::Margin::symmetric(12, 8));
-            frame.show(ui, |ui| {
-                ui.set_width(width);
-                ui.horizontal(|ui| {
-                    ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
-                    let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                    let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
-                    let text = egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true);
-                    ui.allocate_ui_with_layout(
-                        egui::vec2(width - 76.0, 0.0),
-                        egui::Layout::left_to_right(egui::Align::Center),
-                        |ui| {
-                            ui.set_min_width(width - 76.0);
-                            ui.add(text);
-                        },
-                    );
-                    if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
-                        actions.push(Action::Dismiss);
-                    }
-                });
+    let strip = egui::UiBuilder::new().sense(egui::Sense::click());
+    let response = ui.scope_builder(strip, |ui| {
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
+                actions.push(Action::Dismiss);
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
+                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
+                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
             });
         });
+    });
+    if response.response.clicked() {
+        actions.push(Action::Dismiss);
+    }
 }

@@ -55,12 +55,13 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
             let stopping = device.running().is_some_and(|running| running.stopping);
-            ui.horizontal(|ui| {
-                ui.label(skin.label(skin.say("review.writing")));
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if enabled_button(ui, !stopping, icons::STOP, &skin.say("review.stop")).clicked() {
-                        actions.push(Action::Stop);
-                    }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                if enabled_button(ui, !stopping, icons::X, &word).clicked() {
+                    actions.push(Action::Stop);
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    paragraph(ui, skin.label(skin.say("review.writing")));
                 });
             });
         }

@@ -60,8 +60,14 @@ pub struct Window {
     notice_since: Option<(jiff::Zoned, f64)>,
 }
 
-/// Seconds for which good news stands.
-const GOOD_NEWS: f64 = 6.0;
+/// Seconds for which a notice stands; `None`: until it is closed.
+const fn stands(severity: Severity) -> Option<f64> {
+    match severity {
+        Severity::Note | Severity::Good => Some(6.0),
+        Severity::Warning => Some(20.0),
+        Severity::Error => None,
+    }
+}
 
 impl Window {
     /// A window on a studio.
@@ -112,14 +118,16 @@ impl Window {
     }
 
     fn shell(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
-        let Window { studio, views, docks, .. } = self;
         let flat = |fill: crate::app::Rgb| egui::Frame::NONE.fill(fill.into());
         let palette = skin.palette;
+        let Window { studio, views, .. } = self;
         Panel::top("header")
             .exact_size(48.0)
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
         writing_bar(ui, skin, studio);
+        self.notice(ui, skin, actions);
+        let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
             .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
             .frame(flat(palette.surface).inner_margin(8))
@@ -163,28 +171,33 @@ impl Window {
             self.views.help = false;
         }
         dialogs::question_ui(ctx, skin, &self.studio, actions);
-        self.notice(ctx, skin, actions);
     }
 
-    /// The standing notice lies over the window and moves nothing. Good news goes by itself, the rest waits to be read.
-    fn notice(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
+    /// The standing notice, at the foot and over nothing. What somebody has to act upon waits to be closed, the rest goes
+    /// by itself.
+    fn notice(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
         let Some(notice) = self.studio.services.log.standing() else {
             self.notice_since = None;
             return;
         };
-        let now = ctx.input(|input| input.time);
+        let now = ui.input(|input| input.time);
         let since = match &self.notice_since {
             Some((at, since)) if *at == notice.at => *since,
             _ => now,
         };
         self.notice_since = Some((notice.at.clone(), since));
-        header::notice_ui(ctx, skin, notice, actions);
-        if notice.severity <= Severity::Good {
-            let left = GOOD_NEWS - (now - since);
+        let margin = egui::Margin { left: 12, right: 12, top: 6, bottom: 6 };
+        let frame = egui::Frame::NONE.fill(skin.palette.raised.into()).inner_margin(margin);
+        let strip = Panel::bottom("notice").frame(frame).show(ui, |ui| header::notice_ui(ui, skin, notice, actions));
+        let (_, colour) = super::controls::severity(skin, notice.severity);
+        let place = strip.response.rect;
+        ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
+        if let Some(stands) = stands(notice.severity) {
+            let left = stands - (now - since);
             if left <= 0.0 {
                 actions.push(Action::Dismiss);
             } else {
-                ctx.request_repaint_after(Duration::from_secs_f64(left));
+                ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
             }
         }
     }

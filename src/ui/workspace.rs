@@ -40,9 +40,14 @@ fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions
     let (Some(encoder), Some(device)) = (studio.biss(), studio.shown()) else {
         return nothing(ui, skin, actions);
     };
-    running(ui, skin, device, actions);
+    let view = views.biss(encoder);
+    let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running());
+    if !(is_led && view.page == biss::Page::Procedures) {
+        // A procedure that is followed step by step says how far it is by itself.
+        running(ui, skin, device, actions);
+    }
     lost(ui, skin, device, actions);
-    biss::page_ui(ui, skin, (studio, device), encoder, views.biss(encoder), actions);
+    biss::page_ui(ui, skin, (studio, device), encoder, view, actions);
 }
 
 /// No device is on the desk: the ways to one.
@@ -64,7 +69,8 @@ fn nothing(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
 fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
     let opening = *device.phase() == Phase::Opening;
     let running = device.running();
-    if !opening && running.is_none() {
+    // A review that is open says how far it is by itself.
+    if !opening && (running.is_none() || device.is_reviewing()) {
         return;
     }
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };

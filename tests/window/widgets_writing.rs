@@ -143,7 +143,7 @@ fn a_restore_is_stopped_half_way_by_click() {
     screen.outside.wire(PORT).wait_until_held();
     screen.steps();
     assert!(screen.shows(&screen.say("shell.writing")));
-    screen.click("review.stop");
+    screen.click("shell.cancel");
     screen.outside.wire(PORT).release();
     screen.until("it has ended", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))

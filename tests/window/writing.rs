@@ -30,7 +30,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     let store = Op::Store { field: 0, address: 19, status, old: Some(vec![0x22]), new: vec![0x23] };
     assert_eq!(prepared.plan.ops, [store]);
     let line = &review::lines(&prepared.plan)[0];
-    let words = [&line.item, &line.old, &line.new].map(|text| text.words(Language::German));
+    let words: Vec<String> = line.texts().map(|text| text.words(Language::German)).collect();
     assert_eq!(words, ["Datenfeld 0, Byte 19", "22", "23"]);
     assert_eq!(desk.wire().wear(), 0, "looking is no writing");
 

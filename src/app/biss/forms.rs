@@ -27,17 +27,32 @@ impl PresetForm {
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
     }
 
-    /// The value that the entries stand for: the nearest step.
+    /// The step that the degrees stand for: the nearest one.
     ///
     /// # Errors
     /// A sentence that names what would do.
-    pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
+    pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = within("preset_card.degrees", &self.degrees, 0.0, 359.999_999)?;
-        let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
-        let multiturn = whole("preset_card.turns", &self.turns, 0, last)?;
         let steps = 1_u64 << layout.singleturn_bits();
         // Below the number of steps, which fits into 32 bits.
-        let singleturn = ((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32;
+        Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
+    }
+
+    /// The revolutions.
+    ///
+    /// # Errors
+    /// A sentence that names what would do.
+    pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
+        let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
+        whole("preset_card.turns", &self.turns, 0, last.min(PresetValue::MAX))
+    }
+
+    /// The value that the entries stand for.
+    ///
+    /// # Errors
+    /// A sentence that names what would do; of two bad entries it is about the first.
+    pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
+        let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| Text::new("preset_card.too_wide"))
     }
 }
@@ -72,5 +87,7 @@ mod tests {
             assert_eq!(refused("0", turns), "entry.whole", "{turns}");
         }
         assert_eq!((refused("", "0"), refused("0", "")), ("entry.missing", "entry.missing"));
+        let (both, layout) = (form("north", "x"), Layout::default());
+        assert!(both.singleturn(&layout).is_err() && both.multiturn(&layout).is_err(), "each for itself");
     }
 }

@@ -5,7 +5,7 @@ mod guide;
 mod write;
 
 pub use damage::damage;
-pub use guide::{advice, blocker, mode, outcome, procedure, report, step, task};
+pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
 pub use write::{change, failure, op, plan, preset, wear, weight, written};
 
 use super::{adapter, file, link, store};

@@ -224,10 +224,16 @@ pub struct PresetValue {
 impl PresetValue {
     /// Registers that hold one.
     pub const BYTES: u8 = 6;
+    /// The greatest place, and the greatest number of revolutions.
+    pub const MAX: u32 = (1 << 24) - 1;
 
     /// 24 bits each; `None` above. The encoder's widths may allow less.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
-        if singleturn < 1 << 24 && multiturn < 1 << 24 { Some(PresetValue { singleturn, multiturn }) } else { None }
+        if singleturn <= Self::MAX && multiturn <= Self::MAX {
+            Some(PresetValue { singleturn, multiturn })
+        } else {
+            None
+        }
     }
 
     /// From the registers, in the order of their addresses.

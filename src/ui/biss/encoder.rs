@@ -125,6 +125,11 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         if let Some(filter) = status.filter {
             row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));
         }
+        let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
+        if let Some((value, layout)) = preset {
+            let words = skin.words(&explain::biss::preset(value, layout));
+            row(ui, skin, &skin.say("biss_status.preset"), skin.mono(words));
+        }
         if status.protection.is_some_and(|protection| protection != 0) {
             paragraph(ui, RichText::new(skin.say("biss_status.open")).color(palette.warn));
         }

@@ -10,7 +10,7 @@ use crate::app::{Action, AnyDevice, SessionId, Studio, Text, explain};
 use crate::profile::biss::{MotorSource, MountingRun, PresetParts};
 use crate::protocol::biss::{DeviceMode, Filter, ProcedureKind};
 use crate::ui::controls::{
-    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, two_columns,
+    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,
 };
 use crate::ui::{Skin, icons};
 use crate::worker::biss::Change;
@@ -137,8 +137,8 @@ fn mounting_ui(
         }
         ui.add_space(skin.space.between);
         ui.label(skin.say("mounting_card.what"));
-        choice(ui, skin, own.calibrate, "mounting_card.calibrate", "mounting_card.calibrate_words");
-        choice(ui, skin, own.wiegand, "mounting_card.wiegand", "mounting_card.wiegand_words");
+        choice(ui, skin, own.calibrate, "mounting_card.calibrate", &explain::biss::calibration_needs());
+        choice(ui, skin, own.wiegand, "mounting_card.wiegand", &explain::biss::wiegand_needs());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 ui.add_space(skin.space.groups);
@@ -162,11 +162,11 @@ fn mounting_ui(
 }
 
 /// Something that may be done, and what it takes.
-fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &'static str) {
+fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, skin.say(id));
     ui.horizontal_top(|ui| {
         ui.add_space(skin.space.groups);
-        paragraph(ui, skin.caption(skin.say(words)));
+        paragraph(ui, skin.caption(skin.words(words)));
     });
 }
 
@@ -216,13 +216,14 @@ fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionI
 fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
     card(ui, skin, "preset_card.title", |ui| {
         paragraph(ui, skin.label(skin.say("preset_card.words")));
-        labelled_entry(ui, skin, "preset_card.degrees", &mut form.degrees, 96.0, "270");
-        labelled_entry(ui, skin, "preset_card.turns", &mut form.turns, 96.0, "0");
         let Some(identity) = encoder.identity() else { return };
-        let value = form.value(&identity.layout);
-        if let Err(why) = &value {
-            paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.bad));
-        }
+        let layout = &identity.layout;
+        // What is wrong with an entry stands under it.
+        labelled_entry(ui, skin, "preset_card.degrees", &mut form.degrees, 96.0, "270");
+        problem(ui, skin, form.singleturn(layout).err().as_ref());
+        labelled_entry(ui, skin, "preset_card.turns", &mut form.turns, 96.0, "0");
+        problem(ui, skin, form.multiturn(layout).err().as_ref());
+        let value = form.value(layout);
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
         ui.horizontal_wrapped(|ui| {
@@ -232,6 +233,10 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
             }
         });
         ui.add_space(skin.space.inside);
+        if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
+            let words = skin.words(&explain::biss::preset(stored, layout));
+            row(ui, skin, &skin.say("preset_card.stored"), skin.mono(words));
+        }
         paragraph(ui, skin.label(skin.say("preset_card.fire_words")));
         ui.horizontal_wrapped(|ui| {
             for (parts, id) in [

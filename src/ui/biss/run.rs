@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use super::motor;
 use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
 use crate::app::{Action, Severity, Text, explain::biss as says};
-use crate::device::biss::procedure::{Answer, Demand, Detail, Task};
+use crate::device::biss::procedure::{Answer, Demand, Detail, Run, Task};
 use crate::profile::biss::Op;
 use crate::ui::controls::{button, card, enabled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
@@ -32,13 +32,14 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
             _ => "guide.start",
         });
         let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
-        let (skip, cancel) = (skin.say("guide.skip"), skin.say("guide.cancel"));
+        let (skip, cancel) = (skin.say("guide.skip"), skin.say("shell.cancel"));
+        let note = skin.say("guide.cancel_note");
         let stopping = encoder.session.line().and_then(|line| line.running()).is_some_and(|own| own.stopping);
         let model = Steps {
             steps: &list,
             start,
             skip: demand.map(|_| skip.as_str()),
-            cancel: (guide.is_running() && !stopping).then_some(cancel.as_str()),
+            cancel: (guide.is_running() && !stopping).then_some((cancel.as_str(), note.as_str())),
         };
         let event = steps(ui, skin, &model);
         if stopping && guide.is_running() {
@@ -96,42 +97,61 @@ fn step(
     step
 }
 
-/// What is measured while a person is to turn the motor.
+/// What is measured while a person is to turn the motor. The marks say what the start does: both go by the same limits.
 fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
-    let mut gauges = Vec::new();
-    if let Task::Turn(run) = demand.task {
-        let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
-        let (allowed, accepted) = (run.allowed(), run.allowed().measured());
-        // Standing is 0, whichever way it is looked at.
-        let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
+    let Task::Turn(run) = demand.task else { return Vec::new() };
+    let mut gauges = vec![speed(skin, run, demand)];
+    if let Some(fluctuation) = run.fluctuation() {
         let unit = skin.say("unit.revolutions_per_minute");
-        let limits = Text::new("guide.rpm_range").with_number("least", allowed.least, 0).with_number(
-            "greatest",
-            allowed.greatest,
-            0,
-        );
+        let spread = demand.motion.map(|own| own.spread);
+        let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended().middle(), |own| own.rpm));
         gauges.push(Gauge {
-            name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
-            value: rpm,
-            shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
-            // What is decided with, so that the mark says what the start does.
-            allowed: accepted.least..=accepted.greatest,
-            limits: skin.words(&limits),
-            scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
+            name: skin.say("guide.fluctuation"),
+            value: spread,
+            shown: spread.map(|spread| format!("±{} {unit}", skin.number(spread, 1))).unwrap_or_default(),
+            allowed: 0.0..=accepted,
+            best: Some(0.0..=fluctuation),
+            limits: format!("±{} {unit}", skin.number(fluctuation, 0)),
+            scale: 0.0..=accepted * 2.0,
         });
-        if run.calibrates() {
-            let celsius = demand.celsius.map(f64::from);
-            gauges.push(Gauge {
-                name: skin.say("biss_status.temperature"),
-                value: celsius,
-                shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
-                allowed: 25.0..=40.0,
-                limits: "25…40 °C".to_owned(),
-                scale: 10.0..=55.0,
-            });
-        }
+    }
+    if run.calibrates() {
+        let celsius = demand.celsius.map(f64::from);
+        let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
+        gauges.push(Gauge {
+            name: skin.say("biss_status.temperature"),
+            value: celsius,
+            shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
+            allowed: f64::from(coldest)..=f64::from(warmest),
+            best: None,
+            limits: format!("{coldest}…{warmest} °C"),
+            scale: f64::from(coldest) - 15.0..=f64::from(warmest) + 15.0,
+        });
     }
     gauges
+}
+
+/// The speed in the direction that is asked for.
+fn speed(skin: &Skin, run: Run, demand: &Demand) -> Gauge {
+    let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
+    let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
+    // Standing is 0, whichever way it is looked at.
+    let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
+    let is_best = best != allowed;
+    let limits = Text::new(if is_best { "guide.rpm_range_best" } else { "guide.rpm_range" })
+        .with_number("least", allowed.least, 0)
+        .with_number("greatest", allowed.greatest, 0)
+        .with_number("best", best.middle(), 0);
+    let unit = skin.say("unit.revolutions_per_minute");
+    Gauge {
+        name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+        value: rpm,
+        shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
+        allowed: accepted.least..=accepted.greatest,
+        best: is_best.then_some(best.least..=best.greatest),
+        limits: skin.words(&limits),
+        scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
+    }
 }
 
 fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {

@@ -336,7 +336,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut ConnectView, act
         });
         ui.horizontal(|ui| {
             if running {
-                if button(ui, icons::STOP, &skin.say("find.stop")).clicked() {
+                if button(ui, icons::X, &skin.say("find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, skin);

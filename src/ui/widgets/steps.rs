@@ -7,7 +7,7 @@
 //! * **Accessible**: a label a step, with how far it is; a progress indicator a gauge, with its value and what is allowed;
 //!   buttons with the words given.
 //! * **Painting**: a rail with a dot a step, filled, ringed or hollow, its icon in the colour of how it ended; on a gauge
-//!   the allowed band, a hand where the value is, in the warning's colour outside of it.
+//!   the allowed band, what is best of it stronger, and a hand where the value is, in the warning's colour outside.
 
 mod gauge;
 
@@ -66,6 +66,8 @@ pub struct Gauge {
     pub shown: String,
     /// What it may be.
     pub allowed: RangeInclusive<f64>,
+    /// What is best of that; `None`: all is as good.
+    pub best: Option<RangeInclusive<f64>>,
     /// What it may be, in words: `498…502 rpm`.
     pub limits: String,
     /// Ends of the scale; they reach beyond what is allowed.
@@ -81,8 +83,8 @@ pub struct Steps<'a> {
     pub start: Option<(&'a str, Result<(), &'a str>)>,
     /// What leaves the step out that waits.
     pub skip: Option<&'a str>,
-    /// What ends the procedure.
-    pub cancel: Option<&'a str>,
+    /// What ends the procedure: its word, and what it does then.
+    pub cancel: Option<(&'a str, &'a str)>,
 }
 
 /// What the user wants.
@@ -100,6 +102,11 @@ impl Gauge {
     /// The value is there and allowed.
     pub fn fits(&self) -> bool {
         self.value.is_some_and(|value| self.allowed.contains(&value))
+    }
+
+    /// It is allowed and as good as can be.
+    pub fn is_best(&self) -> bool {
+        self.fits() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
     }
 }
 
@@ -157,11 +164,12 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
         let (from, to) = (upper.y + DOT + skin.space.inside, lower.y - DOT - skin.space.inside);
         ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, skin.palette.line));
     }
-    if let Some(word) = model.cancel {
-        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-            if enabled_button(ui, true, icons::STOP, word).clicked() {
+    if let Some((word, note)) = model.cancel {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if enabled_button(ui, true, icons::X, word).clicked() {
                 event = Some(StepsEvent::Cancel);
             }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| paragraph(ui, skin.label(note)));
         });
     }
     event

@@ -2,7 +2,7 @@
 
 use crate::app::{Severity, Text};
 use crate::device::biss::procedure::{
-    Advice, Blocker, CalibrationReport, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
+    Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
 };
 use crate::profile::biss::{Op, PresetParts};
 use crate::protocol::biss::{DeviceMode, PulseVoltage};
@@ -62,12 +62,12 @@ pub fn task(task: Task) -> Text {
     match task {
         Task::Turn(run) => {
             let id = match (run.is_clockwise(), run.calibrates()) {
-                (true, true) => "guide.turn_cw_500",
-                (false, true) => "guide.turn_ccw_500",
+                (true, true) => "guide.turn_cw_best",
+                (false, true) => "guide.turn_ccw_best",
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            Text::new(id)
+            speeds(Text::new(id), run.allowed()).with_number("best", run.recommended().middle(), 0)
         }
         Task::Stand => Text::new("guide.stand"),
         Task::StandAtPlace => Text::new("guide.stand_at_place"),
@@ -84,17 +84,37 @@ pub fn blocker(blocker: Blocker) -> Text {
         Blocker::WrongDirection => Text::new("guide.wrong_direction"),
         Blocker::Speed { rpm, allowed } => speeds(Text::new("guide.speed"), allowed).with_number("rpm", rpm, 0),
         Blocker::Unsteady { spread } => Text::new("guide.unsteady").with_number("spread", spread, 1),
-        Blocker::Temperature { celsius } => Text::new("guide.temperature").with("celsius", celsius),
+        Blocker::Temperature { celsius } => temperatures(Text::new("guide.temperature").with("celsius", celsius)),
     }
 }
 
 /// What to know before a start.
 pub fn advice(advice: Advice) -> Text {
     match advice {
-        Advice::Speed { recommended } => speeds(Text::new("guide.recommended"), recommended),
+        Advice::Speed { recommended } => {
+            let run = Run::CalibrationCounterclockwise;
+            let text = speeds(Text::new("guide.recommended"), recommended);
+            text.with_number("fluctuation", run.fluctuation().unwrap_or_default(), 0)
+        }
         Advice::TableAtRisk => Text::new("guide.table_at_risk"),
         Advice::Marked => Text::new("guide.marked"),
     }
+}
+
+/// What a calibration needs of motor and encoder.
+pub fn calibration_needs() -> Text {
+    let run = Run::CalibrationCounterclockwise;
+    let text = speeds(Text::new("mounting_card.calibrate_words"), run.allowed());
+    temperatures(text.with_number("best", run.recommended().middle(), 0))
+}
+
+/// What a Wiegand test needs of the motor.
+pub fn wiegand_needs() -> Text {
+    speeds(Text::new("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
+}
+
+fn temperatures(text: Text) -> Text {
+    text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
 }
 
 fn speeds(text: Text, range: SpeedRange) -> Text {

@@ -36,6 +36,7 @@ pub(super) fn gauges_ui(ui: &mut Ui, skin: &Skin, gauges: &[Gauge]) {
 fn gauge_ui(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, limits_below: bool) {
     let palette = skin.palette;
     let (icon, ink) = match (gauge.fits(), gauge.value) {
+        (true, _) if !gauge.is_best() => (icons::INFO, palette.text),
         (true, _) => (icons::CHECK_CIRCLE, palette.good),
         (false, Some(_)) => (icons::WARNING, palette.warn),
         (false, None) => (icons::QUESTION, palette.muted),
@@ -83,12 +84,21 @@ fn scale(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, ink: Color32) {
     let track = Rect::from_center_size(rect.center(), Vec2::new(rect.width(), 6.0));
     painter.rect_filled(track, 3.0, skin.palette.sunken);
     painter.rect_stroke(track, 3.0, Stroke::new(1.0, skin.palette.line), egui::StrokeKind::Inside);
-    // A narrow band is still to be seen.
-    let (from, to) = (x(share(*gauge.allowed.start())), x(share(*gauge.allowed.end())));
-    let half = ((to - from) / 2.0).max(1.5);
-    let middle = (from + to) / 2.0;
-    let band = Rect::from_min_max(pos2(middle - half, track.top()), pos2(middle + half, track.bottom()));
-    painter.rect_filled(band, 2.0, Color32::from(skin.palette.good).gamma_multiply(0.6));
+    let band = |range: &std::ops::RangeInclusive<f64>, strength: f32| {
+        // A narrow band is still to be seen.
+        let (from, to) = (x(share(*range.start())), x(share(*range.end())));
+        let half = ((to - from) / 2.0).max(1.5);
+        let middle = (from + to) / 2.0;
+        let place = Rect::from_min_max(pos2(middle - half, track.top()), pos2(middle + half, track.bottom()));
+        painter.rect_filled(place, 2.0, Color32::from(skin.palette.good).gamma_multiply(strength));
+    };
+    match &gauge.best {
+        Some(best) => {
+            band(&gauge.allowed, 0.3);
+            band(best, 1.0);
+        }
+        None => band(&gauge.allowed, 0.6),
+    }
     let Some(value) = gauge.value.filter(|value| !value.is_nan()) else { return };
     let place = share(value);
     if (0.0..=1.0).contains(&place) {

@@ -24,13 +24,14 @@ fn procedure(run: Run) -> Harness<'static, Run> {
             value: run.speed,
             shown: run.speed.map_or("–".to_owned(), |speed| format!("{speed} rpm")),
             allowed: 498.0..=502.0,
+            best: None,
             limits: "498…502 rpm".to_owned(),
             scale: 450.0..=550.0,
         };
         let turn = Step { gauges: vec![speed], ..step("Turn", StepState::Waiting, "Run the motor at 500 rpm.") };
         let list = [step("Ask", StepState::Done, "Another drive"), turn, step("Check", StepState::ToCome, "")];
         let start = Some(("Start", run.refused.map_or(Ok(()), Err)));
-        let model = Steps { steps: &list, start, skip: Some("Leave out"), cancel: Some("Cancel") };
+        let model = Steps { steps: &list, start, skip: Some("Leave out"), cancel: Some(("Cancel", "It goes back.")) };
         run.events.extend(steps(ui, &skin(), &model));
     })
 }
@@ -73,6 +74,7 @@ fn a_value_fits_only_within_its_limits() {
         value,
         shown: String::new(),
         allowed: 25.0..=40.0,
+        best: Some(30.0..=35.0),
         limits: String::new(),
         scale: 0.0..=60.0,
     };
@@ -81,4 +83,6 @@ fn a_value_fits_only_within_its_limits() {
     {
         assert_eq!(gauge(value).fits(), fits, "{value:?}");
     }
+    let best = [25.0, 30.0, 35.0, 36.0].map(|value| gauge(Some(value)).is_best());
+    assert_eq!(best, [false, true, true, false]);
 }
