@@ -91,7 +91,9 @@ impl Reviewed for Review {
             needs.push(Text::new("biss_review.needs_motor"));
         }
         if ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::FirePreset { .. })) {
-            needs.push(Text::new("biss_review.needs_standstill"));
+            let turns = ops.iter().any(Op::turns);
+            let id = if turns { "biss_review.needs_rest" } else { "biss_review.needs_standstill" };
+            needs.push(Text::new(id));
         }
         let restarts = |op: &Op| matches!(op, Op::SelectFilter { .. } | Op::StorePreset { .. } | Op::FirePreset { .. });
         if ops.iter().any(restarts) {

@@ -64,14 +64,14 @@ pub(super) fn page_ui(
         (actions, &mut mounting),
         |ui, (actions, mounting)| {
             mounting_ui(ui, skin, studio, encoder, mounting, actions);
-            if let Some(motor) = &encoder.motor {
-                ui.add_space(skin.space.groups);
-                motor::card_ui(ui, skin, encoder, motor, actions);
-            }
         },
         |ui, (actions, mounting)| {
             preset_ui(ui, skin, encoder, mounting.form, actions);
             ui.add_space(skin.space.groups);
+            if let Some(motor) = &encoder.motor {
+                motor::card_ui(ui, skin, encoder, motor, actions);
+                ui.add_space(skin.space.groups);
+            }
             filter_ui(ui, skin, encoder, actions);
         },
     );
