@@ -144,6 +144,17 @@ impl fmt::Display for CharacterFormat {
     }
 }
 
+/// What an encoder is supplied with, in millivolts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SupplyVoltage {
+    /// The least that it works with.
+    pub least: u16,
+    /// What is given to it.
+    pub given: u16,
+    /// The greatest that it stands.
+    pub greatest: u16,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

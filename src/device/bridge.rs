@@ -9,9 +9,9 @@ mod tap;
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, LineError, LineState};
 use crate::protocol::bridge::{
-    BodyError, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
+    BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
-use crate::units::Moment;
+use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
 pub use tap::{Streaming, Tap, TapError, Wanted};
@@ -59,6 +59,22 @@ pub enum AdapterError {
     NoAnalog {
         /// What it calls itself.
         name: String,
+    },
+    /// It has not what this needs.
+    #[error("the adapter {name} cannot supply an encoder")]
+    NoSupply {
+        /// What it calls itself.
+        name: String,
+    },
+    /// It gives more than the encoder stands; it was told to switch that off.
+    #[error("the adapter gives {measured} mV where {given} mV were asked for, and the encoder stands {greatest} mV")]
+    Overvoltage {
+        /// Millivolts that were asked for.
+        given: u16,
+        /// Millivolts that it has measured.
+        measured: u16,
+        /// Millivolts that the encoder stands.
+        greatest: u16,
     },
     /// A stream that ran brings nothing any more.
     #[error("the adapter sends nothing any more")]
@@ -160,6 +176,27 @@ impl Adapter<'_, '_> {
             self.adapter.hello = Some(hello);
         }
         Ok(())
+    }
+
+    /// Switches the encoder's supply on; gives back the millivolts and milliamperes that it measures. More than the encoder
+    /// stands is switched off again.
+    ///
+    /// # Errors
+    /// [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] among others.
+    pub(super) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
+        if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
+            return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
+        }
+        let SupplyVoltage { given, greatest, .. } = voltage;
+        let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
+        let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
+            return Err(other(Operation::Supply, &answered.reply).into());
+        };
+        if measured > greatest {
+            self.ask(&Request::Supply { on: false, millivolt: 0 })?;
+            return Err(AdapterError::Overvoltage { given, measured, greatest }.into());
+        }
+        Ok((measured, milliampere))
     }
 
     /// Asks; once more where no reply comes. Only for what may be done twice.

@@ -3,6 +3,7 @@
 //! other limits are assumptions (U) and can be changed here.
 
 use super::ellipse::Ellipse;
+use crate::units::SupplyVoltage;
 
 /// A verdict, from good to bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,6 +57,15 @@ impl Family {
             Family::Hiperface => "HIPERFACE",
             Family::AfsAfm60 => "AFS/AFM60",
             Family::Ttk70 => "TTK70",
+        }
+    }
+
+    /// What its encoders are supplied with: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and AFM60 with sine and
+    /// cosine.
+    pub const fn supply(self) -> SupplyVoltage {
+        match self {
+            Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
+            Family::AfsAfm60 => SupplyVoltage { least: 4_500, given: 5_000, greatest: 5_500 },
         }
     }
 

@@ -14,6 +14,11 @@ pub fn adapter(error: &AdapterError) -> Text {
         AdapterError::NoBiss { name } => Text::new("adapter.no_biss").with("name", name),
         AdapterError::NoSsi { name } => Text::new("adapter.no_ssi").with("name", name),
         AdapterError::NoAnalog { name } => Text::new("adapter.no_analogue").with("name", name),
+        AdapterError::NoSupply { name } => Text::new("adapter.no_supply").with("name", name),
+        AdapterError::Overvoltage { given, measured, greatest } => Text::new("adapter.overvoltage")
+            .with_number("given", volts(*given), 2)
+            .with_number("measured", volts(*measured), 2)
+            .with_number("greatest", volts(*greatest), 2),
         AdapterError::Mute => Text::new("adapter.mute"),
         AdapterError::Restarted => Text::new("adapter.restarted"),
         AdapterError::Data { cause } => Text::new("adapter.data").with("why", cause),
@@ -40,6 +45,10 @@ fn reason(code: ErrorCode) -> Text {
         ErrorCode::OVERRUN => Text::new("adapter.overrun"),
         other => Text::new("adapter.unknown_code").with("code", other.byte()),
     }
+}
+
+fn volts(millivolt: u16) -> f64 {
+    f64::from(millivolt) / 1000.0
 }
 
 fn number(operation: Operation) -> String {
@@ -76,6 +85,8 @@ mod tests {
             (AdapterError::NoBiss { name: name() }, "box"),
             (AdapterError::NoSsi { name: name() }, "box"),
             (AdapterError::NoAnalog { name: name() }, "box"),
+            (AdapterError::NoSupply { name: name() }, "box"),
+            (AdapterError::Overvoltage { given: 5_000, measured: 5_600, greatest: 5_500 }, "60 V"),
             (AdapterError::Mute, "."),
             (AdapterError::Restarted, "."),
             (AdapterError::Data { cause }, "94h"),

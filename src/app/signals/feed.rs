@@ -11,6 +11,7 @@ use crate::device::bridge::{Streaming, TapError};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::signal::wires::Wires;
 use crate::sim::sine_cosine::Checked;
+use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{
     Analogue, Batch, Bridge, BridgeError, End, Open, Pair, Producer, SineCosine, Stream, open_adapter,
@@ -82,13 +83,14 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Lets it sample so many times a second. Whether it is there is told by its stream.
+    /// Lets it sample so many times a second, with the encoder's supply switched on where one is given. Whether it is there is told by its stream.
     ///
     /// # Errors
     /// No thread is left.
     pub(super) fn start(
         self,
         sample_hz: u32,
+        supply: Option<SupplyVoltage>,
         earlier: Option<Receiver<()>>,
         services: &Services,
     ) -> Result<Feed, Text> {
@@ -105,7 +107,7 @@ impl AdapterLink {
             }
             open()
         });
-        let bridge = Bridge::new(SineCosine { sample_hz }, margin, open);
+        let bridge = Bridge::new(SineCosine { sample_hz }, supply, margin, open);
         let streaming = bridge.streaming();
         Ok(Feed::Adapter { stream: spawn(bridge, clock, services)?, streaming, url })
     }

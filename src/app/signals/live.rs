@@ -14,6 +14,7 @@ use crate::app::{Severity, Text, explain};
 use crate::device::bridge::Streaming;
 use crate::link::LinkUrl;
 use crate::signal::Time;
+use crate::signal::quality::Family;
 use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 
@@ -28,6 +29,8 @@ pub enum SourceAction {
     SetLink(String),
     /// So many samples a second wished of an adapter; one that runs keeps its own.
     SetSampleRate(u32),
+    /// The adapter is to supply an encoder of this family, or none; one that runs keeps its own.
+    SetSupply(Option<Family>),
     /// Stand still; what was measured last stays.
     Stop,
     /// Keep what is shown while it goes on, or go on.
@@ -64,6 +67,8 @@ pub struct Source {
     /// The link to the adapter, as typed.
     link: String,
     sample_hz: u32,
+    /// Never remembered from one start to the next: another encoder may be at its end then.
+    supply: Option<Family>,
     adapter_problem: Option<Text>,
     /// Which one was started last.
     kind: SourceKind,
@@ -97,6 +102,7 @@ impl Default for Source {
             problem: None,
             link: VIRTUAL_ADAPTER.to_owned(),
             sample_hz: 100_000,
+            supply: None,
             adapter_problem: None,
             kind: SourceKind::default(),
             window_ms: 200,
@@ -132,6 +138,11 @@ impl Source {
     /// Samples a second that are wished of an adapter.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
+    }
+
+    /// Which family's encoder the adapter is to supply; `None`: it is supplied from elsewhere.
+    pub fn supply(&self) -> Option<Family> {
+        self.supply
     }
 
     /// Why the adapter samples no more, or could not be asked to.
@@ -261,7 +272,7 @@ impl Source {
         };
         // What runs gives its wire back first.
         self.stop(services);
-        match link.start(self.sample_hz, earlier, services) {
+        match link.start(self.sample_hz, self.supply.map(Family::supply), earlier, services) {
             Ok(feed) => {
                 self.adapter_problem = None;
                 self.run(SourceKind::Adapter, feed, services);
@@ -314,6 +325,10 @@ impl Signals {
                 self.source.adapter_problem = None;
             }
             SourceAction::SetSampleRate(sample_hz) => self.source.sample_hz = sample_hz.max(1),
+            SourceAction::SetSupply(supply) => {
+                self.source.supply = supply;
+                self.source.adapter_problem = None;
+            }
             SourceAction::Stop => self.source.stop(services),
             SourceAction::Hold(held) => {
                 if let Some(live) = &mut self.source.live {

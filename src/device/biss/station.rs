@@ -11,7 +11,7 @@ use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
 use crate::protocol::ubicom::{FORMAT, REPLY_TIME_OUT};
 use crate::signal::Time;
-use crate::units::{Baud, CharacterFormat, Moment, Parity};
+use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Link parameters that describe the line and the encoder.
 pub const PARAMETERS: [&str; 8] = ["baud", "parity", "order", "echo", "timeout", "margin", "clock", "voltage"];
@@ -95,6 +95,11 @@ impl Supply {
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
     /// Millivolts that every version of the kit encoder stands (manual, chapter 2: 4.75 to 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
+
+    /// So many millivolts for a kit encoder.
+    pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
+        SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
+    }
 }
 
 /// How an adapter's bus is set.

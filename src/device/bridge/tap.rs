@@ -7,7 +7,7 @@ use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, othe
 use crate::device::line::{Line, LineError, LineState};
 use crate::link::{Ctx, LinkError};
 use crate::protocol::bridge::{Capabilities, Hello, Reply, Request, SsiFlags};
-use crate::units::Moment;
+use crate::units::{Moment, SupplyVoltage};
 
 /// A stream and how its signals are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +43,9 @@ pub enum Wanted {
     },
 }
 
+/// Until the signals of an encoder mean something: HIPERFACE, figure 38, up to 900 ms.
+const POWER_UP: Duration = Duration::from_secs(1);
+
 /// Who streams, and how in fact.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streaming {
@@ -52,6 +55,8 @@ pub struct Streaming {
     pub period_ns: i64,
     /// Of sine and cosine: what a value of 32 767 stands for; else 0.
     pub full_scale_microvolt: u32,
+    /// Millivolts and milliamperes that the adapter supplies the encoder with; `None`: it does not.
+    pub supplied: Option<(u16, u16)>,
 }
 
 /// Why there is no stream, or none any more.
@@ -94,12 +99,17 @@ impl Tap {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
-    /// Asks who is there, sets it and starts the stream.
+    /// Asks who is there, switches the encoder's supply on where that is wished, sets the adapter and starts the stream.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss) or
-    /// [`NoAnalog`](AdapterError::NoAnalog), what it refuses, or the wire.
-    pub fn begin(&mut self, ctx: Ctx<'_>, wanted: Wanted) -> Result<Streaming, TapError> {
+    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
+    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), what it refuses, or the wire.
+    pub fn begin(
+        &mut self,
+        ctx: Ctx<'_>,
+        wanted: Wanted,
+        supply: Option<SupplyVoltage>,
+    ) -> Result<Streaming, TapError> {
         let mut line = Line::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         adapter.hello()?;
@@ -113,6 +123,14 @@ impl Tap {
         if !hello.capabilities.has(capability) {
             return Err(lacks(name()).into());
         }
+        let supplied = match supply {
+            Some(voltage) => {
+                let supplied = adapter.supply(voltage)?;
+                adapter.line.wait(POWER_UP).map_err(Failure::Line)?;
+                Some(supplied)
+            }
+            None => None,
+        };
         let request = wanted.configure(&hello);
         let answered = adapter.ask(&request)?;
         let (streamed, full_scale_microvolt) = match (wanted, &answered.reply) {
@@ -126,7 +144,7 @@ impl Tap {
         let flow = Flow::begin(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();
         self.flow = Some(flow);
-        Ok(Streaming { hello, period_ns, full_scale_microvolt })
+        Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
     }
 
     /// The next samples; `None` where none have come by `until`, or nothing streams.

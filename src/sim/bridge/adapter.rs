@@ -27,6 +27,7 @@ pub struct Adapter {
     faults: Faults,
     rng: Rng,
     switched_supply: bool,
+    is_supplied: bool,
     version: u8,
     receiver: Receiver,
     biss: Option<BissSetting>,
@@ -69,6 +70,7 @@ impl Adapter {
             faults: config.encoder.faults().clone(),
             rng: Rng::with_seed(config.encoder.seed()),
             switched_supply: config.switched_supply,
+            is_supplied: true,
             version: config.version,
             receiver: Receiver::default(),
             biss: None,
@@ -142,7 +144,7 @@ impl Adapter {
             }));
         }
         if let Some(stream) = &mut self.sampled {
-            packets.extend(stream.run(self.now));
+            packets.extend(stream.run(self.now, self.is_supplied));
         }
         packets.sort_by_key(|(at, _)| *at);
         for (at, data) in packets {
@@ -301,6 +303,7 @@ impl Adapter {
 
     fn switch_off(&mut self) {
         if self.switched_supply {
+            self.is_supplied = false;
             self.bus.encoder.disconnect();
         }
     }
@@ -316,6 +319,7 @@ impl Adapter {
         if !Self::SUPPLY.contains(&millivolt) {
             return Err(OUT_OF_RANGE);
         }
+        self.is_supplied = true;
         self.bus.encoder.connect(self.now);
         let milliampere = u16::try_from(Self::SUPPLY_MILLIWATT * 1000 / u32::from(millivolt)).unwrap_or(u16::MAX);
         Ok(Reply::Supply { on, millivolt, milliampere })

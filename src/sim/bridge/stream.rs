@@ -162,8 +162,8 @@ impl Analog {
         self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
-    /// The packets that are complete at a moment, each with its own.
-    pub(super) fn run(&mut self, to: Moment) -> Vec<(Moment, Data)> {
+    /// The packets that are complete at a moment, each with its own. An encoder without supply has no signals.
+    pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
         while self.pace.due() <= to {
@@ -175,7 +175,7 @@ impl Analog {
                     .sine_v()
                     .into_iter()
                     .zip(wires.cosine_v())
-                    .map(|(sine, cosine)| (raw(sine), raw(cosine)))
+                    .map(|(sine, cosine)| if is_supplied { (raw(sine), raw(cosine)) } else { (0, 0) })
                     .collect()
             });
             let (first_index, t0_us, lost) = self.pace.next();

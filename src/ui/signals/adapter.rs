@@ -4,6 +4,7 @@ use egui::Ui;
 
 use crate::app::signals::{Action as Signals, Source, SourceAction, VIRTUAL_ADAPTER};
 use crate::app::{Action, Text};
+use crate::signal::quality::Family;
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
 use crate::ui::{Skin, icons};
 
@@ -40,6 +41,15 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
                 ask(SourceAction::SetSampleRate(rate));
             }
         });
+        let word = skin.say("adapter.supply");
+        entry(ui, skin, &word, |ui| {
+            let mut supply = source.supply();
+            let families = Family::ALL.map(|family| (Some(family), supply_of(skin, family)));
+            let elsewhere = (None, skin.say("adapter.supply_elsewhere"));
+            if choice(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
+                ask(SourceAction::SetSupply(supply));
+            }
+        });
         paragraph(ui, skin.caption(skin.say("adapter.link_hint")));
         problem(ui, skin, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
@@ -56,4 +66,13 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
         ask(SourceAction::SetLink(source.link().to_owned()));
     }
     started || closed
+}
+
+/// What an encoder of a family is supplied with.
+fn supply_of(skin: &Skin, family: Family) -> String {
+    let voltage = family.supply();
+    let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
+    let text = Text::new("adapter.supply_of").with("family", family.name());
+    let text = text.with_number("volts", volts(voltage.given), 1).with_number("least", volts(voltage.least), 1);
+    skin.words(&text.with_number("greatest", volts(voltage.greatest), 1))
 }

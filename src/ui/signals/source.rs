@@ -5,6 +5,7 @@ use egui::{RichText, Ui};
 use super::{adapter, table, virtual_encoder};
 use crate::app::signals::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind};
 use crate::app::{Action, Text};
+use crate::protocol::bridge::Capabilities;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
 use crate::ui::{Skin, icons};
@@ -171,6 +172,13 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         let hello = &streaming.hello;
         let who = [hello.name.as_str(), &hello.serial, &hello.firmware].join(" · ");
         response.on_hover_text(format!("{who}\n{}", skin.words(&actual)));
+        if let Some((millivolt, milliampere)) = streaming.supplied {
+            let text = Text::new("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
+            ui.label(skin.label(skin.words(&text.with("milliampere", milliampere))));
+        } else if hello.capabilities.has(Capabilities::SUPPLY) {
+            let word = RichText::new(skin.say("adapter.supply_off")).color(palette.warn);
+            ui.label(word).on_hover_text(skin.say("adapter.supply_off_hint"));
+        }
     }
     if source.lost() > 0 {
         let text = Text::new("virtual.lost").with("count", source.lost());

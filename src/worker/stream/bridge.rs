@@ -14,6 +14,7 @@ use crate::device::bridge::{Portion, Streaming, Tap, TapError, Wanted};
 use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::protocol::biss::Layout;
 use crate::protocol::bridge::{Data, SsiFlags};
+use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 
 pub use open::open_adapter;
@@ -87,6 +88,7 @@ pub type Open = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>
 /// An adapter that streams.
 pub struct Bridge<S> {
     stretch: S,
+    supply: Option<SupplyVoltage>,
     open: Option<Open>,
     wire: Option<Box<dyn ByteLink>>,
     tap: Tap,
@@ -94,9 +96,10 @@ pub struct Bridge<S> {
 }
 
 impl<S: Stretch> Bridge<S> {
-    /// An adapter at the wire that `open` opens; a reply may come by `margin` later than the protocol says.
-    pub fn new(stretch: S, margin: Duration, open: Open) -> Self {
-        Bridge { stretch, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
+    /// An adapter at the wire that `open` opens; a reply may come by `margin` later than the protocol says. The encoder's
+    /// supply stays off unless one is given.
+    pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
+        Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }
 
     /// Who streams and how, as soon as it does.
@@ -109,7 +112,7 @@ impl<S: Stretch> Bridge<S> {
         let wire = self.wire.insert(open()?);
         let (cancel, mut trace) = (Cancel::default(), Trace::default());
         let ctx = Ctx { wire: &mut **wire, clock, cancel: &cancel, trace: &mut trace };
-        let streaming = self.tap.begin(ctx, self.stretch.wanted())?;
+        let streaming = self.tap.begin(ctx, self.stretch.wanted(), self.supply)?;
         // It begins once.
         let _ = self.streaming.set(streaming);
         Ok(())

@@ -56,11 +56,8 @@ impl<'a> Master<'a> {
 
     fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
-        let answered = self.adapter().ask(&Request::Supply { on: true, millivolt })?;
-        let Reply::Supply { millivolt: volt, milliampere, .. } = answered.reply else {
-            return Err(unexpected("a supply", &answered.reply));
-        };
-        self.station.supply = Some(Supply { millivolt, measured: Some((volt, milliampere)) });
+        let measured = self.adapter().supply(Supply::voltage(millivolt))?;
+        self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
         // Data sheet, 02:0Eh: 500 ms until registers can be asked.
         self.wait(Supply::POWER_UP)
     }

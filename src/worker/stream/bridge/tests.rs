@@ -10,6 +10,7 @@ use crate::protocol::bridge::{
     AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
 };
 use crate::signal::Time;
+use crate::signal::quality::Family;
 use crate::sim::ByteDevice;
 use crate::sim::bridge::{Adapter, Config};
 use crate::units::{CharacterFormat, Moment};
@@ -29,7 +30,7 @@ fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> 
     clock.sleep_until(Moment::after_start(Duration::from_secs(3)));
     let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
     let link = SimLink::connect(adapter.clone(), clock.clone());
-    let bridge = Bridge::new(stretch, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
+    let bridge = Bridge::new(stretch, None, MARGIN, Box::new(move || Ok(Box::new(link) as Box<dyn ByteLink>)));
     Bench { clock, adapter, bridge }
 }
 
@@ -184,6 +185,8 @@ fn a_consumer_that_stops_reading_loses_nothing_unseen() {
 /// An adapter that answers as it is told, and sends what it is told when a stream begins.
 struct Puppet {
     capabilities: Capabilities,
+    /// What it gives too much when it switches a supply on, in millivolts.
+    too_high: u16,
     /// Operations that are refused, with their code.
     refused: Vec<(Operation, ErrorCode)>,
     /// Replies that get lost, by their operation, once each.
@@ -199,6 +202,7 @@ fn puppet(data: Vec<Message>) -> Puppet {
     let capabilities = Capabilities::BISS.and(Capabilities::ANALOG);
     Puppet {
         capabilities,
+        too_high: 0,
         refused: Vec::new(),
         swallowed: Vec::new(),
         data,
@@ -226,6 +230,9 @@ impl Puppet {
                 Reply::AnalogConfig { sample_hz, full_scale_microvolt: 1_250_000, bits: 12 }
             }
             Request::AnalogStream { on } => Reply::AnalogStream { on },
+            Request::Supply { on, millivolt } => {
+                Reply::Supply { on, millivolt: millivolt + self.too_high, milliampere: 60 }
+            }
             Request::BissConfig { clock_hz, .. } => Reply::BissConfig { clock_hz },
             Request::BissStream { period_us } => Reply::BissStream { period_us },
             _ => panic!("{request:?}"),
@@ -301,6 +308,38 @@ fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
         Request::AnalogStream { on: false },
     ];
     assert_eq!(*heard.lock().unwrap(), expected);
+}
+
+/// AFS60 with sine and cosine: 5 V, and no more than 5.5 V.
+#[test]
+fn a_supply_that_is_wished_is_switched_on_and_never_too_high() {
+    for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
+        let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
+        device.capabilities = Capabilities::ANALOG.and(Capabilities::SUPPLY);
+        device.too_high = too_high;
+        let heard = device.heard.clone();
+        let mut bench = bench(SINE_COSINE, device);
+        bench.bridge.supply = Some(Family::AfsAfm60.supply());
+        let mut asked = vec![Request::Hello, Request::Supply { on: true, millivolt: 5_000 }];
+        match expected {
+            Ok(supplied) => {
+                let begun = bench.clock.now();
+                assert_eq!(bench.take(Duration::from_millis(1_100)).len(), 1);
+                assert!(bench.clock.now().since(begun) >= Duration::from_secs(1), "it has to start");
+                assert_eq!(bench.bridge.streaming().get().unwrap().supplied, Some(supplied));
+                asked.extend([Request::AnalogConfig { sample_hz: 50_000 }, Request::AnalogStream { on: true }]);
+            }
+            Err((given, measured, greatest)) => {
+                let error = adapter_error(bench.error());
+                assert_eq!(error, AdapterError::Overvoltage { given, measured, greatest });
+                asked.push(Request::Supply { on: false, millivolt: 0 });
+            }
+        }
+        assert_eq!(*heard.lock().unwrap(), asked);
+    }
+    let mut bench = bench(SINE_COSINE, puppet(Vec::new()));
+    bench.bridge.supply = Some(Family::Hiperface.supply());
+    assert_eq!(adapter_error(bench.error()), AdapterError::NoSupply { name: "Puppet".to_owned() });
 }
 
 #[test]
@@ -390,15 +429,20 @@ fn a_wire_that_is_gone_or_was_never_there_is_told() {
         let clock = Arc::new(VirtualClock::default());
         let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());
         let open: Open = Box::new(move || Ok(Box::new(Unplugged(link, portions))));
-        let stream = Stream::spawn(Bridge::new(SINE_COSINE, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
+        let stream =
+            Stream::spawn(Bridge::new(SINE_COSINE, None, MARGIN, open), 1_000_000, clock, Arc::new(|| ())).unwrap();
         assert!(stream.end().wait(Duration::from_secs(20)));
         let error = stream.take_error();
         assert!(matches!(error, Some(BridgeError::Tap(TapError::Link(error))) if error.is_lost()), "{portions}");
     }
     let lost = LinkError::new("/dev/nowhere", LinkErrorKind::NotFound);
     let open: Open = Box::new(move || Err(lost.into()));
-    let stream =
-        Stream::spawn(Bridge::new(SINE_COSINE, MARGIN, open), 1, Arc::new(VirtualClock::default()), Arc::new(|| ()));
+    let stream = Stream::spawn(
+        Bridge::new(SINE_COSINE, None, MARGIN, open),
+        1,
+        Arc::new(VirtualClock::default()),
+        Arc::new(|| ()),
+    );
     let stream = stream.unwrap();
     assert!(stream.end().wait(Duration::from_secs(20)));
     assert_eq!(stream.take_error().unwrap().to_string(), "/dev/nowhere: does not exist");
