@@ -53,7 +53,7 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
     desk.studio.begin(Some(LINK.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.act(poll(&desk.studio, Some(FAST)));
-    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed_hz().is_some()));
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
     desk.until("two seconds pass", |_| began.elapsed() > Duration::from_secs(2));
     desk.act(poll(&desk.studio, None));
@@ -61,11 +61,11 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
     desk.settle();
     let encoder = desk.studio.biss().unwrap();
     check(encoder, seconds);
-    assert_eq!(encoder.streamed_hz(), None);
+    assert_eq!(encoder.streamed(), None);
     assert!(desk.told(Severity::Warning).is_empty());
     // A job in between is a gap, and nothing worse.
     desk.act(poll(&desk.studio, Some(FAST)));
-    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed_hz().is_some()));
+    desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let before = desk.studio.biss().unwrap().record.positions();
     let id = desk.studio.biss().unwrap().session.id;
     desk.act(Action::Biss(id, Biss::ReadStatus));
@@ -86,13 +86,13 @@ fn the_window_shows_a_stream_without_loss() {
     screen.until("the encoder is read", is_read);
     let action = poll(screen.studio(), Some(FAST));
     screen.act(action);
-    screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed_hz().is_some()));
+    screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
     for page in pages(Tab::Biss) {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));
-    assert!(screen.shows("Stream: 20000 frames/s"));
+    assert!(screen.shows("Stream: 20000 frames/s at 2.0 MHz"));
     assert_eq!(screen.studio().biss().unwrap().record.dropped(), 0);
     let action = poll(screen.studio(), None);
     screen.act(action);

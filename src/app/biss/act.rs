@@ -48,7 +48,7 @@ impl Encoder {
             Action::ReadBank(bank) => self.read_bank(bank, services),
             Action::SeeBank(bank) => {
                 // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
-                let free = self.session.is_ready() && self.streamed_hz().is_none();
+                let free = self.session.is_ready() && self.streamed().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
                 }
@@ -135,7 +135,7 @@ impl Encoder {
     /// A bank is worth being read when it comes in sight: it was not, nothing runs, no
     /// stream would be interrupted, and it was not tried in vain.
     pub fn wants(&self, group: &Group) -> bool {
-        let free = self.session.is_ready() && self.streamed_hz().is_none();
+        let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 

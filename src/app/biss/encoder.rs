@@ -8,7 +8,7 @@ use super::drafts::Edits;
 use super::guide::Guide;
 use super::meaning::Meaning;
 use super::memory::Memory;
-use super::record::Record;
+use super::record::{Record, Streamed};
 use super::review::Review;
 use super::table::Table;
 use crate::app::services::Services;
@@ -141,9 +141,9 @@ impl Encoder {
         self.identity().is_some_and(|own| own.adapter.is_some())
     }
 
-    /// Frames a second that an adapter streams now; `None` where it does not.
-    pub fn streamed_hz(&self) -> Option<f64> {
-        self.record.streamed_hz().filter(|_| self.session.is_polling())
+    /// What an adapter streams now; `None` where it does not.
+    pub fn streamed(&self) -> Option<&Streamed> {
+        self.record.streamed().filter(|_| self.session.is_polling())
     }
 
     /// Who it was, where this is a profile.

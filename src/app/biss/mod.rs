@@ -21,6 +21,6 @@ pub use encoder::Encoder;
 pub use guide::{End, Guide, GuideStep, Reached};
 pub use mark::Mark;
 pub use memory::{Memory, MemoryError, Runs, places};
-pub use record::Record;
+pub use record::{Record, Streamed};
 pub use review::{Review, ReviewState};
 pub use table::{Group, Row, Shown, Table};

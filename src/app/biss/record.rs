@@ -31,11 +31,22 @@ pub struct Record {
 }
 
 /// A stream of frames.
-#[derive(Clone, Copy, Debug)]
-struct Streamed {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streamed {
     /// Number of the next frame.
     next: u64,
     period_ns: i64,
+    /// The clock of the bus in hertz.
+    pub clock_hz: u32,
+    /// More frames were wished than the clock allows.
+    pub is_limited: bool,
+}
+
+impl Streamed {
+    /// Frames a second.
+    pub fn hz(&self) -> f64 {
+        1e9 / self.period_ns.max(1) as f64
+    }
 }
 
 impl Record {
@@ -114,7 +125,8 @@ impl Record {
             self.track.gap();
         }
         self.lost += missing;
-        self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns: run.period_ns });
+        let FrameRun { period_ns, clock_hz, is_limited, .. } = *run;
+        self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
         let widths = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
         if batch.widths.is_some_and(|own| own != widths) {
@@ -182,9 +194,9 @@ impl Record {
         self.crc_errors
     }
 
-    /// Frames a second of the stream that came last; `None` where positions came one by one since.
-    pub(super) fn streamed_hz(&self) -> Option<f64> {
-        self.stream.map(|stream| 1e9 / stream.period_ns.max(1) as f64)
+    /// The stream that came last; `None` where positions came one by one since.
+    pub(super) fn streamed(&self) -> Option<&Streamed> {
+        self.stream.as_ref()
     }
 
     /// Samples that came too fast to be recorded, and frames that an adapter could not send.
@@ -258,6 +270,8 @@ mod tests {
             lost,
             frames: (first..first + count).map(frame).collect(),
             layout: Arc::default(),
+            clock_hz: 2_000_000,
+            is_limited: false,
         }
     }
 
@@ -306,7 +320,10 @@ mod tests {
         let mut record = Record::default();
         let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
         add(&mut record, run(0, 100, 0), 0);
-        assert_eq!((record.positions(), record.dropped(), record.streamed_hz()), (100, 0, Some(20_000.0)));
+        assert_eq!(
+            (record.positions(), record.dropped(), record.streamed().map(Streamed::hz)),
+            (100, 0, Some(20_000.0))
+        );
         add(&mut record, run(110, 90, 10), 0);
         assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
@@ -316,6 +333,6 @@ mod tests {
         add(&mut record, later, 0);
         assert_eq!((record.positions(), record.dropped()), (205, 315));
         record.poll(None, false);
-        assert_eq!(record.streamed_hz(), None);
+        assert_eq!(record.streamed(), None);
     }
 }

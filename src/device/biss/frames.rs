@@ -40,15 +40,26 @@ pub struct FrameRun {
     pub frames: Vec<Frame>,
     /// What their bits are.
     pub layout: Arc<Layout>,
+    /// The clock of the bus in hertz.
+    pub clock_hz: u32,
+    /// They cannot come as close to each other as was wished.
+    pub is_limited: bool,
 }
 
 impl FrameRun {
-    /// What came in a packet.
-    pub(super) fn new(portion: &Portion, frames: Vec<Frame>, layout: Arc<Layout>) -> Self {
+    /// What came in a packet, of frames that were wished so many microseconds apart.
+    pub(super) fn new(
+        portion: &Portion,
+        frames: Vec<Frame>,
+        layout: Arc<Layout>,
+        clock_hz: u32,
+        wished_us: u32,
+    ) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
+        let is_limited = period_ns > i64::from(wished_us) * 1000;
         // Not before the stream began.
         let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
-        FrameRun { first, at, period_ns, lost, frames, layout }
+        FrameRun { first, at, period_ns, lost, frames, layout, clock_hz, is_limited }
     }
 
     /// A stream begins.

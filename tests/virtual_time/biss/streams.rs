@@ -35,13 +35,17 @@ fn stand(query: &str) -> Stand {
 
 /// As [`stand`], with the encoder's supply as the adapter is to give it.
 fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
+    stand_at(query, supply, 2_000_000)
+}
+
+fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
     let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Way::Adapter, MARGIN);
-    (station.clock_hz, station.supply) = (2_000_000, supply);
+    (station.clock_hz, station.supply) = (clock_hz, supply);
     let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }
 }
@@ -172,6 +176,17 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
+}
+
+/// 43 bits at 1 MHz, 7 µs of acknowledging and 20 µs of time-out are 70 µs.
+#[test]
+fn what_the_clock_does_not_allow_is_told() {
+    for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
+        let mut stand = stand_at("rpm=60", None, clock_hz);
+        stand.session.pace(Some(FAST));
+        let run = stand.run();
+        assert_eq!((run.period_ns, run.clock_hz, run.is_limited), (period_ns, clock_hz, is_limited));
+    }
 }
 
 /// A reset ends the stream and forgets supply and clock: a job, or the next sample, finds that out and goes on.

@@ -46,7 +46,8 @@ impl Master<'_> {
                 && let Data::Biss(data) = &portion.data
             {
                 let layout = Arc::new(self.station.frame());
-                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), layout)));
+                let clock_hz = self.station.actual_clock_hz.unwrap_or(self.station.clock_hz);
+                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), layout, clock_hz, period_us)));
             }
         }
     }

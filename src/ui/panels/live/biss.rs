@@ -35,8 +35,10 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         row(ui, skin, &skin.say("live.step"), skin.mono(reading.steps.to_string()));
         row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
     }
-    if let Some(hz) = encoder.streamed_hz() {
-        let words = skin.words(&Text::new("live.streamed").with_number("count", hz, 0));
+    if let Some(stream) = encoder.streamed() {
+        let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };
+        let text = Text::new(id).with_number("count", stream.hz(), 0);
+        let words = skin.words(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
         ui.label(skin.caption(words)).on_hover_text(skin.say("live.streamed_hint"));
     }
     let errors = encoder.record.crc_errors();
