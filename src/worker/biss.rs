@@ -17,8 +17,8 @@ pub use open::{check, open};
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::biss::{
-    self as device, Error, Identity, Master, Place, Sample, Station, identify, procedure, read_registers, read_sample,
-    read_status, read_watched,
+    self as device, Error, Identity, Master, Place, Sample, Station, identify, procedure, read_position,
+    read_registers, read_sample, read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::biss::RegisterRange;
@@ -124,7 +124,7 @@ impl Device for Biss {
             }
             BissJob::Position => {
                 self.know(desk)?;
-                BissOutput::Position(self.master(desk).position()?)
+                BissOutput::Position(read_position(&mut self.master(desk))?)
             }
             BissJob::Read(range) => self.read(desk, range.start(), range.count())?,
             BissJob::ReadDirect => self.read(desk, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,

@@ -32,13 +32,14 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     (samples.iter().map(|own| (own.time.nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
 }
 
-/// All of them 50 µs apart and as the shaft turns: 655 360 steps a second are 32.768 a frame.
+/// All of them 50 µs apart and as the shaft turns: 655 360 steps a second are 32.768 a frame. Between two packets of 5 ms
+/// our clock is followed by a thousandth at most.
 #[track_caller]
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);
     // One reading on its own before, to which the stream is not joined.
     let streamed = &samples[samples.len() - (encoder.record.positions() as usize - 2)..];
-    assert!(streamed.windows(2).all(|pair| pair[1].0 - pair[0].0 == 50_000));
+    assert!(streamed.windows(2).all(|pair| (pair[1].0 - pair[0].0 - 50_000).abs() <= 5_000));
     assert!(streamed.windows(2).all(|pair| (32..=33).contains(&(pair[1].1 - pair[0].1))));
     assert!(breaks <= 2, "{breaks}");
     assert_eq!((encoder.record.dropped(), encoder.record.crc_errors()), (0, 0));

@@ -150,7 +150,6 @@ fn status_text(status: &Status) -> String {
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let over_biss = runner.kept == Way::Adapter;
-    let judges = if over_biss { None } else { Some(Judges::of(&*identity(&mut runner)?)) };
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }
@@ -161,7 +160,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         || BissJob::Position,
         |runner, came| {
             wrong += crc_errors(runner);
-            let mut reading = match came {
+            let reading = match came {
                 Ok(BissOutput::Position(reading)) => reading,
                 Ok(other) => return Err(unexpected(&other)),
                 // No line, and the next frame may be a good one.
@@ -174,9 +173,6 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
                 }
             };
             (wrong, good_at) = (wrong + u64::from(reading.crc_errors), Instant::now());
-            if let Some(judges) = &judges {
-                judges.judge(runner, &mut reading)?;
-            }
             if position.csv {
                 output.print(&row(&reading))?
             } else {
@@ -189,33 +185,6 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         say(&format!("crc errors: {wrong}\n"));
     }
     ended
-}
-
-/// The registers of errors and warnings: over the configuration pin the position has no bit for them.
-struct Judges {
-    errors: Option<RegisterRange>,
-    warnings: Option<RegisterRange>,
-}
-
-impl Judges {
-    /// Of an encoder that is known; its firmware may be too old for them.
-    fn of(identity: &Identity) -> Self {
-        let range = |role| {
-            let register = identity.description.with_role(role)?;
-            let is_there = identity.firmware.unwrap_or_default() >= register.since;
-            RegisterRange::new(register.address, register.width).filter(|_| is_there)
-        };
-        Judges { errors: range(Role::Errors), warnings: range(Role::Warnings) }
-    }
-
-    fn judge(&self, runner: &mut Runner, reading: &mut PositionReading) -> Result<()> {
-        let mut is_set = |range: Option<RegisterRange>| {
-            let bytes = range.map(|range| registers(runner, range)).transpose()?;
-            Ok(bytes.map(|bytes| bytes.iter().any(|byte| *byte != 0)))
-        };
-        (reading.error, reading.warning) = (is_set(self.errors)?, is_set(self.warnings)?);
-        Ok(())
-    }
 }
 
 /// A frame came, and its checksum was wrong each time.

@@ -8,6 +8,7 @@
 //! ```
 
 mod error;
+mod flags;
 mod frames;
 mod identify;
 mod master;
@@ -22,6 +23,7 @@ pub mod write;
 
 pub use super::line::Echo;
 pub use error::{Asked, Damage, Error};
+pub use flags::read_position;
 pub use frames::{Frame, FrameRun, NoReading, frames};
 pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
 pub use master::Master;

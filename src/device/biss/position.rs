@@ -1,5 +1,6 @@
 //! The position as a person or a plot takes it, and registers that are watched beside it.
 
+use super::flags::with_flags;
 use super::{Damage, Error, FrameRun, Master};
 use crate::bits::Word;
 use crate::profile::biss::RegisterRange;
@@ -15,9 +16,10 @@ pub struct PositionReading {
     pub turns: u32,
     /// Place within the revolution, in parts of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// The encoder says that the position is invalid; `None` where this way does not tell.
+    /// The encoder says that the position is invalid; `None` where nothing tells. Over the configuration pin its register
+    /// does, which is looked at beside the position.
     pub error: Option<bool>,
-    /// The encoder warns; `None` where this way does not tell.
+    /// The encoder warns; `None` where nothing tells.
     pub warning: Option<bool>,
     /// Frames with a wrong CRC that came before it, since the last reading.
     pub crc_errors: u32,
@@ -111,7 +113,8 @@ pub struct WatchedReading {
 /// The line.
 pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     match master.position() {
-        Ok(reading) => Ok(Sample::Position(reading)),
+        Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
+        Ok(reading) => with_flags(master, reading).map(Sample::Position),
         Err(Error::Damaged { cause: Damage::Frame(_), .. }) => {
             Ok(Sample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
         }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::flags::Flags;
 use crate::device::bridge::AdapterState;
 use crate::device::bridge::flow::Flow;
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
@@ -75,6 +76,8 @@ pub struct Station {
     pub(super) crc_errors: u32,
     /// A frame with these widths had a right checksum.
     pub(super) good_frames: bool,
+    /// What the registers of errors and warnings said last, over the configuration pin.
+    pub(super) flags: Option<Flags>,
     /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
     /// The last frame of the streams before.
@@ -135,6 +138,7 @@ impl Station {
             bank: None,
             crc_errors: 0,
             good_frames: false,
+            flags: None,
             flow: None,
             streamed_until: None,
         }

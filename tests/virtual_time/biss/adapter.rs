@@ -204,7 +204,7 @@ fn the_supply_is_switched_on_where_that_is_wished() {
     let mut external = Bus::new("");
     external.station.supply = Some(Supply { millivolt: 5_000, measured: None });
     let error = external.master().read(at("0x41")).unwrap_err();
-    assert_eq!(error.to_string(), "the adapter refuses operation 02h with code 1: this adapter has no such thing");
+    assert_eq!(error.to_string(), "the adapter virtual adapter cannot supply an encoder");
 }
 
 /// The wire to the adapter, not that to the encoder: packets have a CRC of 16 bits.

@@ -124,7 +124,10 @@ fn status_and_position_know_the_encoder_without_being_asked_who_it_is() {
         let sent = bench.tap().sent.len();
         let reading = position(&mut bench);
         assert_eq!((reading.turns, reading.steps), (1, 1));
-        assert_eq!(bench.tap().sent.len(), sent + 1, "{way:?}: known by now");
+        // Over the configuration pin with its registers of errors and warnings.
+        let asked = if way == Way::Adapter { 1 } else { 3 };
+        assert_eq!(bench.tap().sent.len(), sent + asked, "{way:?}: known by now");
+        assert_eq!((reading.error, reading.warning), (Some(false), Some(true)), "{way:?}");
         let mut fresh = Bench::new(way, "position=0x20001");
         assert_eq!(position(&mut fresh).turns, 1);
     }
@@ -277,6 +280,40 @@ fn samples_and_watched_registers_come_one_by_one() {
     }
 }
 
+/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are looked at, each once a second;
+/// a frame has both. Every position tells.
+#[test]
+fn an_error_that_comes_while_positions_are_polled_marks_them() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        let sample = |bench: &mut Bench| match bench.session.sample() {
+            Ok(Sample::Position(reading)) => (reading.error, reading.warning),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(sample(&mut bench), (Some(false), Some(false)), "{way:?}");
+        let (mut sent, mut samples) = (bench.tap().sent.len(), 0);
+        let until = bench.now() + Duration::from_secs(10);
+        while bench.now() < until {
+            assert_eq!(sample(&mut bench), (Some(false), Some(false)));
+            samples += 1;
+        }
+        sent = bench.tap().sent.len() - sent;
+        let expected = if way == Way::Adapter { 0 } else { 20 };
+        assert!((sent - samples).abs_diff(expected) <= 1, "{way:?}: {sent} requests, {samples} positions");
+        bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::new(0x10)));
+        let until = bench.now() + Duration::from_millis(1_100);
+        let mut last = (None, None);
+        while bench.now() < until {
+            last = sample(&mut bench);
+        }
+        assert_eq!(last, (Some(true), Some(false)), "{way:?}");
+        // Asked once, it tells at once.
+        bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::default()));
+        let BissOutput::Position(reading) = bench.run(BissJob::Position).unwrap() else { panic!() };
+        assert_eq!((reading.error, reading.warning), (Some(false), Some(false)), "{way:?}");
+    }
+}
+
 /// A frame that comes through now and then: the wrong ones are counted with the next right one, or are a sample.
 #[test]
 fn polling_survives_damaged_frames() {
@@ -299,7 +336,9 @@ fn polling_survives_damaged_frames() {
 fn links_lead_to_the_way_that_they_name() {
     let root = tempfile::tempdir().unwrap();
     let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at(root.path()));
-    for (text, line) in [("sim:?rpm=5", "UBICOM"), ("sim:?bridge=on&noise=0&clock=2000000", "BiSS at 2000000 Hz")] {
+    for (text, line) in
+        [("sim:?rpm=5", "UBICOM at 115200 8N1"), ("sim:?bridge=on&noise=0&clock=2000000", "BiSS at 2000000 Hz")]
+    {
         let session: Session<Biss> = open(text).unwrap();
         assert_eq!(session.station().to_string(), line);
         assert!(session.is_virtual());
@@ -309,7 +348,7 @@ fn links_lead_to_the_way_that_they_name() {
         ("sim:?bridge=yes", "bridge=yes: on or off"),
         (
             "serial:/dev/null?clock=1",
-            "clock is not a parameter of serial: links; known are order, echo, timeout, margin",
+            "clock is not a parameter of serial: links; known are baud, parity, order, echo, timeout, margin",
         ),
         ("bridge:/dev/null?echo=on", "echo is not a parameter of bridge: links; known are margin, clock, voltage"),
         ("bridge:/dev/null?clock=1", "clock=1: hertz from 80000 to 10000000"),
@@ -320,7 +359,8 @@ fn links_lead_to_the_way_that_they_name() {
             other => panic!("{text}: {:?}", other.err()),
         }
     }
-    assert!(matches!(open("sim:?line=low"), Err(OpenError::Sim(_))), "the adapter's settings need the adapter");
+    let error = open("sim:?line=low").err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(error.contains("line"), "the adapter's settings need the adapter: {error}");
 }
 
 #[test]
