@@ -16,7 +16,7 @@ use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
 use super::services::{JobEnd, Services};
-use super::session::{DraftDone, Listed, Opening, Phase, Source};
+use super::session::{DraftDone, Drafted, Listed, Opening, Phase, Source};
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;

@@ -38,9 +38,9 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     let kind = kind::of_profile(&left);
     let (right, name) = match &diff.right {
         Some(path) => (load(path)?, path.as_path()),
-        None => (kind.present(common, output)?, Path::new("the device")),
+        None => ((kind.present)(common, output)?, Path::new("the device")),
     };
-    let comparison = kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
+    let comparison = (kind.compare)(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
     let missing = comparison.missing();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
@@ -48,12 +48,12 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(file)?;
     let kind = kind::of_profile(&profile);
-    let device = kind.present(common, output)?;
+    let device = (kind.present)(common, output)?;
     // What is compared may be of two devices: that is allowed, and has to be known.
-    if let Some(words) = kind.other_device(&profile, &device) {
+    if let Some(words) = (kind.other_device)(&profile, &device) {
         output.remark(&words);
     }
-    let comparison = kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
+    let comparison = (kind.compare)(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
@@ -61,7 +61,7 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
     let profile = load(&restore.file)?;
-    kind::of_profile(&profile).restore(common, output, restore, profile)
+    (kind::of_profile(&profile).restore)(common, output, restore, profile)
 }
 
 fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Result {

@@ -26,12 +26,12 @@ pub(super) trait Simulated: ByteDevice {
 
 pub(super) fn simulate(arguments: &Simulate) -> Result {
     let kind = super::kind::of(arguments.device);
-    let simulated = kind.simulated(arguments)?;
+    let simulated = (kind.simulated)(arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
-    let mut device = Device { kind: kind.name(), simulated, clock: RealClock::start() };
+    let mut device = Device { kind: kind.name, simulated, clock: RealClock::start() };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
         (None, Some(address)) => listen(address, &mut device, &ended)?,

@@ -12,7 +12,7 @@ use super::record::{Record, Streamed};
 use super::review::Review;
 use super::table::Table;
 use crate::app::services::Services;
-use crate::app::session::{Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::biss::{Identity, Status, Survey};
@@ -21,7 +21,7 @@ use crate::profile::biss::{BissProfile, ProfileIdentity};
 use crate::profile::{Body, Document};
 use crate::protocol::biss::{Description, Descriptions, Eds};
 use crate::sim::biss::Motor;
-use crate::store::{DeviceKey, FileError};
+use crate::store::DeviceKey;
 use crate::worker::biss::{Biss, device_key};
 
 /// A BiSS encoder, or a profile of one.
@@ -109,7 +109,7 @@ impl Encoder {
     }
 
     /// The registers that a profile holds.
-    fn take_profile(&mut self, profile: &BissProfile) {
+    pub(super) fn take_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {
             bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
@@ -173,31 +173,6 @@ impl Encoder {
     /// There are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.memory.is_dirty()
-    }
-
-    /// A profile was read again from its file; edits stay.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        let Body::Biss(profile) = &document.body else { return };
-        self.take_profile(profile);
-        self.session.take_document(path, key, document);
-    }
-
-    /// A profile was written, or not.
-    pub(in crate::app) fn written(
-        &mut self,
-        (path, key): (PathBuf, String),
-        document: Document,
-        remarks: Vec<Text>,
-        result: Result<(), FileError>,
-        services: &mut Services,
-    ) {
-        if self.session.tell_of_profile(&path, remarks, result, services) && self.session.phase == Phase::Offline {
-            let moved = self.forget_draft_unless(&key, services);
-            self.take_document(path, key, document);
-            if moved {
-                self.begin_draft(services);
-            }
-        }
     }
 
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.

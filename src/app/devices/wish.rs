@@ -35,44 +35,31 @@ pub enum Wish {
     WriteInto(SessionId),
 }
 
+/// A wish among the actions of a kind, which call it by the same name.
+macro_rules! own {
+    ($kind:ident, $wish:expr) => {
+        match $wish {
+            Wish::Reconnect => $kind::Action::Reconnect,
+            Wish::Read => $kind::Action::Read,
+            Wish::AskSave => $kind::Action::AskSave,
+            Wish::Review => $kind::Action::Review,
+            Wish::Poll(interval) => $kind::Action::Poll(interval),
+            Wish::ReadPosition => $kind::Action::ReadPosition,
+            Wish::Undo => $kind::Action::Undo,
+            Wish::Redo => $kind::Action::Redo,
+            Wish::RevertAll => $kind::Action::RevertAll,
+            Wish::Restore(path) => $kind::Action::Restore(path),
+            Wish::WriteInto(target) => $kind::Action::WriteInto(target),
+        }
+    };
+}
+
 impl AnyDevice {
     /// What is to be asked of the studio for a wish.
     pub fn wish(&self, wish: Wish) -> Action {
         match self {
-            AnyDevice::Hiperface(own) => {
-                use hiperface::Action as Own;
-                let action = match wish {
-                    Wish::Reconnect => Own::Reconnect,
-                    Wish::Read => Own::Read,
-                    Wish::AskSave => Own::AskSave,
-                    Wish::Review => Own::Review,
-                    Wish::Poll(interval) => Own::Poll(interval),
-                    Wish::ReadPosition => Own::ReadPosition,
-                    Wish::Undo => Own::Undo,
-                    Wish::Redo => Own::Redo,
-                    Wish::RevertAll => Own::RevertAll,
-                    Wish::Restore(path) => Own::Restore(path),
-                    Wish::WriteInto(target) => Own::WriteInto(target),
-                };
-                Action::Hiperface(own.session.id, action)
-            }
-            AnyDevice::Biss(own) => {
-                use biss::Action as Own;
-                let action = match wish {
-                    Wish::Reconnect => Own::Reconnect,
-                    Wish::Read => Own::Read,
-                    Wish::AskSave => Own::AskSave,
-                    Wish::Review => Own::Review,
-                    Wish::Poll(interval) => Own::Poll(interval),
-                    Wish::ReadPosition => Own::ReadPosition,
-                    Wish::Undo => Own::Undo,
-                    Wish::Redo => Own::Redo,
-                    Wish::RevertAll => Own::RevertAll,
-                    Wish::Restore(path) => Own::Restore(path),
-                    Wish::WriteInto(target) => Own::WriteInto(target),
-                };
-                Action::Biss(own.session.id, action)
-            }
+            AnyDevice::Hiperface(device) => Action::Hiperface(device.session.id, own!(hiperface, wish)),
+            AnyDevice::Biss(device) => Action::Biss(device.session.id, own!(biss, wish)),
         }
     }
 }

@@ -1,75 +1,53 @@
 //! Edits of an encoder's memory, kept over a crash: field, address, byte.
 
+use std::path::PathBuf;
+
 use super::encoder::Encoder;
-use crate::app::services::Services;
-use crate::app::session::{DraftDone, DraftKey, Source};
+use crate::app::session::{Drafted, Drafting, Session};
+use crate::profile::Document;
 use crate::protocol::hiperface::KIND;
+use crate::worker::hiperface::Hiperface;
 
 /// Edited bytes: field, address, byte.
 pub(in crate::app) type Edits = Vec<(u8, usize, u8)>;
 
-impl Encoder {
-    /// Whose draft it is; `None` for an encoder that does not say who it is.
-    fn draft_key(&self) -> Option<DraftKey> {
-        match &self.session.source {
-            Source::File { key, .. } => Some(DraftKey::of_file(KIND, key)),
-            Source::Link(_) => {
-                let identity = self.identity.as_ref()?;
-                let serial = &identity.serial.serial_number;
-                let name = format!("{:02X}-{serial}", identity.label.encoder_type);
-                (!serial.is_empty()).then(|| DraftKey::of_device(KIND, self.session.is_virtual(), name))
-            }
-        }
+impl Drafted for Encoder {
+    const KIND: &'static str = KIND;
+    type Device = Hiperface;
+    type Edits = Edits;
+
+    fn session(&self) -> &Session<Hiperface> {
+        &self.session
     }
 
-    pub(super) fn load_draft(&mut self, services: &Services) {
-        if let Some(key) = self.draft_key() {
-            self.drafting.load(key, services);
-        }
+    fn session_mut(&mut self) -> &mut Session<Hiperface> {
+        &mut self.session
     }
 
-    /// What was just saved has no edits: those of an earlier time are for what it replaced.
-    pub(super) fn begin_draft(&mut self, services: &Services) {
-        if let Some(key) = self.draft_key() {
-            self.drafting.begin(key, services);
-        }
+    fn drafting(&self) -> &Drafting<Edits> {
+        &self.drafting
     }
 
-    /// Takes what a task comes back with.
-    pub(in crate::app) fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
-        let (key, name, dirty) = (self.draft_key(), self.session.name(), self.staged.is_dirty());
-        if let Some(edits) = self.drafting.take(done, key.as_ref(), dirty, &name, services) {
-            self.staged.take_draft(edits);
-            self.drafting.came_back(self.staged.edits().collect(), &name, services);
-        }
+    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
+        &mut self.drafting
     }
 
-    /// Keeps the edits when they have changed.
-    pub(in crate::app) fn keep_draft(&mut self, services: &mut Services) {
-        let nameless = self.identity.as_ref().is_some_and(|identity| identity.serial.serial_number.is_empty());
-        if nameless && matches!(self.session.source, Source::Link(_)) && self.staged.is_dirty() {
-            self.drafting.tell_of_none(&self.session.name(), services);
-        }
-        self.drafting.keep(self.draft_key(), self.staged.edits().collect(), services);
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        let identity = self.identity.as_ref()?;
+        Some((format!("{:02X}", identity.label.encoder_type), identity.serial.serial_number.clone()))
     }
 
-    /// Its edits come back after it was closed.
-    pub(in crate::app) fn keeps_edits(&self) -> bool {
-        self.drafting.has_looked() && self.draft_key().is_some()
+    fn edited(&self) -> Edits {
+        self.staged.edits().collect()
     }
 
-    /// Another encoder comes, or none: what is edited for this one stays on disk.
-    pub(in crate::app) fn leave_draft(&mut self, services: &mut Services) {
-        self.drafting.leave(self.draft_key(), self.staged.edits().collect(), services);
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
     }
 
-    /// The edits are in the file of `key` now: where that is another one, those for the one before are no draft any more.
-    pub(super) fn forget_draft_unless(&mut self, key: &str, services: &mut Services) -> bool {
-        let Source::File { key: own, .. } = &self.session.source else { return false };
-        if own == key {
-            return false;
-        }
-        self.drafting.forget(self.draft_key(), services);
-        true
+    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        let Some(profile) = document.body.hiperface() else { return };
+        self.staged.refresh(profile.fields.clone());
+        self.session.take_document(path, key, document);
     }
 }

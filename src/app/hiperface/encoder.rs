@@ -11,7 +11,7 @@ use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::hiperface::check;
@@ -20,7 +20,7 @@ use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
-use crate::store::{DeviceKey, FileError};
+use crate::store::DeviceKey;
 use crate::worker::hiperface::{Hiperface, device_key};
 
 /// An encoder, or a profile of one.
@@ -143,31 +143,6 @@ impl Encoder {
     /// One of its data fields, as the encoder has it.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)
-    }
-
-    /// A profile was read again from its file; edits stay.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        let Some(profile) = document.body.hiperface() else { return };
-        self.staged.refresh(profile.fields.clone());
-        self.session.take_document(path, key, document);
-    }
-
-    /// A profile was written, or not.
-    pub(in crate::app) fn written(
-        &mut self,
-        (path, key): (PathBuf, String),
-        document: Document,
-        remarks: Vec<Text>,
-        result: Result<(), FileError>,
-        services: &mut Services,
-    ) {
-        if self.session.tell_of_profile(&path, remarks, result, services) && self.session.phase == Phase::Offline {
-            let moved = self.forget_draft_unless(&key, services);
-            self.take_document(path, key, document);
-            if moved {
-                self.begin_draft(services);
-            }
-        }
     }
 
     /// The profile as the user wants it, where this is one.

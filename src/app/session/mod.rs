@@ -1,11 +1,13 @@
 //! What every device on the desk has, whatever its kind: where its data come from, how it stands with the connection, its
 //! line, what has passed over it, its backups and writes. It knows no device; what a kind adds stands in its own room.
 
+mod drafted;
 mod drafts;
 mod kind;
 
 use std::path::PathBuf;
 
+pub(in crate::app) use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
 pub(in crate::app) use kind::{Kind, LastWords};

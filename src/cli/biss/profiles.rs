@@ -4,14 +4,15 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
+use crate::app::explain;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
-use crate::cli::runner::unexpected;
+use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
-use crate::profile::Body;
-use crate::profile::biss::{BissProfile, RestoreOptions};
+use crate::profile::biss::{self, BissProfile, ProfileIdentity, RestoreOptions};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::biss::{BissJob, BissOutput, Change};
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
@@ -24,8 +25,23 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 /// The encoder as it is, for a comparison.
-pub(super) fn present(common: &Common) -> Result<Body> {
+pub(super) fn present(common: &Common, _output: &Output) -> Result<Body> {
     Ok(Body::Biss(saved(common)?))
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    Ok(biss::compare(&left.clone().into_biss()?, &right.clone().into_biss()?))
+}
+
+/// That two profiles are not of the same encoder.
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let (profile, device) = (&profile.biss()?.identity, &device.biss()?.identity);
+    let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
+    (who(profile) != who(device)).then(|| {
+        let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
+        format!("The profile is of {profile}, the encoder is {device}.")
+    })
 }
 
 fn saved(common: &Common) -> Result<BissProfile> {
@@ -35,7 +51,8 @@ fn saved(common: &Common) -> Result<BissProfile> {
     }
 }
 
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: BissProfile) -> Result {
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile = profile.into_biss().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }

@@ -3,16 +3,17 @@
 use serde_json::json;
 
 use super::write::{commit, operations, plan_text};
+use crate::app::explain;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::hiperface::run::Runner;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Left, Shown, keep, show_dry_run, show_restored};
-use crate::cli::runner::unexpected;
+use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
 use crate::device::hiperface::SaveOptions;
-use crate::profile::Body;
-use crate::profile::hiperface::{HiperfaceProfile, RestoreOptions};
+use crate::profile::hiperface::{self, RestoreOptions};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
@@ -49,9 +50,15 @@ pub(super) fn present(common: &Common, output: &Output) -> Result<Body> {
     Ok(Body::Hiperface(saved.profile))
 }
 
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    let (left, right) = (left.clone().into_hiperface()?, right.clone().into_hiperface()?);
+    Ok(hiperface::compare(&left.fields, &right.fields))
+}
+
 /// That two profiles are not of the same encoder.
-pub(super) fn other_device(profile: &HiperfaceProfile, device: &HiperfaceProfile) -> Option<String> {
-    let (profile, device) = (&profile.identity, &device.identity);
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let (profile, device) = (&profile.hiperface()?.identity, &device.hiperface()?.identity);
     let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
     (!same).then(|| {
         format!(
@@ -61,7 +68,8 @@ pub(super) fn other_device(profile: &HiperfaceProfile, device: &HiperfaceProfile
     })
 }
 
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: HiperfaceProfile) -> Result {
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile = profile.into_hiperface().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
