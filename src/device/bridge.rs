@@ -89,7 +89,7 @@ pub enum AdapterError {
         cause: BodyError,
     },
     /// It refuses a request.
-    #[error("the adapter refuses operation {:02X}h with code {}: {text}", operation.byte(), code.byte())]
+    #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
     Refused {
         /// What was asked.
         operation: Operation,
@@ -99,7 +99,7 @@ pub enum AdapterError {
         text: String,
     },
     /// Its reply is none of this version.
-    #[error("the adapter's reply to operation {:02X}h cannot be read: {cause}", operation.byte())]
+    #[error("the adapter's reply to operation 0x{:02X} cannot be read: {cause}", operation.byte())]
     Reply {
         /// What was asked.
         operation: Operation,
@@ -107,7 +107,7 @@ pub enum AdapterError {
         cause: BodyError,
     },
     /// It answers another question.
-    #[error("the adapter answers operation {:02X}h with {:02X}h", asked.byte(), got.byte())]
+    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", asked.byte(), got.byte())]
     Other {
         /// What was asked.
         asked: Operation,

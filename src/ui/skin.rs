@@ -187,16 +187,17 @@ impl Skin {
 
 const STRONG: &str = "strong";
 
+const FONTS: [(&str, &[u8]); 4] = [
+    ("inter", include_bytes!("../../assets/fonts/Inter-Regular.otf")),
+    (STRONG, include_bytes!("../../assets/fonts/Inter-SemiBold.otf")),
+    ("mono", include_bytes!("../../assets/fonts/JetBrainsMono-Regular.ttf")),
+    ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
+];
+
 /// The fonts that ship with the program: one for text in two weights, one for bytes and numbers, one of icons.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::empty();
-    let files: [(&str, &'static [u8]); 4] = [
-        ("inter", include_bytes!("../../assets/fonts/Inter-Regular.otf")),
-        (STRONG, include_bytes!("../../assets/fonts/Inter-SemiBold.otf")),
-        ("mono", include_bytes!("../../assets/fonts/JetBrainsMono-Regular.ttf")),
-        ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
-    ];
-    for (name, bytes) in files {
+    for (name, bytes) in FONTS {
         fonts.font_data.insert(name.to_owned(), FontData::from_static(bytes).into());
     }
     let family = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
@@ -204,4 +205,19 @@ pub fn install_fonts(ctx: &egui::Context) {
     fonts.families.insert(FontFamily::Monospace, family(&["mono", "icons", "inter"]));
     fonts.families.insert(FontFamily::Name(STRONG.into()), family(&[STRONG, "icons", "mono"]));
     ctx.set_fonts(fonts);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An address is read off and typed into a script: no font may show 0x40 as 0×40, which contextual alternates do.
+    #[test]
+    fn no_font_puts_other_characters_in_the_place_of_those_written() {
+        for (name, bytes) in FONTS {
+            let tables = usize::from(u16::from_be_bytes([bytes[4], bytes[5]]));
+            let tags: Vec<&[u8]> = bytes[12..].chunks(16).take(tables).map(|entry| &entry[..4]).collect();
+            assert!(tags.contains(&&b"cmap"[..]) && !tags.contains(&&b"GSUB"[..]), "{name}");
+        }
+    }
 }

@@ -152,7 +152,7 @@ fn a_click_in_the_list_of_banks_goes_there_and_reads_it() {
     screen.click("page.registers");
     assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);
     // The list stands before the table, whose heading has the same words.
-    let bank = screen.harness.query_all_by_label_contains("04h").next().expect("bank 04h is listed");
+    let bank = screen.harness.query_all_by_label_contains("0x04").next().expect("bank 0x04 is listed");
     assert!(bank.rect().right() < 340.0, "{:?}", bank.rect());
     bank.click();
     screen.steps();

@@ -45,11 +45,11 @@ impl Meaning {
         let asked = self.asked.take()?;
         let frame = Frame::parse(bytes).ok()?;
         Some(match Reply::parse(&frame, asked.command()).ok()? {
-            Reply::Value(value) => plain(format!("{value:02X}h")),
+            Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
             Reply::Written(Written::Refused) => Text::new("trace.refused"),
-            Reply::Written(Written::Unknown(code)) => plain(format!("{code:02X}h")),
-            Reply::Position(word) => plain(format!("{:X}h", word.word())),
+            Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
+            Reply::Position(word) => plain(format!("0x{:X}", word.word())),
         })
     }
 
@@ -60,9 +60,9 @@ impl Meaning {
             return Some(self.asked_of_adapter(&request));
         }
         Some(match Message::parse(&packet).ok()? {
-            Message::Reply(bridge::Reply::BissRead { raw, .. }) => plain(format!("{raw:X}h")),
+            Message::Reply(bridge::Reply::BissRead { raw, .. }) => plain(format!("0x{raw:X}")),
             Message::Reply(bridge::Reply::BissRegisterRead { value } | bridge::Reply::BissRegisterWrite { value }) => {
-                plain(format!("{value:02X}h"))
+                plain(format!("0x{value:02X}"))
             }
             Message::Reply(bridge::Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
             Message::Reply(_) => Text::new("trace.taken"),
@@ -99,5 +99,5 @@ impl Meaning {
 }
 
 fn written(id: &'static str, address: String, value: u8) -> Text {
-    Text::new(id).with("address", address).with("value", format!("{value:02X}h"))
+    Text::new(id).with("address", address).with("value", format!("0x{value:02X}"))
 }

@@ -14,7 +14,7 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::Position => Text::new("job.position"),
         BissJob::Read(range) => Text::new("job.read").with("item", range),
         BissJob::ReadDirect => Text::new("job.read_direct"),
-        BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("{bank:02X}h")),
+        BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
         BissJob::ReadArea(area) => Text::new("job.read").with("item", &area.name),
         BissJob::Save => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::biss::change(change)),
@@ -36,7 +36,7 @@ pub fn filter(filter: Filter) -> Text {
     match filter {
         Filter::Balanced => Text::new("biss_status.balanced"),
         Filter::Dynamic => Text::new("biss_status.dynamic"),
-        Filter::Unknown(code) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
+        Filter::Unknown(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
     }
 }
 
@@ -44,8 +44,8 @@ pub fn filter(filter: Filter) -> Text {
 pub fn sheet(error: &EdsError) -> Text {
     match error {
         EdsError::Checksum { expected, got, .. } => Text::new("sheet_card.bad_sum")
-            .with("expected", format!("{expected:02X}h"))
-            .with("got", format!("{got:02X}h")),
+            .with("expected", format!("0x{expected:02X}"))
+            .with("got", format!("0x{got:02X}")),
         other => plain(other),
     }
 }
@@ -56,7 +56,7 @@ pub fn eds(value: EdsValue) -> Text {
     match value {
         EdsValue::Number(number, "") => plain(number),
         EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
-        EdsValue::Bank(bank) => plain(format!("{bank:02X}h")),
+        EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
         EdsValue::NotAvailable => text("eds.none"),
         EdsValue::Ticks(ticks) => {
             let nanoseconds = value.duration(EDS_TICK).map_or(0, |own| own.as_nanos());
@@ -68,14 +68,14 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::NoLimit => text("eds.no_limit"),
         EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
         EdsValue::Polynomial(0) => text("eds.no_crc"),
-        EdsValue::Polynomial(polynomial) => plain(format!("{polynomial:X}h")),
+        EdsValue::Polynomial(polynomial) => plain(format!("0x{polynomial:X}")),
         EdsValue::Profile(profile) => plain(profile),
         EdsValue::Feedback(Feedback::None) => text("eds.no_bit"),
         EdsValue::Feedback(Feedback::Error) => text("eds.error_bit"),
         EdsValue::Feedback(Feedback::Warning) => text("eds.warning_bit"),
-        EdsValue::Feedback(Feedback::Unknown(code)) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
+        EdsValue::Feedback(Feedback::Unknown(code)) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
         EdsValue::EncoderType(0) => text("eds.rotary"),
-        EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("{code:02X}h")),
-        EdsValue::Code(code) => plain(format!("{code:X}h")),
+        EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::Code(code) => plain(format!("0x{code:X}")),
     }
 }

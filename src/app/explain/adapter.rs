@@ -52,7 +52,7 @@ fn volts(millivolt: u16) -> f64 {
 }
 
 fn number(operation: Operation) -> String {
-    format!("{:02X}h", operation.byte())
+    format!("0x{:02X}", operation.byte())
 }
 
 #[cfg(test)]
@@ -69,7 +69,7 @@ mod tests {
             adapter(&AdapterError::Refused { operation: Operation::BissConfig, code, text }).words(language)
         };
         let mut said: Vec<String> = (0..=7).map(|code| words(code, English)).collect();
-        assert!(said.iter().all(|words| words.contains("20h") && words.contains("streaming")), "{said:?}");
+        assert!(said.iter().all(|words| words.contains("0x20") && words.contains("streaming")), "{said:?}");
         assert!(said[0].contains('0') && said[7].contains('7'), "{said:?}");
         said.extend((0..=7).map(|code| words(code, German)));
         said.sort();
@@ -89,9 +89,9 @@ mod tests {
             (AdapterError::Overvoltage { given: 5_000, measured: 5_600, greatest: 5_500 }, "60 V"),
             (AdapterError::Mute, "."),
             (AdapterError::Restarted, "."),
-            (AdapterError::Data { cause }, "94h"),
-            (AdapterError::Reply { operation: Operation::Hello, cause }, "94h"),
-            (AdapterError::Other { asked: Operation::Hello, got: Operation::Supply }, "02h"),
+            (AdapterError::Data { cause }, "0x94"),
+            (AdapterError::Reply { operation: Operation::Hello, cause }, "0x94"),
+            (AdapterError::Other { asked: Operation::Hello, got: Operation::Supply }, "0x02"),
         ];
         for (error, fact) in cases {
             let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));

@@ -89,7 +89,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::OrderUnknown { answer } => Text::new("biss.order_unknown").with("answer", byte(*answer)),
         Error::TooWide { word, multiturn, singleturn } => Text::new("biss.too_wide")
-            .with("word", format!("{word:X}h"))
+            .with("word", format!("0x{word:X}"))
             .with("multiturn", multiturn)
             .with("singleturn", singleturn),
         Error::OutOfRange { start, count } => Text::new("biss.out_of_range").with("start", start).with("count", count),
@@ -147,7 +147,7 @@ pub fn doing(doing: &Doing) -> Text {
 }
 
 fn byte(byte: u8) -> String {
-    format!("{byte:02X}h")
+    format!("0x{byte:02X}")
 }
 
 #[cfg(test)]
@@ -179,15 +179,15 @@ mod tests {
             (Error::WidthsUnknown { moving: false }, vec![]),
             (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
             (Error::NotWatched { address }, vec!["0x24:0x10"]),
-            (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "07h"]),
-            (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "07h", "01h"]),
-            (Error::Unclear { address, value: 7, cause: Box::new(Error::NeverSilent) }, vec!["0x24:0x10", "07h"]),
-            (Error::OrderUnknown { answer: 3 }, vec!["03h", "order="]),
-            (Error::TooWide { word: 0x2_0000, multiturn: 0, singleturn: 17 }, vec!["20000h", "0+17"]),
+            (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "0x07"]),
+            (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "0x07", "0x01"]),
+            (Error::Unclear { address, value: 7, cause: Box::new(Error::NeverSilent) }, vec!["0x24:0x10", "0x07"]),
+            (Error::OrderUnknown { answer: 3 }, vec!["0x03", "order="]),
+            (Error::TooWide { word: 0x2_0000, multiturn: 0, singleturn: 17 }, vec!["0x20000", "0+17"]),
             (Error::OutOfRange { start: address, count: 70_000 }, vec!["0x24:0x10", "70000"]),
             (Error::Moving { rpm: Some(-499.6) }, vec!["500"]),
             (Error::Moving { rpm: None }, vec![]),
-            (Error::NoDescription(kind), vec!["6129h"]),
+            (Error::NoDescription(kind), vec!["0x6129"]),
             (Error::NotIdentified, vec![]),
             (Error::Adapter(AdapterError::Silent), vec![]),
             (Error::Adapter(AdapterError::Version { expected: 1, got: 2 }), vec!["1", "2"]),

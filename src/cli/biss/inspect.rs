@@ -68,7 +68,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     let mut lines = Lines::default();
     lines
         .add("encoder", identity.description.name())
-        .add("profile", format!("{:04X}h", kind.profile.word()))
+        .add("profile", format!("0x{:04X}", kind.profile.word()))
         .add("manufacturer", manufacturer(identity))
         .add("device ID", hex(&kind.device_id))
         .add("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
@@ -204,8 +204,8 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
         "valid": reading.is_valid(),
         "warning": reading.warning,
     });
-    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
-    output.show(&json, &format!("{t:10.3} s  {}h  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
+    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame 0x{frame}"));
+    output.show(&json, &format!("{t:10.3} s  0x{}  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
 }
 
 fn place(reading: &PositionReading) -> String {

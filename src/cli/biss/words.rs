@@ -43,7 +43,7 @@ pub(super) fn filter(filter: Filter) -> String {
     match filter {
         Filter::Balanced => "balanced".to_owned(),
         Filter::Dynamic => "dynamic".to_owned(),
-        Filter::Unknown(code) => format!("{code:02X}h"),
+        Filter::Unknown(code) => format!("0x{code:02X}"),
     }
 }
 
@@ -60,7 +60,7 @@ fn words(register: &Register, bytes: &[u8]) -> Option<String> {
             bits.into_iter().map(named).collect::<Vec<_>>().join(", ")
         }
         Decoded::Choice(_, Some(name)) => name.to_owned(),
-        Decoded::Choice(value, None) => format!("unknown ({value:02X}h)"),
+        Decoded::Choice(value, None) => format!("unknown (0x{value:02X})"),
         Decoded::Text(text) => text,
     })
 }

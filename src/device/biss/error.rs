@@ -23,7 +23,7 @@ impl fmt::Display for Asked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Asked::Read(address) => write!(f, "reading register {address}"),
-            Asked::Write(address, value) => write!(f, "writing {value:02X}h to register {address}"),
+            Asked::Write(address, value) => write!(f, "writing 0x{value:02X} to register {address}"),
             Asked::Position => f.write_str("reading the position"),
         }
     }
@@ -110,7 +110,7 @@ pub enum Error {
         address: RegisterAddress,
     },
     /// The encoder did not take a value.
-    #[error("the encoder refuses {value:02X}h for register {address}")]
+    #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
         /// Where.
         address: RegisterAddress,
@@ -120,7 +120,7 @@ pub enum Error {
         reads: Option<u8>,
     },
     /// Whether a value was taken is not known: reading the register back does not tell, or is not possible.
-    #[error("whether {value:02X}h was written to register {address} is not known: {cause}")]
+    #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         /// Where.
         address: RegisterAddress,
@@ -133,13 +133,13 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// Neither order of a register number's two bytes gives an answer that the manual knows.
-    #[error("the encoder's answer {answer:02X}h does not tell the byte order of register numbers")]
+    #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown {
         /// What it said to the probe.
         answer: u8,
     },
     /// A position with more bits than the encoder is said to have.
-    #[error("the position {word:X}h has more than {multiturn}+{singleturn} bits")]
+    #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
         /// As it came.
         word: u64,

@@ -94,7 +94,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8))
     for number in area.banks() {
         told(number);
         let bytes = master.read_run(RegisterAddress::start_of(number), Bank::SIZE)?;
-        let short = || Error::Unexpected(format!("bank {number:02X}h has not 64 registers"));
+        let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
         banks.push(Bank { number, bytes: bytes.try_into().map_err(|_| short())? });
     }
     Ok(banks)

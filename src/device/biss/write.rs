@@ -251,7 +251,7 @@ pub fn read_state(
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_run(start, Bank::SIZE)?;
-    let short = || Error::Unexpected(format!("bank {number:02X}h has not 64 registers"));
+    let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
     Ok(Bank { number, bytes: bytes.try_into().map_err(|_| short())? })
 }
 

@@ -61,7 +61,7 @@ pub enum PlanError {
         device: Box<Identity>,
     },
     /// The encoder has no such bank of plain data, or it cannot be written.
-    #[error("bank {bank:02X}h is no bank of plain data that can be written")]
+    #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
     NoBank {
         /// The bank.
         bank: u8,
@@ -77,7 +77,7 @@ pub enum PlanError {
         bits: u8,
     },
     /// A code that is no filter.
-    #[error("{code:02X}h is no filter")]
+    #[error("0x{code:02X} is no filter")]
     UnknownFilter {
         /// The code.
         code: u8,
@@ -121,7 +121,7 @@ pub enum PlanError {
         count: usize,
     },
     /// A calibration needs the balanced filter.
-    #[error("the calibration needs the balanced filter, and {code:02X}h is in force")]
+    #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced {
         /// The filter's code.
         code: u8,

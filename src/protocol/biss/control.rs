@@ -48,7 +48,7 @@ pub enum RequestError {
     #[error("a slave has a number from 0 to 7, not {0}")]
     Slave(u8),
     /// No register at all, or one beyond 7Fh.
-    #[error("{count} registers from {address:02X}h on do not lie within 00h and 7Fh")]
+    #[error("{count} registers from 0x{address:02X} on do not lie within 0x00 and 0x7F")]
     Range {
         /// The first.
         address: u8,
@@ -64,13 +64,13 @@ pub enum ControlError {
     #[error("no slave {0} answers")]
     NoSlave(u8),
     /// The encoder does not repeat the kind of access: it has not understood, or it refuses.
-    #[error("the encoder refuses register {0:02X}h")]
+    #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
     /// The encoder keeps the host waiting for too long.
-    #[error("the encoder does not give register {0:02X}h within {MAX_WAIT_CYCLES} cycles")]
+    #[error("the encoder does not give register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
     /// The encoder's answer is damaged. A write may have been done or not.
-    #[error("register {address:02X}h: CRC {got:X} where {expected:X} was expected")]
+    #[error("register 0x{address:02X}: CRC {got:X} where {expected:X} was expected")]
     Crc {
         /// The register.
         address: u8,

@@ -148,7 +148,7 @@ pub struct Eds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of the others.
-    #[error("EDS bank {bank:02X}h: checksum {got:02X} where {expected:02X} was expected")]
+    #[error("EDS bank 0x{bank:02X}: checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
         /// The bank's number where the manual puts it.
         bank: u8,
@@ -158,7 +158,7 @@ pub enum EdsError {
         got: u8,
     },
     /// A bit beside the position with a meaning that is not known.
-    #[error("EDS: feedback bit {number} has the unknown meaning {code:02X}h")]
+    #[error("EDS: feedback bit {number} has the unknown meaning 0x{code:02X}")]
     Feedback {
         /// 1 or 2.
         number: u8,
@@ -166,7 +166,7 @@ pub enum EdsError {
         code: u8,
     },
     /// The two banks disagree.
-    #[error("EDS: the data length is {common} bit in bank 02h and {encoder} bit in bank 03h")]
+    #[error("EDS: the data length is {common} bit in bank 0x02 and {encoder} bit in bank 0x03")]
     DataLength {
         /// Bank 2, 15h.
         common: u8,

@@ -65,7 +65,7 @@ macro_rules! codes {
                     $($name::$variant => $text,)*
                     $name::Unknown(_) => "unknown code",
                 };
-                write!(f, "{:02X}h {text}", self.byte())
+                write!(f, "0x{:02X} {text}", self.byte())
             }
         }
     };
@@ -368,13 +368,13 @@ mod tests {
         assert_eq!(
             [0, 1, 3, 4, 6, 7, 0x30].map(|code| WiegandStatus::from_byte(code).to_string()),
             [
-                "00h test stopped",
-                "01h pulse collection active, clockwise",
-                "03h wait for change of motor rotation direction",
-                "04h pulse collection active, counterclockwise",
-                "06h test complete",
-                "07h test failed",
-                "30h wrong motor rotation direction",
+                "0x00 test stopped",
+                "0x01 pulse collection active, clockwise",
+                "0x03 wait for change of motor rotation direction",
+                "0x04 pulse collection active, counterclockwise",
+                "0x06 test complete",
+                "0x07 test failed",
+                "0x30 wrong motor rotation direction",
             ]
         );
         assert_eq!(
@@ -405,7 +405,7 @@ mod tests {
             assert_eq!(PresetCommand::from_byte(byte).byte(), byte);
             assert_eq!(PresetStatus::from_byte(byte).byte(), byte);
         }
-        assert_eq!(CalibrationStatus::from_byte(0x77).to_string(), "77h unknown code");
+        assert_eq!(CalibrationStatus::from_byte(0x77).to_string(), "0x77 unknown code");
     }
 
     proptest! {

@@ -155,7 +155,7 @@ impl fmt::Display for DeviceMode {
             DeviceMode::PRESET => "preset",
             DeviceMode(_) => "unknown mode",
         };
-        write!(f, "{:02X}h {name}", self.0)
+        write!(f, "0x{:02X} {name}", self.0)
     }
 }
 
@@ -237,7 +237,7 @@ impl ProfileId {
 
 impl fmt::Display for ProfileId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:04X}h", self.0)
+        write!(f, "0x{:04X}", self.0)
     }
 }
 
@@ -276,8 +276,8 @@ mod tests {
     fn modes_filters_and_profiles_keep_what_is_unknown() {
         let known: Vec<u8> = (0..=255).filter(|byte| DeviceMode::new(*byte).is_known()).collect();
         assert_eq!(known, [0, 1, 2, 4, 5, 7]);
-        assert_eq!(DeviceMode::new(0x09).to_string(), "09h unknown mode");
-        assert_eq!(DeviceMode::PRESET.to_string(), "07h preset");
+        assert_eq!(DeviceMode::new(0x09).to_string(), "0x09 unknown mode");
+        assert_eq!(DeviceMode::PRESET.to_string(), "0x07 preset");
         assert!((0..=255).all(|byte| Filter::from_byte(byte).byte() == byte));
         assert!(ProfileId::new(0x6129).is_standard_encoder());
         assert!(!ProfileId::new(0x4129).is_standard_encoder() && !ProfileId::new(0xE129).is_standard_encoder());

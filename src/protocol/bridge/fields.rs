@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
     /// Another length than the operation has.
-    #[error("operation {op:02X}h: a body of {got} bytes is too short or too long")]
+    #[error("operation 0x{op:02X}: a body of {got} bytes is too short or too long")]
     Length {
         /// The operation.
         op: u8,
@@ -12,10 +12,10 @@ pub enum BodyError {
         got: usize,
     },
     /// Not an operation of this version.
-    #[error("{0:02X}h is no operation")]
+    #[error("0x{0:02X} is no operation")]
     Operation(u8),
     /// A value that its field cannot have.
-    #[error("operation {op:02X}h: {field} cannot be {got}")]
+    #[error("operation 0x{op:02X}: {field} cannot be {got}")]
     Value {
         /// The operation.
         op: u8,
@@ -25,7 +25,7 @@ pub enum BodyError {
         got: u8,
     },
     /// Bytes that are no UTF-8.
-    #[error("operation {op:02X}h: a text is not UTF-8")]
+    #[error("operation 0x{op:02X}: a text is not UTF-8")]
     Text {
         /// The operation.
         op: u8,

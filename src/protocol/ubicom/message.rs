@@ -42,7 +42,7 @@ pub enum Request {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// Not one of the three commands.
-    #[error("{0:02X}h is not a command")]
+    #[error("0x{0:02X} is not a command")]
     Command(u8),
     /// A command with the wrong number of bytes.
     #[error("{got} payload bytes where {expected} belong")]
@@ -80,7 +80,7 @@ pub enum Reply {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The frame is for or from somebody else.
-    #[error("a frame of node {got:02X}h where one of {expected:02X}h was expected")]
+    #[error("a frame of node 0x{got:02X} where one of 0x{expected:02X} was expected")]
     Address {
         /// The node that was asked.
         expected: u8,
@@ -88,7 +88,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// The frame answers another command.
-    #[error("a frame of command {got:02X}h where one of {expected:02X}h was expected")]
+    #[error("a frame of command 0x{got:02X} where one of 0x{expected:02X} was expected")]
     Command {
         /// The command of the request.
         expected: u8,

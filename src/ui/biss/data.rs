@@ -45,8 +45,8 @@ pub(super) fn page_ui(
             actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let text = Text::new("data.banks")
-            .with("first", format!("{:02X}h", area.first))
-            .with("last", format!("{:02X}h", area.last))
+            .with("first", format!("0x{:02X}", area.first))
+            .with("last", format!("0x{:02X}", area.last))
             .with("bytes", area.size());
         ui.label(skin.caption(skin.words(&text)));
     });

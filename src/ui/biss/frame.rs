@@ -92,7 +92,7 @@ fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Ve
     if layout.crc_bits() > 0 {
         // Only frames whose checksum fits are shown: what it says follows from the rest.
         let crc = reading.map(|own| layout.emit(&as_sent(own)) & ((1 << layout.crc_bits().min(63)) - 1));
-        let value = crc.map(|crc| format!("{crc:02X}h")).unwrap_or_default();
+        let value = crc.map(|crc| format!("0x{crc:02X}")).unwrap_or_default();
         add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);
     }
     (fields, bits)

@@ -155,8 +155,8 @@ fn table(
 fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
         (None, _) => skin.say("registers.direct"),
-        (Some(bank), None) => format!("{bank:02X}h"),
-        (Some(bank), Some(name)) => format!("{bank:02X}h  {name}"),
+        (Some(bank), None) => format!("0x{bank:02X}"),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {name}"),
     };
     let note = if own.is_read(&encoder.memory) { String::new() } else { skin.say("registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
@@ -168,10 +168,7 @@ fn row_of(skin: &Skin, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
     let is_choice = matches!(register.decoding, Decoding::Choice(_) | Decoding::Bits(_));
     let meaning = shown.decoded().map(|own| meaning(skin, &own, &register.unit)).unwrap_or_default();
     RegisterRow {
-        address: match register.address.bank() {
-            None => format!("{:02X}", register.address.address()),
-            Some(bank) => format!("{bank:02X}:{:02X}", register.address.address()),
-        },
+        address: register.address.to_string(),
         name,
         hex: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
         decimal: shown.number().filter(|_| !is_choice).map(|own| own.to_string()).unwrap_or_default(),

@@ -67,7 +67,7 @@ pub struct RegisterGroup {
 /// A register as it is shown.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// Where it is: `04:1F`.
+    /// Where it is: `0x04:0x1F`.
     pub address: String,
     /// What it is called.
     pub name: String,

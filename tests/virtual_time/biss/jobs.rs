@@ -61,7 +61,7 @@ fn a_survey_shows_what_is_there_over_both_ways() {
         let identity = &survey.identity;
         assert_eq!(
             identity.kind.to_string(),
-            "profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01",
+            "profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01",
             "{way:?}"
         );
         assert_eq!(
@@ -243,8 +243,8 @@ fn a_device_id_that_fits_no_description_is_told() {
     let survey = device::survey(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap();
     assert_eq!(
         survey.identity.mismatch.as_ref().unwrap().to_string(),
-        "the encoder says profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01; the description \"POSITAL \
-         IXARC kit encoder\" is for profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 02"
+        "the encoder says profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01; the description \"POSITAL \
+         IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 02"
     );
     assert_eq!(survey.identity.description.name(), "BiSS C encoder");
     assert_eq!((survey.status.mode, survey.status.celsius), (None, None));

@@ -7,7 +7,7 @@ use crate::protocol::ubicom::ReplyError;
 
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {
-    let byte = |byte: &u8| format!("{byte:02X}h");
+    let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {
         Damage::NoFrame { bytes } => Text::new("biss.damage_no_frame").with("bytes", bytes),
         Damage::Reply(ReplyError::Address { expected, got }) => {

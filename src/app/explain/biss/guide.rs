@@ -54,7 +54,7 @@ pub fn mode(mode: DeviceMode) -> Text {
         DeviceMode::PRESET => "biss_mode.preset",
         _ => "biss_mode.unknown",
     };
-    Text::new(id).with("code", format!("{:02X}h", mode.byte()))
+    Text::new(id).with("code", format!("0x{:02X}", mode.byte()))
 }
 
 /// What a person is to do.

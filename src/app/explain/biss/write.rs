@@ -99,12 +99,12 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherKind { profile, device } => {
             Text::new("biss_plan.other_kind").with("profile", profile).with("device", device)
         }
-        PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("{bank:02X}h")),
+        PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
         PlanError::PresetTooWide { value, bits, .. } => {
             let last = (1u64 << bits.min(&63)) - 1;
             Text::new("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
         }
-        PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("{code:02X}h")),
+        PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
         PlanError::NoProcedure { kind, description } => {
             Text::new("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
         }
@@ -226,8 +226,8 @@ pub fn failure(failure: &Failure) -> Text {
         }
         Failure::Status { kind, expected, found } => Text::new("biss_failure.status")
             .with_text("what", kind_of(*kind))
-            .with("expected", format!("{expected:02X}h"))
-            .with("found", format!("{found:02X}h")),
+            .with("expected", format!("0x{expected:02X}"))
+            .with("found", format!("0x{found:02X}")),
         Failure::TooLong { seconds, .. } => Text::new("biss_failure.too_long").with("seconds", seconds),
         Failure::NotReady { task: asked, blockers } => {
             let both =
@@ -258,14 +258,14 @@ fn calibration(run: Run, status: CalibrationStatus) -> Text {
 fn wiegand(status: WiegandStatus, code: u8) -> Text {
     match status {
         WiegandStatus::WrongDirection => Text::new("biss_failure.wiegand_direction"),
-        WiegandStatus::Failed => Text::new("biss_failure.wiegand").with("code", format!("{code:02X}h")),
+        WiegandStatus::Failed => Text::new("biss_failure.wiegand").with("code", format!("0x{code:02X}")),
         other => unknown(other.byte()),
     }
 }
 
 /// A status that does not belong there.
 fn unknown(status: u8) -> Text {
-    Text::new("biss_failure.unknown").with("status", format!("{status:02X}h"))
+    Text::new("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
 
 #[cfg(test)]
@@ -330,7 +330,7 @@ mod tests {
         let expected = [
             ["1 of 3", "1 von 3"],
             ["second run, clockwise", "zweiter Lauf, im Uhrzeigersinn"],
-            ["01h calibration, 00h operation", "01h Kalibrierung, 00h Betrieb"],
+            ["0x01 calibration, 0x00 operation", "0x01 Kalibrierung, 0x00 Betrieb"],
             ["password", "Passwort"],
             ["table", "Tabelle"],
             ["Lead it back", "zurückführen"],
@@ -380,13 +380,13 @@ mod tests {
             (calibration(first, 0x32), "300…700 rpm"),
             (calibration(first, 0x33), "no reason"),
             (calibration(second, 0x32), "lost"),
-            (calibration(second, 0x77), "77h"),
+            (calibration(second, 0x77), "0x77"),
             (wiegand(0x30, 0), "other way"),
-            (wiegand(0x07, 0x2A), "2Ah"),
-            (wiegand(0x99, 0), "99h"),
+            (wiegand(0x07, 0x2A), "0x2A"),
+            (wiegand(0x99, 0), "0x99"),
             (Failure::NotBalanced { code: 4 }, "balanced"),
-            (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "07h preset"),
-            (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "00h"),
+            (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
+            (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
             (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "stands"),
             (

@@ -52,7 +52,7 @@ fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
             Ok(lines)
         }
         Ok(Message::Error { op, code, text }) => {
-            let of = Operation::from_byte(op).map_or_else(|| format!("operation {op:02X}h"), |op| name(op).to_owned());
+            let of = Operation::from_byte(op).map_or_else(|| format!("operation 0x{op:02X}"), |op| name(op).to_owned());
             Ok(vec![format!("refusal of request {seq}: {of}"), format!("{}: {text}", refusal(code))])
         }
         Ok(Message::Data(data)) => streamed(seq, &data),
@@ -94,9 +94,9 @@ fn asked(request: &Request) -> Option<String> {
         Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {
             format!("{clock_hz} Hz, {data_bits} data bits, {crc_bits} CRC bits, time-out {timeout_us} µs")
         }
-        Request::BissRegisterRead { slave, address } => format!("slave {slave}, register {address:02X}h"),
+        Request::BissRegisterRead { slave, address } => format!("slave {slave}, register 0x{address:02X}"),
         Request::BissRegisterWrite { slave, address, value } => {
-            format!("slave {slave}, register {address:02X}h = {value:02X}h")
+            format!("slave {slave}, register 0x{address:02X} = 0x{value:02X}")
         }
         Request::AnalogConfig { sample_hz } => format!("{sample_hz} samples a second"),
         Request::AnalogStream { on } => switch(*on).to_owned(),
@@ -118,10 +118,10 @@ fn answered(reply: &Reply) -> Result<Vec<String>, String> {
             vec![format!("{}, {millivolt} mV, {milliampere} mA", switch(*on))]
         }
         Reply::SsiConfig { clock_hz } | Reply::BissConfig { clock_hz } => vec![format!("{clock_hz} Hz")],
-        Reply::SsiRead { t_us, raw } => vec![format!("{:.6} s: {raw:X}h", seconds(*t_us))],
+        Reply::SsiRead { t_us, raw } => vec![format!("{:.6} s: 0x{raw:X}", seconds(*t_us))],
         Reply::SsiStream { period_us } | Reply::BissStream { period_us } => vec![format!("every {period_us} µs")],
         Reply::BissRead { t_us, status, raw } => frame(seconds(*t_us), *status, *raw)?,
-        Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value } => vec![format!("value {value:02X}h")],
+        Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value } => vec![format!("value 0x{value:02X}")],
         Reply::AnalogConfig { sample_hz, full_scale_microvolt, bits } => {
             vec![format!("{sample_hz} samples a second, full scale {full_scale_microvolt} µV, {bits} bits")]
         }
@@ -154,8 +154,8 @@ fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> 
     let bad = match status {
         BissStatus::OK => {
             let lines = position::meaning(raw, &mut Map::new())
-                .map_err(|why| format!("at {t_s:.6} s, frame {raw:011X}h: {why}"))?;
-            return Ok(std::iter::once(format!("{t_s:.6} s: {raw:011X}h")).chain(lines).collect());
+                .map_err(|why| format!("at {t_s:.6} s, frame 0x{raw:011X}: {why}"))?;
+            return Ok(std::iter::once(format!("{t_s:.6} s: 0x{raw:011X}")).chain(lines).collect());
         }
         BissStatus::NO_ACKNOWLEDGE => "no acknowledge",
         BissStatus::STUCK_LOW => "the line is stuck low",
@@ -175,7 +175,7 @@ fn streamed(seq: u8, data: &Data) -> Result<Vec<String>, String> {
     Ok(match data {
         Data::Ssi(SsiData { t0_us, period_us, values, .. }) => {
             let words =
-                values.iter().zip(0..).map(|(raw, at)| format!("{:.6} s: {raw:X}h", time(*t0_us, *period_us, at)));
+                values.iter().zip(0..).map(|(raw, at)| format!("{:.6} s: 0x{raw:X}", time(*t0_us, *period_us, at)));
             std::iter::once(head("SSI words", *t0_us)).chain(words).collect()
         }
         Data::Biss(BissData { t0_us, period_us, values, .. }) => {

@@ -38,32 +38,32 @@ fn length(bytes: &[u8]) -> usize {
 fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<String>, String> {
     let mut lines = Vec::new();
     if frame.address != NODE {
-        lines.push(format!("of node {:02X}h, which no encoder has", frame.address));
+        lines.push(format!("of node 0x{:02X}, which no encoder has", frame.address));
     }
     if let Ok(asked) = Request::parse(frame, ByteOrder::LowFirst) {
         lines.push(match asked {
             Request::Read { register } => format!("read register {}", register_words(register)),
             Request::Write { register, value } => {
-                format!("write {value:02X}h to register {}", register_words(register))
+                format!("write 0x{value:02X} to register {}", register_words(register))
             }
             Request::Position { argument: 0x01 } => "read the position".to_owned(),
-            Request::Position { argument } => format!("read the position, with the argument {argument:02X}h"),
+            Request::Position { argument } => format!("read the position, with the argument 0x{argument:02X}"),
         });
         *request = Some(asked);
         return Ok(lines);
     }
     let unknown = |error: &dyn std::fmt::Display| format!("a UBICOM frame that is neither request nor reply: {error}");
     let command = crate::protocol::ubicom::Command::from_byte(frame.command)
-        .ok_or_else(|| unknown(&format!("{:02X}h is not a command", frame.command)))?;
+        .ok_or_else(|| unknown(&format!("0x{:02X} is not a command", frame.command)))?;
     let own = Frame { address: NODE, ..*frame };
     lines.push(match Reply::parse(&own, command).map_err(|error| unknown(&error))? {
         Reply::Value(value) => match request.take() {
             Some(Request::Read { register }) => value_words(register, value),
-            _ => format!("value {value:02X}h"),
+            _ => format!("value 0x{value:02X}"),
         },
         Reply::Written(Written::Acknowledged) => "written".to_owned(),
         Reply::Written(Written::Refused) => "refused: not written".to_owned(),
-        Reply::Written(Written::Unknown(byte)) => format!("neither acknowledged nor refused: {byte:02X}h"),
+        Reply::Written(Written::Unknown(byte)) => format!("neither acknowledged nor refused: 0x{byte:02X}"),
         Reply::Position(word) => position_words(word),
     });
     *request = None;
@@ -73,7 +73,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
 /// The place, and its name where the kit encoder has one there.
 fn register_words(register: u16) -> String {
     match RegisterAddress::from_global(register) {
-        None => format!("{register:04X}h, which is behind the last"),
+        None => format!("0x{register:04X}, which is behind the last"),
         Some(address) => match words::name(address) {
             Some(name) => format!("{address} ({name})"),
             None => address.to_string(),
@@ -82,17 +82,17 @@ fn register_words(register: u16) -> String {
 }
 
 fn value_words(register: u16, value: u8) -> String {
-    let Some(address) = RegisterAddress::from_global(register) else { return format!("value {value:02X}h") };
+    let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
     match words::said(address, &[value]) {
-        Some(said) => format!("register {} is {value:02X}h: {said}", register_words(register)),
-        None => format!("register {} is {value:02X}h", register_words(register)),
+        Some(said) => format!("register {} is 0x{value:02X}: {said}", register_words(register)),
+        None => format!("register {} is 0x{value:02X}", register_words(register)),
     }
 }
 
 fn position_words(word: PositionWord) -> String {
     let layout = Layout::default();
     match word.reading(&layout) {
-        None => format!("position {:X}h, which has more than 33 bits", word.word()),
+        None => format!("position 0x{:X}, which has more than 33 bits", word.word()),
         Some(reading) => {
             let (turns, steps) = (reading.multiturn, reading.singleturn);
             format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.degrees(&reading))

@@ -19,7 +19,7 @@ pub enum Failure {
         status: CalibrationStatus,
     },
     /// The Wiegand test says why.
-    #[error("the Wiegand test ended with {status}, error code {code:02X}h")]
+    #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
         /// In which run.
         run: Run,
@@ -29,7 +29,7 @@ pub enum Failure {
         code: u8,
     },
     /// The filter in force is not the balanced one.
-    #[error("the calibration needs the balanced filter, and {code:02X}h is in force")]
+    #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced {
         /// The filter's code.
         code: u8,
@@ -43,7 +43,7 @@ pub enum Failure {
         found: DeviceMode,
     },
     /// A status register never said what it has to.
-    #[error("the status of the procedure is {found:02X}h where {expected:02X}h is needed")]
+    #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status {
         /// Which procedure.
         kind: ProcedureKind,

@@ -157,8 +157,8 @@ fn another_kind_and_an_encoder_without_a_number_are_not_the_same() {
     let error = plan_restore(&wanted, &now, RestoreOptions::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the profile is of profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01, the encoder says \
-         profile 6129h, manufacturer 46 72, device ID 09 09 09 09 09 09"
+        "the profile is of profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01, the encoder says \
+         profile 0x6129, manufacturer 46 72, device ID 09 09 09 09 09 09"
     );
     let nameless = profile("");
     let error = plan_restore(&nameless, &device(&nameless), RestoreOptions::default()).unwrap_err();

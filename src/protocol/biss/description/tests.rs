@@ -113,7 +113,7 @@ fn the_procedures_are_where_the_reference_has_them() {
 fn the_file_and_the_tables_say_the_same() {
     let kit = kit();
     let choices = |place: &str| match &kit.at(at(place)).unwrap().decoding {
-        Decoding::Choice(names) => names.iter().map(|(code, name)| format!("{code:02X}h {name}")).collect::<Vec<_>>(),
+        Decoding::Choice(names) => names.iter().map(|(code, name)| format!("0x{code:02X} {name}")).collect::<Vec<_>>(),
         other => panic!("{place}: {other:?}"),
     };
     let words = |codes: &[u8], say: fn(u8) -> String| codes.iter().map(|code| say(*code)).collect::<Vec<_>>();
@@ -185,8 +185,8 @@ fn an_encoder_finds_its_description() {
     assert_eq!(all.find(&other).unwrap().name(), "BiSS C encoder");
     assert_eq!(
         kit().check(&other).unwrap_err().to_string(),
-        "the encoder says profile 6129h, manufacturer 58 59, device ID 01 01 68 11 00 01; the description \"POSITAL \
-         IXARC kit encoder\" is for profile 6129h, manufacturer 46 72, device ID 01 01 68 11 00 01"
+        "the encoder says profile 0x6129, manufacturer 58 59, device ID 01 01 68 11 00 01; the description \"POSITAL \
+         IXARC kit encoder\" is for profile 0x6129, manufacturer 46 72, device ID 01 01 68 11 00 01"
     );
     let own = "(name: \"mine\", identity: Some((profile: 0x6129, manufacturer: (70, 114), device_id: (1, 1, 104, 17, 0, 1))))";
     let anything = "(name: \"anything\")";

@@ -18,7 +18,7 @@ pub(super) enum Column {
 /// Columns with their least widths, in their order.
 const WIDTHS: [(Column, f32); 8] = [
     (Column::Marks, 48.0),
-    (Column::Address, 60.0),
+    (Column::Address, 84.0),
     (Column::Name, 116.0),
     (Column::Hex, 100.0),
     (Column::Decimal, 92.0),
