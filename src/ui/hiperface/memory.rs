@@ -197,6 +197,10 @@ fn field_ui(
             typed_view(ui, skin, view.hex.to_read(bytes));
         });
     }
+    // The buttons at the foot undo as well as the keys do.
+    if actions.iter().any(|own| matches!(own, Action::Hiperface(_, Hiperface::Undo | Hiperface::Redo))) {
+        view.hex.follow(bytes);
+    }
     let number = field.number;
     actions.extend(edits.into_iter().map(|edit| {
         Action::Hiperface(

@@ -98,6 +98,7 @@ fn address_text(at: usize, digits: usize) -> String {
 pub fn hex_editor(ui: &mut Ui, skin: &Skin, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
+    view.follow_to(model.wanted);
     let edits = match ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
         true => keys::listen(ui, model, view),
         false => {

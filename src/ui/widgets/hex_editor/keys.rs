@@ -105,7 +105,7 @@ fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView
 fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
     let history = |view: &mut HexView, reaction: &mut Reaction, edit: HexEdit| {
         change(model, view, reaction, |view, reaction| {
-            view.pending = None;
+            view.follow(model.wanted);
             reaction.edits.push(edit);
         });
     };

@@ -19,6 +19,8 @@ pub struct HexView {
     pub(super) reveal: bool,
     /// Lines of a page.
     pub(super) page: usize,
+    /// The bytes as they were before a step was undone or done again.
+    before: Option<Vec<u8>>,
 }
 
 /// Which of the two columns has the keyboard.
@@ -55,6 +57,21 @@ impl HexView {
         let selected = self.selection();
         let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };
         bytes.get(range).unwrap_or_default()
+    }
+
+    /// A step is undone, or done again: from these bytes to those that are shown next. The cursor goes to what that
+    /// changes.
+    pub fn follow(&mut self, before: &[u8]) {
+        self.pending = None;
+        self.before = Some(before.to_vec());
+    }
+
+    /// Goes to the first byte that a step has changed.
+    pub(super) fn follow_to(&mut self, wanted: &[u8]) {
+        let Some(before) = self.before.take().filter(|before| before.len() == wanted.len()) else { return };
+        if let Some(at) = before.iter().zip(wanted).position(|(before, now)| before != now) {
+            self.go(at, false);
+        }
     }
 
     /// Why the last thing was not done.

@@ -35,7 +35,8 @@ fn editor(count: u8, read_only: Option<Text>) -> Harness<'static, Bytes> {
                 HexEdit::Revert { range } => {
                     state.wanted[range.clone()].copy_from_slice(&state.device[range.clone()]);
                 }
-                HexEdit::Undo | HexEdit::Redo => {}
+                HexEdit::Undo => state.wanted.clone_from(&state.device),
+                HexEdit::Redo => {}
             }
         }
         state.edits.extend(edits);
@@ -117,6 +118,21 @@ fn a_selection_is_cleared_reverted_and_undone() {
     press(&mut harness, &[(CTRL, Key::Z), (CTRL | SHIFT, Key::Z), (CTRL, Key::Y)]);
     let expected = [put(4, &[0; 3]), HexEdit::Revert { range: 4..7 }, HexEdit::Undo, HexEdit::Redo, HexEdit::Redo];
     assert_eq!(harness.state().edits, expected, "what is as read is not reverted again");
+}
+
+#[test]
+fn the_cursor_goes_to_what_is_undone() {
+    let mut harness = editor(64, None);
+    harness.state_mut().view.select(16..17);
+    type_in(&mut harness, "FF");
+    assert_eq!((harness.state().wanted[16], harness.state().view.cursor()), (0xFF, 17));
+    harness.state_mut().view.select(40..42);
+    press(&mut harness, &[(CTRL, Key::Z)]);
+    assert_eq!((harness.state().view.cursor(), harness.state().view.selection()), (16, 16..17));
+    // Nothing is left to undo: the cursor stays.
+    harness.state_mut().view.select(40..41);
+    press(&mut harness, &[(CTRL, Key::Z)]);
+    assert_eq!(harness.state().view.cursor(), 40);
 }
 
 #[test]
