@@ -26,6 +26,8 @@ enum Argument {
     Words(String),
     /// As English writes it, with a point.
     Number(String),
+    /// In English and in German.
+    Name(String, String),
     Text(Text),
     List(Vec<Text>),
 }
@@ -34,7 +36,8 @@ impl Argument {
     fn said(&self, place: Place) -> String {
         match self {
             Argument::Number(number) if matches!(place, Place::Window(Language::German)) => number.replace('.', ","),
-            Argument::Words(words) | Argument::Number(words) => words.clone(),
+            Argument::Name(_, german) if matches!(place, Place::Window(Language::German)) => german.clone(),
+            Argument::Words(words) | Argument::Number(words) | Argument::Name(words, _) => words.clone(),
             Argument::Text(text) => text.said(place),
             Argument::List(texts) => texts.iter().map(|text| text.said(place)).collect::<Vec<_>>().join(", "),
         }
@@ -84,6 +87,13 @@ impl Text {
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
         self.arguments.push((name, Argument::Text(text)));
+        self
+    }
+
+    /// With a name for `{name}` that stands in no table: as it is in English and in German.
+    #[must_use]
+    pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
+        self.arguments.push((name, Argument::Name(english.to_owned(), german.to_owned())));
         self
     }
 

@@ -19,7 +19,7 @@ use crate::device::biss::{Identity, Status, Survey};
 use crate::link::LinkUrl;
 use crate::profile::biss::{BissProfile, ProfileIdentity};
 use crate::profile::{Body, Document};
-use crate::protocol::biss::{Description, Descriptions, Eds};
+use crate::protocol::biss::{Description, Descriptions, Eds, EdsBank, EdsError};
 use crate::sim::biss::Motor;
 use crate::store::DeviceKey;
 use crate::worker::biss::{Biss, device_key};
@@ -101,7 +101,7 @@ impl Encoder {
     }
 
     /// What its registers are, from now on.
-    fn describe(&mut self, description: Option<Arc<Description>>) {
+    pub(super) fn describe(&mut self, description: Option<Arc<Description>>) {
         let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
         let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
         self.table = description.as_ref().map(|own| Table::of(own, last)).unwrap_or_default();
@@ -134,6 +134,19 @@ impl Encoder {
     /// Who it is, as far as that is known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Its data sheet, common part first: as it was found, or as a profile holds it.
+    pub fn data_sheet(&self) -> Option<[Result<Eds, EdsError>; 2]> {
+        if let Some(identity) = self.identity() {
+            return identity.data_sheet.as_ref().map(|sheet| [sheet.common.eds, sheet.encoder.eds]);
+        }
+        let banks = &self.profile()?.recorded.eds;
+        let parsed = |bank: EdsBank| {
+            let listed = banks.iter().find(|listed| listed.bank.number == bank.number())?;
+            Some(Eds::parse(bank, listed.bank.bytes))
+        };
+        Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
     }
 
     /// An adapter is in between, which can stream positions.

@@ -2,6 +2,7 @@
 
 mod act;
 mod action;
+mod decoded;
 mod drafts;
 mod encoder;
 pub mod forms;

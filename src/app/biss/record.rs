@@ -5,7 +5,7 @@ use std::time::Duration;
 use jiff::Zoned;
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::{self, plain};
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::device::biss::{Error, FrameRun, PositionReading, Sample, WatchedReading};
@@ -244,11 +244,11 @@ impl Watchable for Register {
     }
 
     fn line(&self, group: GroupId) -> Line {
-        let name = if self.name.is_empty() { self.address.to_string() } else { self.name.clone() };
+        let name = if self.name.is_empty() { plain(self.address) } else { explain::name(&self.name) };
         let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
-        let heading = format!("{} {name}", self.address);
-        Line::of(group, 0, plain(&name), heading, vec![Scale { unit, factor: 1.0, decimals }])
+        let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();
+        Line::of(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
     }
 }
 

@@ -2,7 +2,7 @@
 //! row and every other byte in a row of its own.
 
 use super::memory::Memory;
-use crate::protocol::biss::{Access, ByteOrder, Decoded, Decoding, Description, EdsBank, Register, RegisterAddress};
+use crate::protocol::biss::{Access, ByteOrder, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
 
 /// The banks of an encoder that nobody has described: as many as the kit encoder has.
 const LAST_BANK: u8 = 0x43;
@@ -19,7 +19,7 @@ pub struct Group {
     /// The bank; `None`: the direct registers.
     pub bank: Option<u8>,
     /// What it is called, where the description says so.
-    pub name: Option<String>,
+    pub name: Option<Name>,
     rows: Vec<Row>,
 }
 
@@ -79,7 +79,7 @@ impl Group {
             let access = area.map_or(Access::R, |area| area.access);
             rows.push(Row { register: described.unwrap_or_else(|| plain(at, access)), is_data: area.is_some() });
         }
-        let name = area.map(|area| area.name.clone()).or_else(|| bank.and_then(usual_name).map(str::to_owned));
+        let name = bank.and_then(|bank| description.bank_name(bank).cloned().or_else(|| usual_name(bank)));
         Group { bank, name, rows }
     }
 
@@ -115,9 +115,10 @@ impl Group {
 }
 
 impl Shown<'_> {
-    /// What its bytes say.
-    pub fn decoded(&self) -> Option<Decoded<'_>> {
-        self.row.register.decode(self.bytes.as_ref()?)
+    /// It has another value than an encoder as delivered, as far as the description tells that.
+    pub fn is_not_as_delivered(&self) -> bool {
+        let default = &self.row.register.default;
+        !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }
 
     /// Its bytes as a number.
@@ -139,7 +140,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,
         width: 1,
-        name: String::new(),
+        name: Name::default(),
         role: None,
         access,
         order: ByteOrder::HighFirst,
@@ -152,11 +153,11 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
 }
 
 /// Banks that BP3 gives a place, on every encoder that keeps to it.
-fn usual_name(bank: u8) -> Option<&'static str> {
+fn usual_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
         .find(|(own, _)| own.number() == bank)
-        .map(|(_, name)| name)
+        .map(|(_, name)| Name::new(name))
 }
 
 #[cfg(test)]
@@ -188,7 +189,7 @@ mod tests {
     fn a_row_shows_what_is_wanted_and_whether_it_is_read() {
         let (table, mut memory) = (kit(), Memory::default());
         let direct = &table.groups()[0];
-        let serial = direct.rows().iter().position(|row| row.register.name == "serial number").unwrap();
+        let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
         assert_eq!(direct.shown(serial, &memory).unwrap().bytes, None);
         assert!(!direct.is_read(&memory));
         memory.take(direct.start().unwrap(), &[7; 64]);

@@ -1,9 +1,13 @@
 //! What a BiSS encoder says, and what is done with it, in words.
 
+use std::sync::LazyLock;
+
 use super::memory::MemoryError;
 use crate::app::Text;
 use crate::app::explain::{self, plain};
-use crate::protocol::biss::{EDS_TICK, EdsError, EdsValue, Feedback, Filter};
+use crate::protocol::biss::{
+    Description, Descriptions, EDS_TICK, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
+};
 use crate::worker::biss::BissJob;
 
 /// A job.
@@ -15,7 +19,7 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::Read(range) => Text::new("job.read").with("item", range),
         BissJob::ReadDirect => Text::new("job.read_direct"),
         BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
-        BissJob::ReadArea(area) => Text::new("job.read").with("item", &area.name),
+        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", explain::name(&area.name)),
         BissJob::Save => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::biss::change(change)),
         BissJob::Commit(_) => Text::new("job.write"),
@@ -54,16 +58,15 @@ pub fn sheet(error: &EdsError) -> Text {
 pub fn eds(value: EdsValue) -> Text {
     let text = |id| Text::new(id);
     match value {
+        EdsValue::Number(1, "banks") => text("eds.one_bank"),
+        EdsValue::Number(1, "slave addresses") => text("eds.one_address"),
+        EdsValue::Number(number, "banks") => text("eds.banks").with("count", number),
+        EdsValue::Number(number, "slave addresses") => text("eds.addresses").with("count", number),
         EdsValue::Number(number, "") => plain(number),
         EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
         EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
         EdsValue::NotAvailable => text("eds.none"),
-        EdsValue::Ticks(ticks) => {
-            let nanoseconds = value.duration(EDS_TICK).map_or(0, |own| own.as_nanos());
-            Text::new("eds.ticks")
-                .with("ticks", ticks)
-                .with("time", format!("{}.{:02}", nanoseconds / 1000, nanoseconds % 1000 / 10))
-        }
+        EdsValue::Ticks(ticks) => Text::new("eds.ticks").with("ticks", ticks).with_text("time", ticks_long(value)),
         EdsValue::Adaptive => text("eds.adaptive"),
         EdsValue::NoLimit => text("eds.no_limit"),
         EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
@@ -78,4 +81,30 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
         EdsValue::Code(code) => plain(format!("0x{code:X}")),
     }
+}
+
+/// What a field of the data sheet says beyond its number, which stands beside it; `None`: nothing.
+pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
+    match value {
+        EdsValue::Number(_, "") => None,
+        EdsValue::Ticks(_) => Some(ticks_long(value)),
+        _ => Some(eds(value)),
+    }
+}
+
+/// What a field of the data sheet is called, as the manual has it.
+pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
+    let at = RegisterAddress::banked(bank.number(), field.offset);
+    let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
+    described.map_or_else(|| plain(field.name), |register| explain::name(&register.name))
+}
+
+/// The description with the manual's names, in both languages, of what every data sheet has.
+static KIT: LazyLock<Option<Description>> =
+    LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
+
+/// How long a number of ticks is.
+fn ticks_long(value: EdsValue) -> Text {
+    let microseconds = value.duration(EDS_TICK).map_or(0.0, |own| own.as_secs_f64() * 1e6);
+    Text::new("eds.ticks_long").with_number("time", microseconds, 2)
 }

@@ -14,7 +14,7 @@ use crate::cli::runner::{Ended, unexpected};
 use crate::cli::{Done, Result};
 use crate::device::biss::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
 use crate::profile::biss::RegisterRange;
-use crate::protocol::biss::{KIND, Role};
+use crate::protocol::biss::{KIND, Name, Role};
 use crate::worker::biss::{Biss, BissJob, BissOutput, JobError};
 
 /// Without a good frame for so long, nothing but noise comes.
@@ -112,7 +112,10 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
 }
 
 fn list(bits: &Bits) -> Vec<Json> {
-    bits.set.iter().map(|(bit, name)| json!({"code": bit, "text": bit_words(*bit, name.as_deref())})).collect()
+    bits.set
+        .iter()
+        .map(|(bit, name)| json!({"code": bit, "text": bit_words(*bit, name.as_ref().map(Name::english))}))
+        .collect()
 }
 
 fn bit_words(bit: u8, name: Option<&str>) -> String {
@@ -126,7 +129,7 @@ fn status_text(status: &Status) -> String {
             None => lines.add(label, "not told by this encoder"),
             Some(bits) if bits.set.is_empty() => lines.add(label, "none"),
             Some(bits) => {
-                let named = bits.set.iter().map(|(bit, name)| bit_words(*bit, name.as_deref()));
+                let named = bits.set.iter().map(|(bit, name)| bit_words(*bit, name.as_ref().map(Name::english)));
                 lines.add(label, named.collect::<Vec<_>>().join(", "))
             }
         };

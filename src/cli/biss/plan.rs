@@ -114,7 +114,12 @@ fn steps(op: &Op) -> Vec<Step> {
                     Step { item: range.to_string(), old, new, write_cycles: 0 }
                 })
                 .collect();
-            steps.push(Step { item: area.name.clone(), old: None, new: Some("saved".to_owned()), write_cycles: cost });
+            steps.push(Step {
+                item: area.name.to_string(),
+                old: None,
+                new: Some("saved".to_owned()),
+                write_cycles: cost,
+            });
             steps
         }
         Op::StorePreset { from, to } => step(Some(hex_compact(&from.emit())), Some(hex_compact(&to.emit()))),

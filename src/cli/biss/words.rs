@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::profile::biss::RegisterRange;
-use crate::protocol::biss::{Decoded, Description, Descriptions, Filter, Register, RegisterAddress};
+use crate::protocol::biss::{Decoded, Description, Descriptions, Filter, Name, Register, RegisterAddress};
 
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
@@ -14,8 +14,8 @@ fn register(address: RegisterAddress) -> Option<&'static Register> {
 
 /// What the byte at an address belongs to.
 pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
-    let area = || Some(KIT.as_ref()?.area_at(address)?.name.as_str());
-    register(address).map(|register| register.name.as_str()).or_else(area)
+    let area = || Some(KIT.as_ref()?.area_at(address)?.name.english());
+    register(address).map(|register| register.name.english()).or_else(area)
 }
 
 /// What the bytes from an address on say, where they are a whole register whose number has a meaning of its own.
@@ -56,10 +56,10 @@ fn words(register: &Register, bytes: &[u8]) -> Option<String> {
         Decoded::Scaled(value) => format!("{value}{unit}"),
         Decoded::Bits(bits) if bits.is_empty() => "none".to_owned(),
         Decoded::Bits(bits) => {
-            let named = |(bit, name): (u8, Option<&str>)| name.map_or_else(|| format!("bit {bit}"), str::to_owned);
+            let named = |(bit, name): (u8, Option<&Name>)| name.map_or_else(|| format!("bit {bit}"), Name::to_string);
             bits.into_iter().map(named).collect::<Vec<_>>().join(", ")
         }
-        Decoded::Choice(_, Some(name)) => name.to_owned(),
+        Decoded::Choice(_, Some(name)) => name.to_string(),
         Decoded::Choice(value, None) => format!("unknown (0x{value:02X})"),
         Decoded::Text(text) => text,
     })

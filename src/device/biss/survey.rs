@@ -4,7 +4,7 @@ use super::identify::identify_with;
 use super::registers::Registers;
 use super::{Error, Identity, Master, PositionReading};
 use crate::protocol::biss::{
-    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Filter, PresetValue, ProcedureKind,
+    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Filter, Name, PresetValue, ProcedureKind,
     RegisterAddress, Role, WiegandResult,
 };
 
@@ -33,7 +33,7 @@ pub struct Bits {
     /// All of them.
     pub raw: u64,
     /// Those that are set, the lowest first, with what the description says of each.
-    pub set: Vec<(u8, Option<String>)>,
+    pub set: Vec<(u8, Option<Name>)>,
 }
 
 /// An encoder as it was found.
@@ -141,7 +141,7 @@ fn bits(description: &Description, registers: &Registers, role: Role) -> Option<
     let bytes = registers.bytes(register)?;
     let raw = register.number(&bytes)?;
     let set = match register.decode(&bytes)? {
-        Decoded::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.map(str::to_owned))).collect(),
+        Decoded::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.cloned())).collect(),
         _ => (0..64).filter(|bit| raw >> bit & 1 == 1).map(|bit| (bit, None)).collect(),
     };
     Some(Bits { raw, set })

@@ -226,7 +226,7 @@ impl DataImage {
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
         let holds = |bank: &Bank| empty.is_none() || bank.only_byte() != empty;
         DataImage {
-            name: area.name.clone(),
+            name: area.name.english().to_owned(),
             first: area.first,
             last: area.last,
             empty,

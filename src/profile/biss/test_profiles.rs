@@ -6,7 +6,7 @@ use crate::protocol::biss::{Access, Area, Filter, Firmware, PresetValue, Profile
 /// The areas of the manual's table 12.
 pub(super) fn areas() -> [Area; 2] {
     let area = |name: &str, first, last, open| Area {
-        name: name.to_owned(),
+        name: crate::protocol::biss::Name::new(name),
         first,
         last,
         access: Access::Rw,

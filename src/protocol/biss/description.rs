@@ -2,12 +2,15 @@
 //! the registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
 
 mod file;
+mod german;
+mod name;
 mod register;
 #[cfg(test)]
 mod tests;
 
 use std::fmt;
 
+pub use name::Name;
 pub use register::{Access, Area, ByteOrder, Decoded, Decoding, Register, Role};
 
 use super::address::RegisterAddress;
@@ -23,6 +26,7 @@ pub struct Description {
     layout: Option<Layout>,
     lock: Option<Lock>,
     registers: Vec<Register>,
+    banks: Vec<(u8, Name)>,
     areas: Vec<Area>,
     procedures: Vec<Procedure>,
 }
@@ -139,6 +143,12 @@ impl Description {
     /// Banks of plain data.
     pub fn areas(&self) -> &[Area] {
         &self.areas
+    }
+
+    /// What a bank is called: by its area, or by the list of banks.
+    pub fn bank_name(&self, bank: u8) -> Option<&Name> {
+        let area = self.areas.iter().find(|area| area.contains(bank)).map(|area| &area.name);
+        area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
     }
 
     /// The guided procedures.

@@ -26,7 +26,7 @@ pub use control::{
 pub use crc::{Crc, CrcError};
 pub use description::{
     Access, Area, ByteOrder, Decoded, Decoding, Description, DescriptionError, Descriptions, Identity, Lock, Mismatch,
-    Procedure, Register, Role,
+    Name, Procedure, Register, Role,
 };
 pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
 pub use line::{Cycle, CycleError};

@@ -35,8 +35,9 @@ pub(super) fn page_ui(
     });
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
-            let response = ui.add(egui::Button::selectable(own == area, &own.name));
-            if name(response, true, &own.name).clicked() && at != view.area {
+            let word = skin.name(&own.name);
+            let response = ui.add(egui::Button::selectable(own == area, &word));
+            if name(response, true, &word).clicked() && at != view.area {
                 *view = View { area: at, ..View::default() };
             }
         }
@@ -83,9 +84,10 @@ fn bytes(
     let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
     let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
     let mut edits = Vec::new();
+    let label = skin.name(&area.name);
     if beside {
         ui.horizontal_top(|ui| {
-            ui.vertical(|ui| edits = hex_editor(ui, skin, &area.name, &model, &mut view.hex));
+            ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));
             ui.add_space(skin.space.between);
             ui.vertical(|ui| {
                 place_ui(ui, skin, area, view);
@@ -96,10 +98,14 @@ fn bytes(
         ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
             // Room for the ring around what has the keyboard.
             ui.add_space(skin.space.inside);
-            edits = hex_editor(ui, skin, &area.name, &model, &mut view.hex);
+            edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
             place_ui(ui, skin, area, view);
             typed_view(ui, skin, view.hex.to_read(wanted));
         });
+    }
+    // The buttons at the foot undo as well as the keys do.
+    if actions.iter().any(|own| matches!(own, Action::Biss(_, Biss::Undo | Biss::Redo))) {
+        view.hex.follow(wanted);
     }
     let start = |offset: usize| -> Option<RegisterAddress> { places(area).nth(offset) };
     for edit in edits {

@@ -1,4 +1,4 @@
-//! Who the encoder is, how it is, its frame, its data sheet, the wiring.
+//! Who the encoder is and how it is, its frame, the wiring, its data sheet.
 
 use egui::{RichText, Ui};
 
@@ -6,32 +6,39 @@ use super::{frame, motor, sheet, wiring};
 use crate::app::biss::{Action as Biss, Encoder, words};
 use crate::app::{Action, Text, explain};
 use crate::device::biss::{Bits, FrameSource, Identity};
+use crate::profile::biss::ProfileIdentity;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    if encoder.identity().is_some() {
-        frame::card_ui(ui, skin, encoder, actions);
-        ui.add_space(skin.space.groups);
-    }
+    let is_profile = encoder.profile().is_some();
     two_columns(
         ui,
         skin,
-        actions,
+        &mut *actions,
+        |ui, actions| identity(ui, skin, encoder, actions),
         |ui, actions| {
-            identity(ui, skin, encoder, actions);
-            ui.add_space(skin.space.groups);
+            if is_profile {
+                wiring::card_ui(ui, skin);
+                return;
+            }
             status(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
                 motor::card_ui(ui, skin, encoder, motor, actions);
             }
         },
-        |ui, _| {
-            sheet::cards_ui(ui, skin, encoder);
-            wiring::card_ui(ui, skin);
-        },
     );
+    ui.add_space(skin.space.groups);
+    if encoder.identity().is_some() {
+        frame::card_ui(ui, skin, encoder, actions);
+        ui.add_space(skin.space.groups);
+    }
+    if !is_profile {
+        wiring::card_ui(ui, skin);
+        ui.add_space(skin.space.groups);
+    }
+    sheet::cards_ui(ui, skin, encoder);
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -49,9 +56,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
         } else if let Some(identity) = encoder.profile_identity() {
             ui.label(skin.value(&identity.description));
             ui.add_space(skin.space.inside);
-            row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(&identity.serial_number));
-            row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.profile_id.to_string()));
-            row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
+            recorded(ui, skin, encoder, identity);
         } else {
             empty(ui, skin, &skin.say("encoder_card.nothing"), None);
         }
@@ -66,10 +71,7 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
     row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
     row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.kind.profile.to_string()));
     row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.kind.device_id)));
-    let manufacturer = identity.kind.manufacturer;
-    let letters = manufacturer.escape_ascii().to_string();
-    let words = format!("{}  {letters}", crate::bits::hex(&manufacturer));
-    row(ui, skin, &skin.say("biss_card.manufacturer"), skin.mono(words));
+    manufacturer(ui, skin, identity.kind.manufacturer);
     let layout = &identity.layout;
     let widths = Text::new("biss_card.widths")
         .with("multiturn", layout.multiturn_bits())
@@ -91,6 +93,32 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
         let text = explain::biss::mismatch(mismatch);
         paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
     }
+}
+
+/// What a profile says of the encoder that it was read from.
+fn recorded(ui: &mut Ui, skin: &Skin, encoder: &Encoder, identity: &ProfileIdentity) {
+    let or_none = |text: String| if text.is_empty() { skin.say("biss_card.not_in_profile") } else { text };
+    row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(identity.serial_number.clone())));
+    let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
+    row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
+    row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.profile_id.to_string()));
+    row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
+    manufacturer(ui, skin, identity.manufacturer);
+    if let Some(singleturn) = identity.singleturn_bits {
+        let widths = Text::new("biss_card.position_widths")
+            .with("multiturn", identity.multiturn_bits.unwrap_or_default())
+            .with("singleturn", singleturn);
+        row(ui, skin, &skin.say("biss_card.frame"), skin.words(&widths));
+    }
+    let Some(profile) = encoder.profile() else { return };
+    if let Some(filter) = profile.filter {
+        row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));
+    }
+}
+
+fn manufacturer(ui: &mut Ui, skin: &Skin, code: [u8; 2]) {
+    let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
+    row(ui, skin, &skin.say("biss_card.manufacturer"), skin.mono(words));
 }
 
 fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -141,7 +169,8 @@ fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             ui.label(skin.mono(format!("b{bit}")));
-            paragraph(ui, name.clone().unwrap_or_else(|| skin.say("biss_status.unknown_bit")));
+            let name = name.as_ref().map_or_else(|| skin.say("biss_status.unknown_bit"), |own| skin.name(own));
+            paragraph(ui, name);
         });
     }
 }

@@ -116,15 +116,17 @@ pub(super) fn page_ui(
 ) {
     let narrow = ui.available_width() < 720.0;
     let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
-    let frame = egui::Frame::NONE.inner_margin(margin);
     if view.page.is_fixed() {
+        // Tables fill what there is.
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
         frame.show(ui, |ui| match view.page {
             Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
             _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
         });
         return;
     }
+    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
+    let frame = egui::Frame::NONE.inner_margin(margin);
     ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         frame.show(ui, |ui| match view.page {
             Page::Backups => backups::page_ui(ui, skin, device, actions),

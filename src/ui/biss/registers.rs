@@ -4,8 +4,8 @@ use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder, Group, Shown};
 use crate::app::{Action, Text};
-use crate::protocol::biss::{Access, Decoded, Decoding};
-use crate::ui::controls::{empty, enabled_button, icon_menu, paragraph};
+use crate::protocol::biss::{Access, Decoding, Name};
+use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{
     Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterRow, RegisterTable, RegisterView, register_table,
 };
@@ -18,9 +18,10 @@ pub(super) struct View {
     folded: bool,
 }
 
-/// Width of the list of banks, and the width of the page from which it stands beside the table.
+/// Width of the list of banks, and the width of the page from which it stands beside the table; below that a choice above
+/// the table does the same.
 const BANKS: f32 = 176.0;
-const BESIDE: f32 = 700.0;
+const BESIDE: f32 = 860.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     if encoder.description.is_none() {
@@ -35,11 +36,12 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         // One bank at a time is what a person looks for; the direct registers are what everybody does.
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
-    head(ui, skin, encoder, view, actions);
+    let beside = ui.available_width() >= BESIDE;
+    head(ui, skin, encoder, (&groups, beside), view, actions);
     super::refusal_ui(ui, skin, encoder, actions);
     ui.add_space(skin.space.inside);
     let height = ui.available_height();
-    if ui.available_width() < BESIDE {
+    if !beside {
         table(ui, skin, encoder, &groups, height, view, actions);
         return;
     }
@@ -52,47 +54,80 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     });
 }
 
-/// What can be done with the register that is selected.
-fn head(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &mut Vec<Action>) {
-    let selected = view.table.selected();
-    let group = selected.and_then(|place| encoder.table.groups().get(place.group));
-    let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
-    ui.horizontal_wrapped(|ui| {
-        let ready = encoder.session.is_ready() && group.is_some();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("registers.read_bank")).clicked()
-            && let Some(group) = group
-        {
-            actions.push(Action::Biss(encoder.session.id, Biss::ReadBank(group.bank)));
-        }
-        let watched = encoder.record.watched();
-        if let Some(row) = row {
-            let on = watched.iter().any(|own| own.address == row.register.address);
-            let word = skin.say(if on { "registers.unwatch" } else { "registers.watch" });
-            if enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word).clicked() {
-                let register = Box::new(row.register.clone());
-                actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
+/// What can be done with the bank and the register that are selected, and what is said to that.
+fn head(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    (groups, beside): (&[RegisterGroup], bool),
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let mut at = view.table.group().unwrap_or_default();
+    ui.horizontal(|ui| {
+        if !beside {
+            let label = skin.say("registers.bank");
+            if choice(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
+                view.table.select(Place { group: at, row: 0 });
             }
         }
-        if !watched.is_empty() {
-            let word = skin.words(&Text::new("registers.watched").with("count", watched.len()));
-            icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
-                ui.label(skin.heading(&word));
-                for own in watched {
-                    let name = format!("{}  {}", own.address, own.name);
-                    if ui.button(format!("{}  {name}", icons::X)).clicked() {
-                        actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(own), false)));
-                    }
-                }
-            });
+        if let Some(own) = encoder.table.groups().get(at) {
+            let word = skin.words(&read_words(own.bank));
+            if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
+                actions.push(Action::Biss(encoder.session.id, Biss::ReadBank(own.bank)));
+            }
         }
-        if encoder.session.is_polling() {
-            ui.label(skin.caption(skin.say("registers.watching")));
+        watching(ui, skin, encoder, view, actions);
+        if let Some(problem) = view.table.problem(skin) {
+            let words = format!("{} {problem}", icons::WARNING_CIRCLE);
+            ui.add(egui::Label::new(RichText::new(words).color(skin.palette.bad)).truncate());
+        } else if encoder.memory.is_dirty() {
+            ui.add(egui::Label::new(skin.caption(skin.say("registers.edited"))).truncate());
+        } else if !encoder.record.watched().is_empty() && encoder.session.is_polling() {
+            ui.add(egui::Label::new(skin.caption(skin.say("registers.watching"))).truncate());
         }
     });
 }
 
+fn read_words(bank: Option<u8>) -> Text {
+    match bank {
+        None => Text::new("registers.read_direct"),
+        Some(bank) => Text::new("registers.read_bank").with("bank", format!("0x{bank:02X}")),
+    }
+}
+
+/// Watching the register that is selected, and what is watched.
+fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &mut Vec<Action>) {
+    let selected = view.table.selected();
+    let group = selected.and_then(|place| encoder.table.groups().get(place.group));
+    let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
+    let watched = encoder.record.watched();
+    if let Some(row) = row {
+        let on = watched.iter().any(|own| own.address == row.register.address);
+        let word = Text::new(if on { "registers.unwatch" } else { "registers.watch" });
+        let word = skin.words(&word.with("address", row.register.address));
+        let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
+        if button.on_hover_text(skin.name(&row.register.name)).clicked() {
+            let register = Box::new(row.register.clone());
+            actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
+        }
+    }
+    if !watched.is_empty() {
+        let word = skin.words(&Text::new("registers.watched").with("count", watched.len()));
+        icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
+            ui.label(skin.heading(&word));
+            for own in watched {
+                let name = format!("{}  {}", own.address, skin.name(&own.name));
+                if ui.button(format!("{}  {name}", icons::X)).clicked() {
+                    actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(own), false)));
+                }
+            }
+        });
+    }
+}
+
 fn banks(ui: &mut Ui, skin: &Skin, encoder: &Encoder, groups: &[RegisterGroup], view: &mut View) {
-    let selected = view.table.selected().map(|place| place.group);
+    let selected = view.table.group();
     ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (at, own) in encoder.table.groups().iter().enumerate() {
@@ -100,7 +135,8 @@ fn banks(ui: &mut Ui, skin: &Skin, encoder: &Encoder, groups: &[RegisterGroup], 
             let ink = if own.is_read(&encoder.memory) { skin.palette.text } else { skin.palette.muted };
             let text = RichText::new(&title).color(ink);
             let button = egui::Button::selectable(selected == Some(at), (text, egui::Atom::grow()));
-            if ui.add(button.truncate().min_size(egui::vec2(BANKS - 16.0, 24.0))).clicked() {
+            let response = ui.add(button.truncate().min_size(egui::vec2(BANKS - 16.0, 24.0)));
+            if response.on_hover_text(&title).clicked() {
                 view.table.select(Place { group: at, row: 0 });
             }
         }
@@ -119,10 +155,11 @@ fn table(
     let none = skin.say("registers.elsewhere");
     let row = |place: Place| {
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.shown(place.row, &encoder.memory));
-        shown.map(|own| row_of(skin, &own, &none)).unwrap_or_default()
+        shown.map(|own| row_of(skin, encoder, &own, &none)).unwrap_or_default()
     };
     let label = skin.say("page.registers");
-    let table = RegisterTable { label: &label, groups, row: &row };
+    let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
+    let table = RegisterTable { label: &label, groups, row: &row, widest: widest.unwrap_or(1) };
     let mut typed = Vec::new();
     let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
         let byte = parse(text)?;
@@ -147,32 +184,29 @@ fn table(
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
         actions.push(Action::Biss(encoder.session.id, Biss::SeeBank(own.bank)));
     }
-    if encoder.memory.is_dirty() {
-        paragraph(ui, skin.caption(skin.say("registers.edited")));
-    }
 }
 
 fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
         (None, _) => skin.say("registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
-        (Some(bank), Some(name)) => format!("0x{bank:02X}  {name}"),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.name(name)),
     };
     let note = if own.is_read(&encoder.memory) { String::new() } else { skin.say("registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
 }
 
-fn row_of(skin: &Skin, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
+fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
-    let name = if register.name.is_empty() { skin.say("registers.byte") } else { register.name.clone() };
-    let is_choice = matches!(register.decoding, Decoding::Choice(_) | Decoding::Bits(_));
-    let meaning = shown.decoded().map(|own| meaning(skin, &own, &register.unit)).unwrap_or_default();
+    let name = if register.name.is_empty() { skin.say("registers.byte") } else { skin.name(&register.name) };
+    let is_code =
+        matches!(register.decoding, Decoding::Choice(_) | Decoding::Bits(_) | Decoding::Text | Decoding::Version);
     RegisterRow {
         address: register.address.to_string(),
         name,
         hex: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
-        decimal: shown.number().filter(|_| !is_choice).map(|own| own.to_string()).unwrap_or_default(),
-        meaning,
+        decimal: shown.number().filter(|_| !is_code).map(|own| own.to_string()).unwrap_or_default(),
+        meaning: encoder.meaning(shown).map(|own| skin.words(&own)).unwrap_or_default(),
         access: match register.access {
             Access::R => "R",
             Access::W => "W",
@@ -180,34 +214,12 @@ fn row_of(skin: &Skin, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
         }
         .to_owned(),
         default: crate::bits::hex(&register.default),
+        differs: shown.is_not_as_delivered(),
         changed: shown.has_changed,
         edited: shown.is_edited,
         cost: (!register.saves.is_empty()).then(|| skin.say("registers.cost")),
         read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
-        tooltip: String::new(),
         fields: fields(skin, shown),
-    }
-}
-
-fn meaning(skin: &Skin, decoded: &Decoded<'_>, unit: &str) -> String {
-    let with_unit = |value: String| if unit.is_empty() { value } else { format!("{value} {unit}") };
-    match decoded {
-        Decoded::Number(number) if unit.is_empty() => {
-            let _ = number;
-            String::new()
-        }
-        Decoded::Number(number) => with_unit(number.to_string()),
-        Decoded::Hex(_) => String::new(),
-        Decoded::Scaled(value) => with_unit(skin.plain((value * 1000.0).round() / 1000.0)),
-        Decoded::Bits(set) if set.is_empty() => skin.say("registers.no_bit"),
-        Decoded::Bits(set) => {
-            let names: Vec<String> =
-                set.iter().map(|(bit, name)| name.map_or_else(|| format!("b{bit}"), str::to_owned)).collect();
-            names.join(", ")
-        }
-        Decoded::Choice(_, Some(name)) => (*name).to_owned(),
-        Decoded::Choice(_, None) => skin.say("registers.unknown_value"),
-        Decoded::Text(text) => text.clone(),
     }
 }
 
@@ -215,11 +227,11 @@ fn meaning(skin: &Skin, decoded: &Decoded<'_>, unit: &str) -> String {
 fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
     let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();
-    let bit = |(bit, name): &(u8, String)| {
+    let bit = |(bit, name): &(u8, Name)| {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
             bits: format!("b{bit}"),
-            name: name.clone(),
+            name: skin.name(name),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
                 .map(|set| skin.say(if set { "registers.set" } else { "registers.clear" }))

@@ -3,38 +3,42 @@
 use egui::{RichText, Ui};
 
 use crate::app::biss::{Encoder, words};
-use crate::device::biss::Sheet;
+use crate::protocol::biss::{Eds, EdsBank, EdsError};
 use crate::ui::Skin;
-use crate::ui::controls::{card, paragraph};
+use crate::ui::controls::{card, paragraph, two_columns};
 use crate::ui::icons;
 
 pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    let Some(sheet) = encoder.identity().and_then(|identity| identity.data_sheet.as_ref()) else { return };
-    for (title, own) in [("sheet_card.common", &sheet.common), ("sheet_card.encoder", &sheet.encoder)] {
-        card(ui, skin, title, |ui| sheet_ui(ui, skin, own));
-        ui.add_space(skin.space.groups);
-    }
+    let Some([common, encoder]) = encoder.data_sheet() else { return };
+    two_columns(
+        ui,
+        skin,
+        (),
+        |ui, ()| card(ui, skin, "sheet_card.common", |ui| sheet_ui(ui, skin, EdsBank::Common, &common)),
+        |ui, ()| card(ui, skin, "sheet_card.encoder", |ui| sheet_ui(ui, skin, EdsBank::Encoder, &encoder)),
+    );
 }
 
-fn sheet_ui(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
-    let eds = match &sheet.eds {
+fn sheet_ui(ui: &mut Ui, skin: &Skin, bank: EdsBank, sheet: &Result<Eds, EdsError>) {
+    let eds = match sheet {
         Ok(eds) => eds,
         Err(why) => {
             paragraph(ui, RichText::new(skin.words(&words::sheet(why))).color(skin.palette.bad));
             return;
         }
     };
+    ui.spacing_mut().item_spacing.y = skin.space.inside;
     for (field, value) in eds.values() {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            let at = ui.label(skin.mono(format!("{:02X}", field.offset)).color(skin.palette.muted));
+            let at = ui.label(skin.mono(format!("0x{:02X}", field.offset)).color(skin.palette.muted));
             ui.add_space((OFFSET - at.rect.width()).max(0.0));
-            let room = (ui.available_width() * 0.56).floor();
+            let room = (ui.available_width() * 0.58).floor();
             ui.allocate_ui_with_layout(egui::vec2(room, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_min_width(room);
-                paragraph(ui, skin.label(field.name));
+                paragraph(ui, skin.label(skin.words(&words::eds_name(bank, field))));
             });
-            paragraph(ui, skin.mono(skin.words(&words::eds(value))));
+            paragraph(ui, skin.words(&words::eds(value)));
         });
     }
     ui.horizontal(|ui| {
@@ -44,4 +48,4 @@ fn sheet_ui(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
 }
 
 /// Width of the column of offsets.
-const OFFSET: f32 = 28.0;
+const OFFSET: f32 = 40.0;

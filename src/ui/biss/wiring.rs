@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::ui::Skin;
-use crate::ui::controls::{card, paragraph};
+use crate::ui::controls::{card, paragraph, split};
 
 /// Width of the column of pins.
 const PIN: f32 = 84.0;
@@ -20,19 +20,27 @@ const PINS: [(&str, &str); 8] = [
     ("8 VCC", "biss_wiring.supply"),
 ];
 
+/// Width of the card from which the pins stand in two columns.
+const BESIDE: f32 = 560.0;
+
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        for (pin, words) in PINS {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().interact_size.y = 18.0;
-                let name = ui.label(skin.mono(pin));
-                ui.add_space((PIN - name.rect.width()).max(0.0));
-                paragraph(ui, skin.label(skin.say(words)));
-            });
-        }
+        let (left, right) = PINS.split_at(PINS.len() / 2);
+        split(ui, skin, (0.5, BESIDE), (), |ui, ()| pins(ui, skin, left), |ui, ()| pins(ui, skin, right));
         ui.add_space(skin.space.inside);
         for note in ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"] {
             paragraph(ui, skin.caption(skin.say(note)));
         }
     });
+}
+
+fn pins(ui: &mut Ui, skin: &Skin, pins: &[(&str, &'static str)]) {
+    for (pin, words) in pins {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().interact_size.y = 18.0;
+            let name = ui.label(skin.mono(*pin));
+            ui.add_space((PIN - name.rect.width()).max(0.0));
+            paragraph(ui, skin.label(skin.say(words)));
+        });
+    }
 }

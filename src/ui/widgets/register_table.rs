@@ -2,7 +2,7 @@
 //! Thousands of them scroll as easily as ten: a register is asked for only while it is in sight.
 //!
 //! * **Size**: as wide as there is room, as high as given; columns that matter least fall away, and stand under the pointer.
-//!   Below it one line about what is selected, or why something was not taken.
+//!   Why something was not taken is told by what the table remembers ([`RegisterView::problem`]), for whoever has room.
 //! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
 //!   Enter, F2 or a character edits the value, Enter takes it, Escape gives it up; Backspace takes the device's value
 //!   back; Ctrl+C copies.
@@ -26,7 +26,7 @@ use egui::{Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInf
 
 use super::focus_ring;
 use crate::app::Text;
-use crate::ui::{Skin, controls, icons};
+use crate::ui::{Skin, controls};
 
 use columns::Columns;
 use lines::{LineKind, Lines};
@@ -51,6 +51,8 @@ pub struct RegisterTable<'a> {
     pub groups: &'a [RegisterGroup],
     /// A register of a group; asked for what is in sight or unfolded.
     pub row: &'a dyn Fn(Place) -> RegisterRow,
+    /// Bytes of the widest register: all of them have to be seen.
+    pub widest: usize,
 }
 
 /// A bank.
@@ -81,6 +83,8 @@ pub struct RegisterRow {
     pub access: String,
     /// As delivered, in hexadecimal digits; empty where nobody knows.
     pub default: String,
+    /// It has another value than the default.
+    pub differs: bool,
     /// It is not as it was at the reading before.
     pub changed: bool,
     /// Its value was edited and is not written.
@@ -89,8 +93,6 @@ pub struct RegisterRow {
     pub cost: Option<String>,
     /// Why its value cannot be edited; `None` where it can.
     pub read_only: Option<String>,
-    /// What there is to know about it, under the pointer.
-    pub tooltip: String,
     /// Its bit fields.
     pub fields: Vec<RegisterBits>,
 }
@@ -127,12 +129,21 @@ pub struct RegisterOutput {
 }
 
 /// Height of a line.
-const LINE: f32 = 18.0;
+const LINE: f32 = 16.0;
+/// Between the edge of the table and its lines.
+const MARGIN: i8 = 4;
+
+/// Width of so many bytes in hexadecimal digits, with the distance to the next column.
+fn hex_width(skin: &Skin, bytes: usize) -> f32 {
+    // Every character of the font for bytes is 0.6 of its size wide.
+    (bytes * 3) as f32 * 0.6 * skin.sizes.body + skin.space.between
+}
 
 impl RegisterRow {
     /// What a screen reader says of it.
     fn words(&self, skin: &Skin) -> String {
         let mut parts = vec![self.hex.clone(), self.decimal.clone(), self.meaning.clone()];
+        parts.extend(self.differs.then(|| skin.say("widget.register_differs")));
         parts.extend(self.changed.then(|| skin.say("widget.register_changed")));
         parts.extend(self.edited.then(|| skin.say("widget.register_edited")));
         parts.retain(|part| !part.is_empty());
@@ -164,14 +175,13 @@ pub fn register_table(
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let status = LINE + skin.space.inside;
-        let frame = skin.sunken().show(ui, |ui| {
+        let frame = skin.sunken().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill(ui);
             // The lines lie beside their scroll bar.
-            let columns = Columns::new(ui.available_width() - ui.spacing().scroll.allocated_width());
+            let width = ui.available_width() - ui.spacing().scroll.allocated_width();
+            let columns = Columns::new(width, hex_width(skin, table.widest));
             paint::header(ui, skin, &columns);
-            let margins = 2.0 * f32::from(skin.sunken().inner_margin.top);
-            let room = (height - status - margins - paint::HEADER).max(LINE * 3.0);
+            let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, skin, id, &columns, table, &lines, room, view, take, &mut output)
         });
         let response = frame.inner;
@@ -180,8 +190,6 @@ pub fn register_table(
             focus_ring(ui.painter(), skin, frame.response.rect, skin.radius);
         }
         tell(&response, skin, table, view);
-        ui.add_space(skin.space.inside);
-        below(ui, skin, table, view);
     });
     output
 }
@@ -327,21 +335,4 @@ fn tell(response: &Response, skin: &Skin, table: &RegisterTable<'_>, view: &Regi
         None => String::new(),
     };
     response.widget_info(|| told(Role::Table, table.label, &value));
-}
-
-/// Why something was not taken, or what is selected is about.
-fn below(ui: &mut Ui, skin: &Skin, table: &RegisterTable<'_>, view: &RegisterView) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(LINE);
-        let problem = view.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| skin.words(problem));
-        if let Some(problem) = problem.or_else(|| view.refused.clone()) {
-            let words = format!("{} {problem}", icons::WARNING_CIRCLE);
-            ui.add(egui::Label::new(skin.caption(words).color(skin.palette.bad)).truncate());
-            return;
-        }
-        let Some(place) = view.selected() else { return };
-        let row = (table.row)(place);
-        let first = row.tooltip.lines().next().unwrap_or_default();
-        ui.add(egui::Label::new(skin.caption(first)).truncate());
-    });
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::encoder;
 use super::guide::{blocker, mode, step, task};
 use crate::app::biss::words::filter;
-use crate::app::explain::plain;
+use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
@@ -34,9 +34,10 @@ pub fn change(change: &Change) -> Text {
 /// An operation in words; each run of registers by itself, named as everywhere.
 pub fn op(op: &Op, layout: &Layout) -> OpWords {
     match op {
-        Op::StoreData { area, registers } => {
-            OpWords { item: Text::new("biss_op.data").with("area", &area.name), changes: runs(registers) }
-        }
+        Op::StoreData { area, registers } => OpWords {
+            item: Text::new("biss_op.data").with_text("area", explain::name(&area.name)),
+            changes: runs(registers),
+        },
         Op::StorePreset { from, to } => {
             OpWords::one(Text::new("biss_op.preset"), preset(*from, layout), preset(*to, layout))
         }

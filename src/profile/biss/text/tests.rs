@@ -166,7 +166,7 @@ fn a_wrong_profile_is_told_where() {
 
 #[test]
 fn banks_that_hold_nothing_are_not_written() {
-    let area = Area { name: "OEM data".to_owned(), first: 0x24, last: 0x27, access: Access::Rw, open: Some(2) };
+    let area = Area { name: "OEM data".to_owned().into(), first: 0x24, last: 0x27, access: Access::Rw, open: Some(2) };
     let some = |number| {
         let mut bank = Bank::filled(number, 0);
         bank.bytes[5] = 9;

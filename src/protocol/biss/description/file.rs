@@ -12,17 +12,21 @@ use super::super::crc::Crc;
 use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
+use super::german::German;
+use super::name::Name;
 use super::register::{Access, Area, ByteOrder, Decoding, Register, Role};
 use super::{Description, Identity, Lock, Procedure};
 
 pub(super) fn parse(text: &str) -> Result<Description, SpannedError> {
-    let file: File = ron::from_str(text)?;
+    let mut file: File = ron::from_str(text)?;
+    std::mem::take(&mut file.german).translate(file.names(), text)?;
     Ok(Description {
         name: file.name,
         identity: file.identity,
         layout: file.frame,
         lock: file.lock,
         registers: file.registers.0,
+        banks: file.banks.0.into_iter().map(|row| (row.bank, row.name)).collect(),
         areas: file.areas.0,
         procedures: file.procedures.0,
     })
@@ -41,9 +45,29 @@ struct File {
     #[serde(default)]
     registers: Rows<Register>,
     #[serde(default)]
+    banks: Rows<BankRow>,
+    #[serde(default)]
     areas: Rows<Area>,
     #[serde(default)]
     procedures: Rows<Procedure>,
+    #[serde(default)]
+    german: German,
+}
+
+impl File {
+    /// Everything that has a name of its own.
+    fn names(&mut self) -> impl Iterator<Item = &mut Name> {
+        let registers = self.registers.0.iter_mut().flat_map(|register| {
+            let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {
+                Decoding::Bits(bits) => Box::new(bits.iter_mut().map(|(_, name)| name)),
+                Decoding::Choice(choices) => Box::new(choices.iter_mut().map(|(_, name)| name)),
+                _ => Box::new(std::iter::empty()),
+            };
+            std::iter::once(&mut register.name).chain(values)
+        });
+        let banks = self.banks.0.iter_mut().map(|bank| &mut bank.name);
+        registers.chain(banks).chain(self.areas.0.iter_mut().map(|area| &mut area.name))
+    }
 }
 
 /// `direct(0x66)` or `bank(0x24, 0x10)`.
@@ -96,7 +120,7 @@ struct RegisterRow {
     at: Place,
     #[serde(default = "one")]
     width: u8,
-    name: String,
+    name: Name,
     #[serde(default)]
     role: Option<Role>,
     access: Access,
@@ -116,8 +140,15 @@ struct RegisterRow {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct BankRow {
+    bank: u8,
+    name: Name,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct AreaRow {
-    name: String,
+    name: Name,
     banks: (u8, u8),
     access: Access,
     #[serde(default)]
@@ -275,6 +306,12 @@ impl Row for Register {
         let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(|place| format!("register {place}"));
         let role = self.role.map(|role| format!("role {role:?}"));
         bytes.chain(role).collect()
+    }
+}
+
+impl Row for BankRow {
+    fn claims(&self) -> Vec<String> {
+        vec![format!("bank 0x{:02X}", self.bank)]
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::super::address::RegisterAddress;
 use super::super::status::Firmware;
+use super::name::Name;
 
 /// One row of a description.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +12,7 @@ pub struct Register {
     /// Bytes, 1…8.
     pub width: u8,
     /// The manual's name.
-    pub name: String,
+    pub name: Name,
     /// What it is for, where the program has to know that.
     pub role: Option<Role>,
     /// What may be done.
@@ -102,9 +103,9 @@ pub enum Decoding {
         offset: f64,
     },
     /// Bits with their names, the lowest bit 0.
-    Bits(Vec<(u8, String)>),
+    Bits(Vec<(u8, Name)>),
     /// Values with their names.
-    Choice(Vec<(u64, String)>),
+    Choice(Vec<(u64, Name)>),
     /// Bytes in their order, with a dot between them: 1.6.0.
     Version,
     /// Characters in the order of their addresses.
@@ -121,9 +122,9 @@ pub enum Decoded<'a> {
     /// A quantity in the register's unit.
     Scaled(f64),
     /// The bits that are set; one without a name is unknown.
-    Bits(Vec<(u8, Option<&'a str>)>),
+    Bits(Vec<(u8, Option<&'a Name>)>),
     /// The value's name; `None` for one that has none.
-    Choice(u64, Option<&'a str>),
+    Choice(u64, Option<&'a Name>),
     /// A text or a version.
     Text(String),
 }
@@ -132,7 +133,7 @@ pub enum Decoded<'a> {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// The manual's name.
-    pub name: String,
+    pub name: Name,
     /// First bank.
     pub first: u8,
     /// Last bank.
@@ -196,12 +197,12 @@ impl Register {
             Decoding::Hex => Decoded::Hex(number),
             Decoding::Scaled { factor, offset } => Decoded::Scaled(number as f64 * factor + offset),
             Decoding::Bits(names) => {
-                let name = |bit: u8| names.iter().find(|(own, _)| *own == bit).map(|(_, name)| name.as_str());
+                let name = |bit: u8| names.iter().find(|(own, _)| *own == bit).map(|(_, name)| name);
                 let set = (0..self.width * 8).filter(|bit| number >> bit & 1 == 1);
                 Decoded::Bits(set.map(|bit| (bit, name(bit))).collect())
             }
             Decoding::Choice(names) => {
-                let name = names.iter().find(|(own, _)| *own == number).map(|(_, name)| name.as_str());
+                let name = names.iter().find(|(own, _)| *own == number).map(|(_, name)| name);
                 Decoded::Choice(number, name)
             }
             Decoding::Version => Decoded::Text(bytes.iter().map(u8::to_string).collect::<Vec<_>>().join(".")),

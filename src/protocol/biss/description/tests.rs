@@ -65,13 +65,13 @@ fn the_kit_encoders_registers_are_the_references() {
         assert_eq!((register.width, register.access), (width, access), "{place}");
         assert_eq!((register.default.as_slice(), register.since), (default, since), "{place}");
     }
-    assert_eq!(kit.at(at("0x47")).map(|register| register.name.as_str()), Some("serial number"));
+    assert_eq!(kit.at(at("0x47")).map(|register| register.name.english()), Some("serial number"));
     assert_eq!(kit.at(at("0x67")), None);
     let areas: Vec<_> = kit.areas().iter().map(|area| (area.first, area.last, area.size(), area.open)).collect();
     assert_eq!(areas, [(0x04, 0x23, 2048, Some(0x01)), (0x24, 0x43, 2048, Some(0x02))]);
     assert_eq!(kit.access(at("0x24:0x10")), Some(Rw));
     assert_eq!(kit.access(at("0x44:0x00")), None);
-    assert_eq!(kit.area_at(at("0x43:0x3F")).map(|area| area.name.as_str()), Some("OEM data"));
+    assert_eq!(kit.area_at(at("0x43:0x3F")).map(|area| area.name.english()), Some("OEM data"));
     assert_eq!(kit.area_at(at("0x66")), None);
     assert_eq!(kit.layout(), Some(&Layout::default()));
     let lock = kit.lock().unwrap();
@@ -133,7 +133,7 @@ fn the_file_and_the_tables_say_the_same() {
     for bank in [EdsBank::Common, EdsBank::Encoder] {
         for field in bank.fields() {
             let register = kit.at(RegisterAddress::banked(bank.number(), field.offset).unwrap()).unwrap();
-            assert_eq!((register.name.as_str(), register.width), (field.name, field.width));
+            assert_eq!((register.name.english(), register.width), (field.name, field.width));
             let default = register.number(&register.default).and_then(|number| u32::try_from(number).ok());
             assert_eq!(default, field.default, "{}", field.name);
         }
@@ -143,16 +143,19 @@ fn the_file_and_the_tables_say_the_same() {
 #[test]
 fn registers_are_decoded() {
     let kit = kit();
-    let decode = |place: &str, bytes: &[u8]| format!("{:?}", kit.at(at(place)).unwrap().decode(bytes));
+    let decode = |place: &str, bytes: &[u8]| match kit.at(at(place)).unwrap().decode(bytes) {
+        Some(Decoded::Bits(set)) => {
+            let words = |(bit, name): (u8, Option<&Name>)| format!("{bit} {}", name.map_or("?", Name::english));
+            set.into_iter().map(words).collect::<Vec<_>>().join(", ")
+        }
+        Some(Decoded::Choice(value, name)) => format!("{value} {}", name.map_or("?", Name::english)),
+        other => format!("{other:?}"),
+    };
     let cases: [(&str, &[u8], &str); 9] = [
         ("0x66", &[0x4B], "Some(Scaled(25.0))"),
-        (
-            "0x68",
-            &[0x32],
-            "Some(Bits([(1, Some(\"multiturn synchronisation error\")), (4, Some(\"magnetic field too low\")), (5, None)]))",
-        ),
-        ("0x6A", &[0x07], "Some(Choice(7, Some(\"preset\")))"),
-        ("0x6A", &[0x03], "Some(Choice(3, None))"),
+        ("0x68", &[0x32], "1 multiturn synchronisation error, 4 magnetic field too low, 5 ?"),
+        ("0x6A", &[0x07], "7 preset"),
+        ("0x6A", &[0x03], "3 ?"),
         ("0x74", &[1, 6, 0], "Some(Text(\"1.6.0\"))"),
         ("0x7E", b"Fr", "Some(Text(\"Fr\"))"),
         ("0x01:0x02", &[0x00, 0x80, 0x01], "Some(Number(98304))"),
@@ -168,13 +171,40 @@ fn registers_are_decoded() {
     let average = kit.at(at("0x00:0x0A")).unwrap();
     let Some(Decoded::Scaled(volts)) = average.decode(&[PulseVoltage::LIMIT.byte()]) else { panic!() };
     assert!((volts - 5.3).abs() < 1e-9 && average.unit == "V");
+    let set = |role: Role, byte: u8| match kit.with_role(role).unwrap().decode(&[byte]) {
+        Some(Decoded::Bits(set)) => {
+            set.into_iter().map(|(bit, name)| (bit, name.map(Name::english))).collect::<Vec<_>>()
+        }
+        other => panic!("{other:?}"),
+    };
     let errors: Vec<_> = ErrorRegister::new(0x1F).set().map(|(bit, name)| (bit, Some(name))).collect();
-    assert_eq!(kit.with_role(Role::Errors).unwrap().decode(&[0x1F]), Some(Decoded::Bits(errors)));
+    assert_eq!(set(Role::Errors, 0x1F), errors);
     let warnings: Vec<_> =
         WarningRegister::new(0x81).set().map(|(bit, name)| (bit, (bit == 0).then_some(name))).collect();
-    assert_eq!(kit.with_role(Role::Warnings).unwrap().decode(&[0x81]), Some(Decoded::Bits(warnings)));
+    assert_eq!(set(Role::Warnings, 0x81), warnings);
     let warm = f64::from(Temperature::new(0xB4).celsius());
     assert_eq!(kit.with_role(Role::Temperature).unwrap().decode(&[0xB4]), Some(Decoded::Scaled(warm)));
+}
+
+#[test]
+fn names_are_there_in_german_and_fall_back_to_english() {
+    for (file, text) in Descriptions::BUILT_IN {
+        let description = Description::parse(file, text).unwrap();
+        let all =
+            description.registers().iter().map(|own| &own.name).chain(description.areas().iter().map(|own| &own.name));
+        let same: Vec<_> = all.filter(|name| name.german() == name.english()).collect();
+        assert!(same.is_empty(), "{file}: {same:?}");
+    }
+    let kit = kit();
+    let german = |place: &str| kit.at(at(place)).unwrap().name.german();
+    assert_eq!((german("0x44"), german("0x02:0x3F")), ("Seriennummer", "Prüfsumme"));
+    let banks: Vec<_> = [0x00, 0x01, 0x02, 0x24].map(|bank| kit.bank_name(bank).unwrap().german()).into();
+    assert_eq!(banks, ["Sonderfunktionen", "Preset", "EDS, allgemein", "OEM-Daten"]);
+    let own = "(name: \"x\", areas: [(name: \"data\", banks: (4, 5), access: rw), (name: \"more\", banks: (6, 7), access: r)], \
+               german: { \"data\": \"Daten\" })";
+    let own = Description::parse("own.ron", own).unwrap();
+    let names: Vec<_> = own.areas().iter().map(|area| (area.name.english(), area.name.german())).collect();
+    assert_eq!(names, [("data", "Daten"), ("more", "more")]);
 }
 
 #[test]
@@ -225,6 +255,9 @@ fn a_broken_description_says_where() {
             "bank 0x05 comes after bank 0x04"),
         ("(\n  name: \"x\",\n  areas: [\n    (name: \"a\", banks: (4, 5), access: rw),\n    (name: \"b\", banks: (5, 6), access: rw),\n  ],\n)"
             .to_owned(), 5, "bank 0x05 stands here for the second time"),
+        ("(\n  name: \"x\",\n  areas: [(name: \"a\", banks: (4, 5), access: rw)],\n  german: {\n    \"b\": \"c\",\n  },\n)".to_owned(),
+            5, "nothing is called \"b\" here"),
+        ("(\n  name: \"x\",\n  german: {\n    \"a\": \" \",\n  },\n)".to_owned(), 4, "the German name is empty"),
     ];
     for (text, line, what) in cases {
         let error = Description::parse("mine.ron", &text).unwrap_err();

@@ -62,7 +62,7 @@ pub(super) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
         let more = watched.iter().filter(|own| usual.iter().all(|other| other.address != own.address)).cloned();
         for register in usual.iter().cloned().chain(more) {
             let mut on = watched.iter().any(|own| own.address == register.address);
-            let name = if register.name.is_empty() { register.address.to_string() } else { register.name.clone() };
+            let name = if register.name.is_empty() { register.address.to_string() } else { skin.name(&register.name) };
             if ui.checkbox(&mut on, name).changed() {
                 actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(register), on)));
             }

@@ -15,19 +15,19 @@ pub(super) enum Column {
     Default,
 }
 
-/// Columns with their least widths, in their order.
+/// Columns with their least widths, in their order; that of the bytes follows from them.
 const WIDTHS: [(Column, f32); 8] = [
-    (Column::Marks, 48.0),
-    (Column::Address, 84.0),
-    (Column::Name, 116.0),
-    (Column::Hex, 100.0),
-    (Column::Decimal, 92.0),
-    (Column::Meaning, 112.0),
-    (Column::Access, 56.0),
-    (Column::Default, 76.0),
+    (Column::Marks, 38.0),
+    (Column::Address, 74.0),
+    (Column::Name, 118.0),
+    (Column::Hex, 60.0),
+    (Column::Decimal, 96.0),
+    (Column::Meaning, 136.0),
+    (Column::Access, 48.0),
+    (Column::Default, 84.0),
 ];
 /// What falls away, the first first. It is under the pointer then.
-const LEAST: [Column; 3] = [Column::Default, Column::Decimal, Column::Access];
+const LEAST: [Column; 3] = [Column::Decimal, Column::Default, Column::Access];
 /// The share of what is left that the name gets; the meaning gets the rest.
 const NAME: f32 = 0.45;
 
@@ -36,8 +36,14 @@ const NAME: f32 = 0.45;
 pub(super) struct Columns(Vec<(Column, Rangef)>);
 
 impl Columns {
-    pub(super) fn new(width: f32) -> Self {
+    /// The columns in so much room, with so much for the bytes.
+    pub(super) fn new(width: f32, hex: f32) -> Self {
         let mut shown = WIDTHS.to_vec();
+        for (column, own) in &mut shown {
+            if *column == Column::Hex {
+                *own = own.max(hex);
+            }
+        }
         for least in LEAST {
             if total(&shown) > width {
                 shown.retain(|(column, _)| *column != least);
@@ -81,25 +87,26 @@ mod tests {
     use super::*;
 
     fn shown(width: f32) -> Vec<Column> {
-        Columns::new(width).iter().map(|(column, _)| column).collect()
+        Columns::new(width, 100.0).iter().map(|(column, _)| column).collect()
     }
 
     #[test]
     fn what_matters_least_falls_away_first() {
         use Column::*;
-        // 48 + 60 + 116 + 100 + 92 + 112 + 56 + 76 = 660.
-        assert_eq!(shown(660.0).len(), 8);
-        assert_eq!(shown(659.0), [Marks, Address, Name, Hex, Decimal, Meaning, Access]);
-        assert_eq!(shown(583.0), [Marks, Address, Name, Hex, Meaning, Access]);
-        assert_eq!(shown(491.0), [Marks, Address, Name, Hex, Meaning]);
+        // 38 + 74 + 118 + 100 + 96 + 136 + 48 + 84 = 694.
+        assert_eq!(shown(694.0).len(), 8);
+        assert_eq!(shown(693.0), [Marks, Address, Name, Hex, Meaning, Access, Default]);
+        assert_eq!(shown(597.0), [Marks, Address, Name, Hex, Meaning, Access]);
+        assert_eq!(shown(513.0), [Marks, Address, Name, Hex, Meaning]);
         assert_eq!(shown(-1.0), [Marks, Address, Name, Hex, Meaning]);
     }
 
     #[test]
     fn name_and_meaning_take_what_is_left() {
-        let columns = Columns::new(760.0);
-        assert_eq!(columns.range(Column::Name), Some(Rangef::new(108.0, 269.0)));
-        assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(461.0, 628.0)));
-        assert_eq!((columns.width(), Columns::new(100.0).width()), (760.0, 436.0));
+        let columns = Columns::new(794.0, 100.0);
+        assert_eq!(columns.range(Column::Name), Some(Rangef::new(112.0, 275.0)));
+        assert_eq!(columns.range(Column::Hex), Some(Rangef::new(275.0, 375.0)));
+        assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(471.0, 662.0)));
+        assert_eq!((columns.width(), Columns::new(100.0, 10.0).width()), (794.0, 426.0));
     }
 }

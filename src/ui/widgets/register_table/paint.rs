@@ -9,11 +9,11 @@ use super::{RegisterBits, RegisterGroup, RegisterRow};
 use crate::ui::{Skin, icons};
 
 /// Height of the line with the names of the columns.
-pub(super) const HEADER: f32 = 22.0;
+pub(super) const HEADER: f32 = 20.0;
 /// Where the caret of a register with bit fields ends.
 pub(super) const CARET: f32 = 16.0;
 /// Distance of the marks.
-const MARK: f32 = 15.0;
+const MARK: f32 = 13.0;
 
 /// How a line stands.
 #[derive(Clone, Copy)]
@@ -101,8 +101,13 @@ pub(super) fn row(
             Column::Hex if row.hex.is_empty() => (skin.mono("–"), palette.muted),
             Column::Hex => (skin.mono(&row.hex), value),
             Column::Decimal => (skin.mono(&row.decimal), value),
+            // The number stands for what it means where its own column has fallen away.
+            Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
+                (skin.mono(&row.decimal), value)
+            }
             Column::Meaning => (egui::RichText::new(&row.meaning), value),
             Column::Access => (skin.mono(&row.access), palette.muted),
+            Column::Default if row.differs => (skin.mono(format!("≠ {}", row.default)), palette.text),
             Column::Default => (skin.mono(&row.default), palette.muted),
         };
         let right = column == Column::Decimal;
@@ -180,8 +185,8 @@ fn inscribe(
 pub(super) fn tip(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &RegisterRow) {
     ui.spacing_mut().item_spacing.y = skin.space.inside;
     ui.label(egui::RichText::new(row.label()).color(skin.palette.text));
-    if !row.tooltip.is_empty() {
-        ui.label(skin.caption(&row.tooltip));
+    if !row.meaning.is_empty() {
+        ui.label(egui::RichText::new(&row.meaning).color(skin.palette.muted));
     }
     let values = [(Column::Decimal, &row.decimal), (Column::Access, &row.access), (Column::Default, &row.default)];
     for (column, value) in values {
@@ -200,6 +205,9 @@ pub(super) fn tip(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &RegisterRow
         note(ui, icons::PENCIL_SIMPLE, &skin.say("widget.register_edited"), palette.staged.into());
     } else if row.changed {
         note(ui, icons::INFO, &skin.say("widget.register_changed"), palette.accent.into());
+    }
+    if row.differs {
+        note(ui, icons::INFO, &skin.say("widget.register_differs"), palette.text.into());
     }
     if let Some(cost) = &row.cost {
         note(ui, icons::LIGHTNING, cost, palette.warn.into());

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::Place;
 use crate::app::Text;
+use crate::ui::Skin;
 
 /// What a table remembers between two frames.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +50,20 @@ impl RegisterView {
             Some(Selected::Row(place)) => Some(place),
             Some(Selected::Group(_)) | None => None,
         }
+    }
+
+    /// The group that is selected, or whose register is.
+    pub fn group(&self) -> Option<usize> {
+        match self.selected? {
+            Selected::Row(place) => Some(place.group),
+            Selected::Group(group) => Some(group),
+        }
+    }
+
+    /// Why what was typed, or should be, cannot be taken.
+    pub fn problem(&self, skin: &Skin) -> Option<String> {
+        let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| skin.words(problem));
+        typed.or_else(|| self.refused.clone())
     }
 
     /// Selects a register, unfolds its group and brings it in sight.

@@ -1,0 +1,87 @@
+//! The German names of a description: a list beside its English ones, so that a name that stands in many rows is
+//! translated once. An entry for something that the description does not name is a mistake, told where it stands.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use ron::error::{Position, Span, SpannedError};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::name::Name;
+
+/// English names with their German ones.
+#[derive(Default)]
+pub(super) struct German(BTreeMap<String, String>);
+
+impl German {
+    /// Gives the names their German; `text` is the file, in which a needless entry is looked for.
+    pub(super) fn translate<'a>(
+        mut self,
+        names: impl Iterator<Item = &'a mut Name>,
+        text: &str,
+    ) -> Result<(), SpannedError> {
+        let mut used = BTreeMap::new();
+        for name in names {
+            if let Some((english, german)) = self.0.remove_entry(name.english()) {
+                used.insert(english, german);
+            }
+            if let Some(german) = used.get(name.english()) {
+                name.translate(german.clone());
+            }
+        }
+        match self.0.into_keys().next() {
+            None => Ok(()),
+            Some(english) => {
+                let start = place_of(&english, text);
+                let code = ron::Error::Message(format!("german: nothing is called \"{english}\" here"));
+                Err(SpannedError { code, span: Span { start, end: start } })
+            }
+        }
+    }
+}
+
+/// Where an entry stands, counted from 1; the beginning of the file where it is written in another way.
+fn place_of(english: &str, text: &str) -> Position {
+    let key = format!("\"{english}\"");
+    let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(is_behind_key));
+    let found = text.lines().enumerate().find_map(|(line, words)| Some((line + 1, words, is_entry(words)?)));
+    found.map_or(Position { line: 1, col: 1 }, |(line, words, at)| Position {
+        line,
+        col: words.get(..at).map_or(0, |before| before.chars().count()) + 1,
+    })
+}
+
+fn is_behind_key(rest: &str) -> bool {
+    rest.trim_start().starts_with(':')
+}
+
+impl<'de> Deserialize<'de> for German {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = German;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("English names with their German ones")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<German, A::Error> {
+        let mut entries = BTreeMap::new();
+        while let Some((english, german)) = map.next_entry::<String, String>()? {
+            if german.trim().is_empty() {
+                return Err(A::Error::custom(format!("\"{english}\": the German name is empty")));
+            }
+            if entries.contains_key(&english) {
+                return Err(A::Error::custom(format!("\"{english}\" stands here for the second time")));
+            }
+            entries.insert(english, german);
+        }
+        Ok(German(entries))
+    }
+}

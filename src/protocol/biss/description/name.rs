@@ -1,0 +1,49 @@
+//! What something is called: in English, and in German where the description says it.
+
+use std::fmt;
+
+/// A name. It is shown in English unless a language is asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(from = "String")]
+pub struct Name {
+    english: String,
+    german: Option<String>,
+}
+
+impl Name {
+    /// A name in English; empty for what has none.
+    pub fn new(english: impl Into<String>) -> Self {
+        Name { english: english.into(), german: None }
+    }
+
+    /// In English.
+    pub fn english(&self) -> &str {
+        &self.english
+    }
+
+    /// In German; in English where the description has no German name for it.
+    pub fn german(&self) -> &str {
+        self.german.as_deref().unwrap_or(&self.english)
+    }
+
+    /// It has none.
+    pub fn is_empty(&self) -> bool {
+        self.english.is_empty()
+    }
+
+    pub(super) fn translate(&mut self, german: String) {
+        self.german = Some(german);
+    }
+}
+
+impl From<String> for Name {
+    fn from(english: String) -> Self {
+        Name::new(english)
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.english)
+    }
+}
