@@ -1,41 +1,15 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::biss::{Action as Biss, Encoder, Mark};
+use encoder_studio::app::biss::{Action as Biss, Mark};
 use encoder_studio::app::connect::{Action as Connect, BissForm, BissWay};
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity, Studio, Tab};
-use encoder_studio::protocol::biss::{RegisterAddress, Role};
+use encoder_studio::app::{Action, Severity, Tab};
+use encoder_studio::protocol::biss::Role;
 
+use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
 use crate::support::Desk;
-
-fn at(text: &str) -> RegisterAddress {
-    text.parse().unwrap()
-}
-
-fn is_read(studio: &Studio) -> bool {
-    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
-}
-
-/// The BiSS tab with this link, read.
-fn open(link: &str) -> Desk {
-    let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Biss));
-    desk.studio.begin(Some(link.parse().unwrap()), None);
-    desk.until("the encoder is read", is_read);
-    desk.settle();
-    desk
-}
-
-fn encoder(desk: &Desk) -> &Encoder {
-    desk.studio.biss().expect("a BiSS encoder is shown")
-}
-
-fn ask(desk: &mut Desk, action: Biss) {
-    let id = encoder(desk).session.id;
-    desk.act(Action::Biss(id, action));
-}
 
 #[test]
 fn the_virtual_encoder_is_read_over_either_way() {

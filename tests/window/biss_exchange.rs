@@ -1,37 +1,18 @@
 //! A BiSS encoder that is another one all at once, and a wire that two want.
 
-use encoder_studio::app::biss::{Action as Biss, Encoder};
+use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::signals::{Action as Signals, SourceAction};
-use encoder_studio::app::{Action, Severity, Studio, Tab};
+use encoder_studio::app::Severity;
 
+use crate::biss_support::{ask, connect, encoder, is_read};
 use crate::served::Served;
 use crate::support::Desk;
-
-fn is_ready(studio: &Studio) -> bool {
-    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
-}
-
-fn connect(desk: &mut Desk, served: &Served) {
-    desk.act(Action::ShowTab(Tab::Biss));
-    desk.studio.begin(Some(served.link().parse().unwrap()), None);
-    desk.until("the encoder is read", is_ready);
-    desk.settle();
-}
-
-fn encoder(desk: &Desk) -> &Encoder {
-    desk.studio.biss().expect("a BiSS encoder is shown")
-}
-
-fn ask(desk: &mut Desk, action: Biss) {
-    let id = encoder(desk).session.id;
-    desk.act(Action::Biss(id, action));
-}
 
 fn edit(desk: &mut Desk) {
     let place = "0x24:0x10".parse().unwrap();
     ask(desk, Biss::ReadBank(Some(0x24)));
-    desk.until("the bank is read", |studio| is_ready(studio) && studio.biss().unwrap().memory.read(place).is_some());
+    desk.until("the bank is read", |studio| is_read(studio) && studio.biss().unwrap().memory.read(place).is_some());
     ask(desk, Biss::Put { start: place, bytes: vec![0x22] });
     assert!(encoder(desk).is_dirty());
 }
@@ -40,12 +21,12 @@ fn edit(desk: &mut Desk) {
 fn edits_of_one_encoder_are_never_planned_for_another() {
     let served = Served::new("serial=1");
     let mut desk = Desk::fresh("");
-    connect(&mut desk, &served);
+    connect(&mut desk, &served.link());
     edit(&mut desk);
     served.exchange("serial=2");
     ask(&mut desk, Biss::Review);
     desk.until("the other one is read", |studio| {
-        is_ready(studio) && studio.biss().unwrap().serial_number() == Some("2")
+        is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
     });
     assert!(encoder(&desk).review.is_none(), "no plan is left for a consent");
     assert!(!encoder(&desk).is_dirty());
@@ -54,7 +35,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     served.exchange("serial=1");
     ask(&mut desk, Biss::Read);
     desk.until("the first one is back", |studio| {
-        is_ready(studio) && studio.biss().unwrap().serial_number() == Some("1") && studio.biss().unwrap().is_dirty()
+        is_read(studio) && studio.biss().unwrap().serial_number() == Some("1") && studio.biss().unwrap().is_dirty()
     });
 }
 
@@ -62,7 +43,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
 fn a_wire_belongs_to_the_encoder_or_to_the_scope() {
     let served = Served::new("rpm=6");
     let mut desk = Desk::fresh("");
-    connect(&mut desk, &served);
+    connect(&mut desk, &served.link());
     desk.signals(Signals::Source(SourceAction::SetLink(served.link())));
     desk.signals(Signals::Source(SourceAction::StartAdapter));
     let why = |phase: &Phase| matches!(phase, Phase::Lost(why) if why.id() == "session.let_go_for_signals");
@@ -73,14 +54,14 @@ fn a_wire_belongs_to_the_encoder_or_to_the_scope() {
     let source = desk.studio.signals.source();
     assert!(!source.is_running());
     assert_eq!(source.adapter_problem().map(|text| text.id()), Some("adapter.let_go"));
-    desk.until("the encoder is read again", is_ready);
+    desk.until("the encoder is read again", is_read);
 }
 
 #[test]
 fn an_adapter_does_not_take_the_wire_from_a_write() {
     let served = Served::new("rpm=0");
     let mut desk = Desk::fresh("");
-    connect(&mut desk, &served);
+    connect(&mut desk, &served.link());
     ask(&mut desk, Biss::LeadBack);
     assert!(encoder(&desk).session.is_writing());
     desk.signals(Signals::Source(SourceAction::SetLink(served.link())));
@@ -88,5 +69,5 @@ fn an_adapter_does_not_take_the_wire_from_a_write() {
     let source = desk.studio.signals.source();
     assert_eq!(source.adapter_problem().map(|text| text.id()), Some("session.writes_there"));
     assert!(!source.is_running());
-    desk.until("the write ends", is_ready);
+    desk.until("the write ends", is_read);
 }

@@ -7,16 +7,13 @@ use encoder_studio::app::{Action, Severity, Studio, Tab};
 use encoder_studio::signal::history::Flags;
 use encoder_studio::ui::pages;
 
+use crate::biss_support::is_read;
 use crate::screen::Screen;
 use crate::support::{Desk, Outside};
 
 /// A frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting; the shaft turns five times a second.
 const LINK: &str = "sim:?bridge=on&clock=2000000&rpm=300";
 const FAST: Duration = Duration::from_micros(50);
-
-fn is_read(studio: &Studio) -> bool {
-    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
-}
 
 fn poll(studio: &Studio, interval: Option<Duration>) -> Action {
     Action::Biss(studio.biss().unwrap().session.id, Biss::Poll(interval))

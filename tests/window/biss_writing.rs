@@ -6,43 +6,18 @@ use encoder_studio::app::biss::{Action as Biss, Encoder, End, Reached, ReviewSta
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, explain};
 use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
 use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
-use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue, RegisterAddress};
+use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
 use encoder_studio::worker::biss::Change;
 
+use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
 use crate::support::{Desk, Outside};
-
-fn at(text: &str) -> RegisterAddress {
-    text.parse().unwrap()
-}
-
-fn is_ready(studio: &Studio) -> bool {
-    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
-}
-
-fn open(link: &str) -> Desk {
-    let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Biss));
-    desk.studio.begin(Some(link.parse().unwrap()), None);
-    desk.until("the encoder is read", is_ready);
-    desk.settle();
-    desk
-}
-
-fn encoder(desk: &Desk) -> &Encoder {
-    desk.studio.biss().expect("a BiSS encoder is shown")
-}
-
-fn ask(desk: &mut Desk, action: Biss) {
-    let id = encoder(desk).session.id;
-    desk.act(Action::Biss(id, action));
-}
 
 #[track_caller]
 fn until_planned(desk: &mut Desk) {
     let planned =
         |own: &Encoder| own.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Ready(_)));
-    desk.until("the plan is there", |studio| is_ready(studio) && studio.biss().is_some_and(planned));
+    desk.until("the plan is there", |studio| is_read(studio) && studio.biss().is_some_and(planned));
 }
 
 /// Consents to the plan that is shown.
@@ -74,7 +49,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         let mut desk = open(link);
         ask(&mut desk, Biss::ReadBank(Some(0x24)));
         desk.until("the bank is read", |studio| {
-            is_ready(studio) && studio.biss().unwrap().memory.read(at("0x24:0x3F")).is_some()
+            is_read(studio) && studio.biss().unwrap().memory.read(at("0x24:0x3F")).is_some()
         });
         for (place, byte) in [("0x24:0x00", 0x11), ("0x24:0x10", 0x22), ("0x24:0x3F", 0x33)] {
             ask(&mut desk, Biss::Put { start: at(place), bytes: vec![byte] });
@@ -85,7 +60,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         let [Op::StoreData { registers, .. }] = prepared.plan.ops.as_slice() else { panic!("{:?}", prepared.plan.ops) };
         assert_eq!((registers.len(), prepared.plan.write_cycles()), (3, 1), "{link}");
         write(&mut desk);
-        desk.until("it is written and read again", |studio| is_ready(studio) && !studio.biss().unwrap().is_dirty());
+        desk.until("it is written and read again", |studio| is_read(studio) && !studio.biss().unwrap().is_dirty());
         assert_eq!(encoder(&desk).memory.read(at("0x24:0x10")), Some(0x22), "{link}");
         let status = encoder(&desk).status.as_ref().unwrap();
         assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)), "{link}");
@@ -105,7 +80,7 @@ fn another_filter_is_selected_after_a_review() {
     write(&mut desk);
     desk.until("it is in force", |studio| {
         let status = studio.biss().and_then(|own| own.status.as_ref());
-        is_ready(studio) && status.is_some_and(|status| status.filter == Some(Filter::Dynamic))
+        is_read(studio) && status.is_some_and(|status| status.filter == Some(Filter::Dynamic))
     });
 }
 
@@ -136,10 +111,10 @@ fn a_calibration_is_led_step_by_step() {
     ask(&mut desk, Biss::Turn(500.0));
     until_asked(&mut desk, second, true);
     ask(&mut desk, Biss::Answer(second, Answer::Go));
-    desk.until("it is over", |studio| is_ready(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
+    desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     let End::Done(outcomes) = encoder(&desk).guide.as_ref().unwrap().end.clone().unwrap() else { panic!() };
     assert!(matches!(outcomes.as_slice(), [Outcome::Calibrated(_)]), "{outcomes:?}");
-    desk.until("it is read", is_ready);
+    desk.until("it is read", is_read);
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     ask(&mut desk, Biss::CloseGuide);
@@ -159,7 +134,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     std::thread::sleep(Duration::from_millis(200));
     desk.act(Action::Stop);
     desk.until("it is over", |studio| studio.biss().unwrap().guide.as_ref().is_some_and(|own| !own.is_running()));
-    desk.until("it is read", is_ready);
+    desk.until("it is read", is_read);
     let status = encoder(&desk).status.as_ref().unwrap();
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     let guide = encoder(&desk).guide.as_ref().unwrap();
@@ -183,12 +158,12 @@ fn the_live_position_says_that_it_waits_for_a_job() {
     studio.act(Action::ShowTab(Tab::Biss));
     studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
-    screen.until("the encoder is read", is_ready);
+    screen.until("the encoder is read", is_read);
     let id = screen.studio().biss().unwrap().session.id;
     screen.act(Action::Biss(id, Biss::Poll(Some(Duration::from_millis(50)))));
     screen.act(Action::Biss(id, Biss::Plan(Box::new(calibration()))));
     let plan = |studio: &Studio| Some(studio.biss()?.review.as_ref()?.prepared()?.plan.id());
-    screen.until("the plan is there", |studio| is_ready(studio) && plan(studio).is_some());
+    screen.until("the plan is there", |studio| is_read(studio) && plan(studio).is_some());
     let own = plan(screen.studio()).unwrap();
     let words = "paused while the job runs";
     assert!(!screen.shows(words));
@@ -198,7 +173,7 @@ fn the_live_position_says_that_it_waits_for_a_job() {
     screen.until("a second passes", |_| began.elapsed() > Duration::from_secs(1));
     assert!(screen.shows(words));
     screen.act(Action::Stop);
-    screen.until("it is over", is_ready);
+    screen.until("it is over", is_read);
     assert!(!screen.shows(words));
 }
 
@@ -221,11 +196,11 @@ fn the_position_is_preset_where_the_shaft_stands() {
     write(&mut desk);
     until_asked(&mut desk, Task::StandAtPlace, true);
     ask(&mut desk, Biss::Answer(Task::StandAtPlace, Answer::Go));
-    desk.until("it is over", |studio| is_ready(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
+    desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
     ask(&mut desk, Biss::ReadPosition);
     desk.until("it is read", |studio| {
         let last = studio.biss().and_then(|own| own.record.last());
-        is_ready(studio) && last.is_some_and(|own| (own.turns, own.steps) == (7, 0x8000))
+        is_read(studio) && last.is_some_and(|own| (own.turns, own.steps) == (7, 0x8000))
     });
     assert!(desk.told(Severity::Error).is_empty());
 }

@@ -5,6 +5,7 @@
 mod biss;
 mod biss_exchange;
 mod biss_stream;
+mod biss_support;
 mod biss_writing;
 mod blocking;
 mod closing;

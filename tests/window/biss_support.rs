@@ -1,0 +1,40 @@
+//! A desk with a BiSS encoder on it.
+
+use encoder_studio::app::biss::{Action as Biss, Encoder};
+use encoder_studio::app::{Action, Studio, Tab};
+use encoder_studio::protocol::biss::RegisterAddress;
+
+use crate::support::Desk;
+
+pub(crate) fn at(text: &str) -> RegisterAddress {
+    text.parse().unwrap()
+}
+
+/// It is connected and read, and nothing runs.
+pub(crate) fn is_read(studio: &Studio) -> bool {
+    studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
+}
+
+/// The BiSS tab with this link, read.
+pub(crate) fn open(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    connect(&mut desk, link);
+    desk
+}
+
+/// Opens a link in the BiSS tab and waits until the encoder is read.
+pub(crate) fn connect(desk: &mut Desk, link: &str) {
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.studio.begin(Some(link.parse().unwrap()), None);
+    desk.until("the encoder is read", is_read);
+    desk.settle();
+}
+
+pub(crate) fn encoder(desk: &Desk) -> &Encoder {
+    desk.studio.biss().expect("a BiSS encoder is shown")
+}
+
+pub(crate) fn ask(desk: &mut Desk, action: Biss) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Biss(id, action));
+}
