@@ -1,9 +1,9 @@
 //! A BiSS encoder that is another one all at once, and a wire that two want.
 
+use encoder_studio::app::Severity;
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::signals::{Action as Signals, SourceAction};
-use encoder_studio::app::Severity;
 
 use crate::biss_support::{ask, connect, encoder, is_read};
 use crate::served::Served;
