@@ -3,6 +3,7 @@
 
 mod action;
 pub mod biss;
+pub mod check;
 mod closing;
 pub mod connect;
 mod devices;

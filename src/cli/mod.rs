@@ -4,6 +4,7 @@
 mod analyse;
 mod args;
 mod biss;
+mod check;
 mod consent;
 mod decode;
 mod hiperface;

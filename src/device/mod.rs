@@ -2,6 +2,7 @@
 
 pub mod biss;
 pub mod bridge;
+pub mod check;
 pub mod hiperface;
 mod line;
 

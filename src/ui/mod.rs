@@ -3,6 +3,7 @@
 
 mod backups;
 mod biss;
+mod check;
 mod controls;
 mod dialogs;
 mod docks;

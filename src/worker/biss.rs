@@ -15,7 +15,9 @@ pub use job::{
 };
 pub use open::{check, open};
 
+use super::commit::cycles_seen;
 use super::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::device::biss::check::Wear;
 use crate::device::biss::{
     self as device, Error, Identity, Master, Place, Sample, Station, identify, procedure, read_position,
     read_registers, read_sample, read_status, read_watched,
@@ -121,6 +123,16 @@ impl Device for Biss {
             BissJob::Status => {
                 self.know(desk)?;
                 BissOutput::Status(Box::new(read_status(&mut self.master(desk))?))
+            }
+            BissJob::Check => {
+                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let wear = |identity: &Identity| Wear {
+                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
+                    warning: WEAR_WARNING,
+                    limit: WEAR_LIMIT,
+                };
+                let progress = &mut |done, total, at| steps(done, total, Doing::Register(at));
+                BissOutput::Check(device::check::check(&mut self.master(desk), &types, wear, progress)?)
             }
             BissJob::Position => {
                 self.know(desk)?;

@@ -40,7 +40,7 @@ pub(super) trait Write {
 pub(super) struct Terms {
     /// The device.
     pub(super) device: DeviceKey,
-    /// Names of what the operations change.
+    /// What the operations change, as the logbook tells it.
     pub(super) items: Vec<String>,
     /// Write cycles that they cost.
     pub(super) cost: u64,

@@ -73,6 +73,40 @@ fn status_names_what_is_set() {
     }
 }
 
+/// A verdict a line: an encoder as delivered, and one with the errors of reference 7 that is hotter than its data sheet
+/// allows (105 °C), behind an adapter that measures its supply on a disturbed line.
+#[test]
+fn a_check_judges_what_the_encoder_says_of_itself() {
+    let bench = Bench::new();
+    let check = |link: &str| bench.run(&["do", "biss", "check", "--link", link, JSON]);
+    let verdicts = |told: &Value| {
+        let steps = told["steps"].as_array().unwrap().iter();
+        steps.map(|line| format!("{} {}", line["step"], line["verdict"]).replace('"', "")).collect::<Vec<_>>()
+    };
+    let good = ["identity", "status", "position", "data sheet", "limits", "Wiegand test", "line", "wear"];
+    for link in ["sim:", "sim:?bridge=on"] {
+        let told = check(link).json();
+        assert_eq!(verdicts(&told), good.map(|step| format!("{step} good")), "{told}");
+    }
+    let ill = check("sim:?bridge=on&errors=0x12&temperature=106&supply=switched&voltage=4.9&noise=0.2").json_with(1);
+    let expected = [
+        "identity good",
+        "status bad",
+        "position bad",
+        "data sheet good",
+        "limits attention",
+        "Wiegand test good",
+        "line attention",
+        "wear good",
+    ];
+    assert_eq!(verdicts(&ill), expected, "{ill}");
+    let text = ill.to_string();
+    for words in ["magnetic field too low", "106 °C, allowed -40 to 105 °C", "4900 mV, allowed 5000 to 12000 mV"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
+}
+
 /// Turn 1234h and 270°: one word however it comes, and over BiSS the frame with its CRC beside it.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {

@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::biss::{Action as Biss, Encoder, End, Reached, ReviewState};
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, explain};
 use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
+use encoder_studio::device::check::Verdict;
 use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
 use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
 use encoder_studio::worker::biss::Change;
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
-use crate::support::{Desk, Outside};
+use crate::support::{Desk, Outside, log};
 
 #[track_caller]
 fn until_planned(desk: &mut Desk) {
@@ -70,6 +71,18 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         );
         let writes = encoder(&desk).session.writes.as_ref().unwrap().as_ref().unwrap();
         assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
+        // Log and list of writes tell the same: where, of which area, old and new.
+        let told = log(&desk.studio);
+        for words in [&format!("at {link}."), "Begun: Write 3 edited bytes", "read back: 3."] {
+            assert!(told.contains(words), "{words}: {told}");
+        }
+        for change in ["0x24:0x00 OEM data: 00 → 11", "0x24:0x3F OEM data: 00 → 33"] {
+            assert!(told.contains(change) && writes[0].what.contains(change), "{told}");
+        }
+        ask(&mut desk, Biss::Check);
+        desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());
+        let lines = encoder(&desk).check.as_ref().unwrap();
+        assert!(lines.len() == 8 && lines.iter().all(|line| line.verdict == Verdict::Good), "{lines:?}");
     }
 }
 

@@ -36,6 +36,7 @@ impl Encoder {
                 }
             }
             Action::ReadStatus => self.submit(BissJob::Status, services),
+            Action::Check => self.submit(BissJob::Check, services),
             Action::ReadPosition => self.submit(BissJob::Position, services),
             Action::Poll(interval) => {
                 if let Some(line) = &mut self.session.line {

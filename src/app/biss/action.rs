@@ -17,6 +17,8 @@ pub enum Action {
     Read,
     /// Read errors, warnings, temperature and mode.
     ReadStatus,
+    /// The device check.
+    Check,
     /// Read the position once.
     ReadPosition,
     /// Read the position all the time, or no more.

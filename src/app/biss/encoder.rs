@@ -11,6 +11,7 @@ use super::memory::Memory;
 use super::record::{Record, Streamed};
 use super::review::Review;
 use super::table::Table;
+use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
@@ -32,6 +33,8 @@ pub struct Encoder {
     pub survey: Option<Survey>,
     /// How it is, as it was last read.
     pub status: Option<Status>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
     /// What its registers are.
     pub description: Option<Arc<Description>>,
     /// Its registers and the edits beside them.
@@ -68,6 +71,7 @@ impl Encoder {
             session,
             survey: None,
             status: None,
+            check: None,
             description: None,
             memory: Memory::default(),
             table: Table::default(),
@@ -218,6 +222,9 @@ impl Encoder {
         if first {
             self.load_draft(services);
         }
+        if fresh {
+            self.log_answer(services);
+        }
         self.list_backups(services);
     }
 
@@ -231,6 +238,7 @@ impl Encoder {
         self.leave_draft(services);
         self.survey = None;
         self.status = None;
+        self.check = None;
         self.session.title = None;
         self.memory.clear();
         self.record.forget();

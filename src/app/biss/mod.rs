@@ -7,6 +7,7 @@ mod drafts;
 mod encoder;
 pub mod forms;
 mod guide;
+mod log;
 mod mark;
 mod meaning;
 mod memory;

@@ -154,6 +154,7 @@ impl Encoder {
                 }
                 self.status = Some(*status);
             }
+            BissOutput::Check(lines) => self.check = Some(explain::biss::check(&lines)),
             BissOutput::Position(reading) => self.record.add_position(reading),
             BissOutput::Registers(read) => {
                 self.memory.take(read.start, &read.bytes);

@@ -15,6 +15,7 @@ pub(super) fn job(job: &BissJob) -> Text {
     match job {
         BissJob::Survey | BissJob::Identify => Text::new("job.survey"),
         BissJob::Status => Text::new("job.biss_status"),
+        BissJob::Check => Text::new("job.check"),
         BissJob::Position => Text::new("job.position"),
         BissJob::Read(range) => Text::new("job.read").with("item", range),
         BissJob::ReadDirect => Text::new("job.read_direct"),

@@ -89,14 +89,17 @@ impl Encoder {
         let guide = prepared.plan.ops.iter().any(is_guided).then(|| Guide::new(prepared.plan.ops.clone()));
         let attendance =
             guide.as_ref().map_or(Attendance::Nobody(UNATTENDED), |guide| Attendance::Seat(guide.seat.clone()));
-        let (consent, force_wear) = (Consent::to(shown), review.force_wear);
+        let (consent, force_wear, what) = (Consent::to(shown), review.force_wear, review.what.clone());
         let commit = Commit { prepared: (*prepared).clone(), consent, force_wear, attendance };
         review.state = ReviewState::Writing(prepared.clone());
         if !self.try_submit(BissJob::Commit(Box::new(commit)), services) {
             if let Some(review) = &mut self.review {
                 review.state = ReviewState::Ready(prepared);
             }
-        } else if guide.is_some() {
+            return;
+        }
+        self.log_begin(&what, &prepared, services);
+        if guide.is_some() {
             // From here on it is followed step by step.
             (self.guide, self.review) = (guide, None);
         }
@@ -139,6 +142,7 @@ impl Encoder {
 
     /// A plan was carried out.
     pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
+        self.log_outcomes(&committed.written.outcomes, services);
         let (severity, texts) = told(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         self.memory.forget_steps();

@@ -1,9 +1,11 @@
 //! A BiSS encoder in words: the errors of jobs with it, and what is said on the way.
 
+mod check;
 mod damage;
 mod guide;
 mod write;
 
+pub use check::check;
 pub use damage::damage;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
 pub use write::{change, failure, op, plan, preset, wear, weight, written};

@@ -13,7 +13,7 @@ mod words;
 use std::path::Path;
 
 pub use change::{change, staged};
-pub use check::{finding, step, verdict};
+pub use check::check;
 pub use command::command;
 pub use damage::damage;
 pub use doing::doing;

@@ -13,7 +13,7 @@ use super::review::Review;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text};
+use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
 use crate::device::hiperface::{Identity, Sample, Survey};
 use crate::link::LinkUrl;
@@ -122,6 +122,20 @@ impl Encoder {
         self.identity = Some(identity);
     }
 
+    /// Tells the log who has answered.
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = &self.identity else { return };
+        let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
+        let firmware = if firmware.is_empty() { Text::new("encoder_card.not_told") } else { explain::plain(firmware) };
+        let line = Text::new("log.line").with("address", format!("{:02X}h", identity.address));
+        let kind = Text::new("log.type").with("type", format!("{:02X}h", label.encoder_type));
+        let facts = vec![
+            line.with_text("settings", explain::hiperface::line_settings(label.settings)),
+            kind.with_text("firmware", firmware),
+        ];
+        self.session.log_answer(facts, services);
+    }
+
     /// There are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
@@ -178,6 +192,9 @@ impl Encoder {
         }
         if first {
             self.load_draft(services);
+        }
+        if fresh {
+            self.log_answer(services);
         }
         self.tell_of_code(services);
         self.list_backups(services);

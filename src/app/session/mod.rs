@@ -101,6 +101,13 @@ impl<D: Kind> Session<D> {
         Session::new(id, Source::Link(url), Phase::Opening)
     }
 
+    /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
+    pub(in crate::app) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
+        let Source::Link(url) = &self.source else { return };
+        let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
+        services.note(Severity::Note, texts, Some(&self.name()));
+    }
+
     /// With a profile.
     pub(in crate::app) fn in_file(id: SessionId, (path, key): (PathBuf, String), document: Document) -> Self {
         Session::new(id, Source::File { path, key, document: Box::new(document) }, Phase::Offline)

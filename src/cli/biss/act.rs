@@ -10,6 +10,7 @@ use super::plan::{CALIBRATION, commit, operations, prepare, results, results_tex
 use super::run::{Runner, registers};
 use crate::app::explain;
 use crate::cli::args::{Action, Common, Do, action_name, no_action};
+use crate::cli::check;
 use crate::cli::consent::{answer, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
@@ -27,6 +28,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action, words.as_slice()) {
+        (Action::Check, []) => check_device(common, output),
         (Action::LeadBack, []) => lead_back(common, output),
         (Action::Calibrate, []) => {
             guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
@@ -48,10 +50,19 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             let wish = Wish::read(words)?;
             change(common, output, act, |runner| wish.change(runner))
         }
-        (Action::LeadBack | Action::Calibrate, _) => Err(takes("no argument")),
+        (Action::Check | Action::LeadBack | Action::Calibrate, _) => Err(takes("no argument")),
         (Action::WiegandTest, _) => Err(takes("nothing or \"save\"")),
         (Action::Filter, _) => Err(takes("balanced or dynamic")),
-        (other, _) => Err(no_action(other, "biss", "calibrate, wiegand-test, filter, preset, lead-back and mounting")),
+        (other, _) => {
+            Err(no_action(other, "biss", "check, calibrate, wiegand-test, filter, preset, lead-back and mounting"))
+        }
+    }
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    match Runner::open(common)?.run(BissJob::Check)? {
+        BissOutput::Check(lines) => check::show(output, &explain::biss::check(&lines)),
+        other => Err(unexpected(&other)),
     }
 }
 

@@ -4,14 +4,14 @@ use serde_json::json;
 
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
-use crate::app::explain::hiperface::{finding, step, verdict};
+use crate::app::explain;
 use crate::cli::args::{Action, Common, Do, action_name, no_action, parse_code};
+use crate::cli::check;
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
-use crate::cli::output::{Lines, Output};
+use crate::cli::output::Output;
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
-use crate::device::hiperface::check::{Line, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
@@ -23,8 +23,8 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {
         (Action::Reset, []) => return reset(common, output),
-        (Action::Check, []) => return check(common, output, false),
-        (Action::Check, ["restart"]) => return check(common, output, true),
+        (Action::Check, []) => return check_device(common, output, false),
+        (Action::Check, ["restart"]) => return check_device(common, output, true),
         (Action::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
         (Action::SetPosition, [wanted]) => set_position(act, wanted, false)?,
         (Action::Synchronise, [wanted]) => set_position(act, wanted, true)?,
@@ -146,32 +146,10 @@ fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
     }
 }
 
-fn check(common: &Common, output: &Output, restart: bool) -> Result {
+fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
     let lines = match Runner::open(common)?.run(HiperfaceJob::Check { restart })? {
         HiperfaceOutput::Check(lines) => lines,
         other => return Err(unexpected(&other)),
     };
-    let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
-    let list: Vec<_> = lines
-        .iter()
-        .map(|line| {
-            let (step, verdict) = (step(line.step).terminal(), verdict(line.verdict).terminal());
-            json!({"step": step, "verdict": verdict, "findings": findings(line)})
-        })
-        .collect();
-    output.show(&json!({"done": "check", "ok": good, "steps": list}), &check_text(&lines))?;
-    if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
-}
-
-fn check_text(lines: &[Line]) -> String {
-    let mut text = Lines::default();
-    for line in lines {
-        let words = format!("{:9}  {}", verdict(line.verdict).terminal(), findings(line).join("; "));
-        text.add(step(line.step).terminal(), words.trim_end());
-    }
-    text.text()
-}
-
-fn findings(line: &Line) -> Vec<String> {
-    line.findings.iter().map(|found| finding(found).terminal()).collect()
+    check::show(output, &explain::hiperface::check(&lines))
 }

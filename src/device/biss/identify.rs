@@ -9,8 +9,8 @@ use super::{Error, Master, Station, Way};
 use crate::profile::Unknown;
 use crate::profile::biss::ProfileIdentity;
 use crate::protocol::biss::{
-    Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
-    RegisterAddress, Role, eds_layout,
+    ByteOrder, Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch,
+    ProfileId, RegisterAddress, Role, eds_layout,
 };
 use crate::protocol::bridge::Hello;
 
@@ -37,6 +37,8 @@ pub struct Identity {
     pub source: FrameSource,
     /// The adapter, over that way.
     pub adapter: Option<Hello>,
+    /// Which byte of a register's number comes first over the configuration pin.
+    pub order: Option<ByteOrder>,
 }
 
 /// Who told the frame of a position.
@@ -147,6 +149,7 @@ pub(super) fn identify_with(
         mismatch: near_miss(types, &kind).filter(|_| description.identity().is_none()),
         layout: station.frame(),
         adapter: station.adapter.hello().cloned(),
+        order: station.order,
         kind,
         serial_number,
         serial_bytes,

@@ -7,6 +7,7 @@
 //!                                                        └─▶ master/bus: one over an adapter (device/bridge)
 //! ```
 
+pub mod check;
 mod error;
 mod flags;
 mod frames;

@@ -3,6 +3,11 @@
 use super::{Error, Identity, Master, identify, read_analogue, read_field, read_position, read_status, reset};
 use crate::protocol::hiperface::{DataFieldStatus, EncoderTypes, Position, StatusCode};
 
+pub use crate::device::check::Verdict;
+
+/// One line of the check.
+pub type Line = crate::device::check::Line<Step, Finding>;
+
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
@@ -18,28 +23,6 @@ pub enum Step {
     Limits,
     /// 4Ch and 4Ah on every data field.
     DataFields,
-}
-
-/// How a step ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// As it should be.
-    Good,
-    /// It works, and somebody should look.
-    Attention,
-    /// It does not work.
-    Bad,
-}
-
-/// One line of the check.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    /// What was checked.
-    pub step: Step,
-    /// How it ended.
-    pub verdict: Verdict,
-    /// What was found: values and codes.
-    pub findings: Vec<Finding>,
 }
 
 /// One fact that the check found.

@@ -3,6 +3,7 @@
 mod compare;
 mod edit;
 mod item;
+mod note;
 mod plan;
 mod record;
 mod restore;

@@ -7,6 +7,7 @@ use crate::app::biss::{Action as Biss, Encoder, words};
 use crate::app::{Action, Text, explain};
 use crate::device::biss::{Bits, FrameSource, Identity};
 use crate::profile::biss::ProfileIdentity;
+use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -23,6 +24,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
                 return;
             }
             status(ui, skin, encoder, actions);
+            ui.add_space(skin.space.groups);
+            check(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
                 motor::card_ui(ui, skin, encoder, motor, actions);
@@ -161,6 +164,18 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         if status.protection.is_some_and(|protection| protection != 0) {
             paragraph(ui, RichText::new(skin.say("biss_status.open")).color(palette.warn));
         }
+    });
+}
+
+fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let run = |ui: &mut Ui| {
+        let ready = encoder.session.is_ready();
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::Check));
+        }
+    };
+    card_with(ui, skin, "check_card.title", run, |ui| {
+        lines_ui(ui, skin, encoder.check.as_deref(), "check_card.biss_nothing");
     });
 }
 

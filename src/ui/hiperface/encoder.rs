@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::device::hiperface::Identity;
-use crate::device::hiperface::check::Verdict;
+use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -112,33 +112,9 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
 }
 
 fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
-    let palette = skin.palette;
     card(ui, skin, "check_card.title", |ui| {
-        match &encoder.check {
-            None => {
-                paragraph(ui, skin.label(skin.say("check_card.nothing")));
-            }
-            Some(lines) => {
-                for line in lines {
-                    let (icon, colour) = match line.verdict {
-                        Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
-                        Verdict::Attention => (icons::WARNING, palette.warn),
-                        Verdict::Bad => (icons::X_CIRCLE, palette.bad),
-                    };
-                    let verdict = skin.words(&words::verdict(line.verdict));
-                    ui.horizontal_top(|ui| {
-                        ui.label(RichText::new(icon).color(colour)).on_hover_text(verdict);
-                        ui.vertical(|ui| {
-                            ui.label(skin.words(&words::step(line.step)));
-                            for finding in &line.findings {
-                                let finding = skin.words(&words::finding(finding));
-                                ui.add(egui::Label::new(skin.caption(finding)).wrap().selectable(true));
-                            }
-                        });
-                    });
-                }
-            }
-        }
+        let lines = encoder.check.as_deref().map(words::check);
+        lines_ui(ui, skin, lines.as_deref(), "check_card.nothing");
         ui.add_space(skin.space.between);
         ui.checkbox(restart, skin.say("check_card.restart"));
         if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {

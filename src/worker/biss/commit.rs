@@ -26,7 +26,7 @@ pub(super) fn commit(
     let store = desk.store.clone();
     let terms = Terms {
         device: device_key(&prepared.identity, desk.is_virtual),
-        items: plan.ops.iter().map(Op::item).collect(),
+        items: plan.ops.iter().map(|op| op.note(&prepared.identity.description)).collect(),
         cost: plan.write_cycles(),
         seen: prepared.cycles_seen,
         limit: WEAR_LIMIT,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::Identity;
 use crate::bits::hex_compact;
+use crate::device::biss::check::Line;
 use crate::device::biss::procedure::{Answer, Demand, News, Operator, Seat, Unattended};
 use crate::device::biss::write::{Interrupted, Written};
 use crate::device::biss::{Error, PositionReading, Status, Survey};
@@ -29,6 +30,8 @@ pub enum BissJob {
     Identify,
     /// Mode, errors, warnings, temperature, filter.
     Status,
+    /// What it says of itself, beside its description, its data sheet and the line, with a verdict a line.
+    Check,
     /// The position, once.
     Position,
     /// Registers that follow each other; those of an area of data only at standstill.
@@ -241,6 +244,7 @@ pub enum BissOutput {
     Surveyed(Box<Survey>),
     Identity(Box<Identity>),
     Status(Box<Status>),
+    Check(Vec<Line>),
     Position(PositionReading),
     Registers(ReadRegisters),
     Area(Vec<Bank>),

@@ -69,7 +69,10 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
     assert_eq!((written.written, written.verified, written.write_cycles), (3, 3, 1));
     assert_eq!(written.outcomes, [Outcome::Stored { registers: 3 }]);
     let entry = &history(&mut bench)[0];
-    assert_eq!((entry.what.as_str(), entry.planned_cycles), ("0x24:0x10+2, 0x24:0x30", 1));
+    assert_eq!(
+        (entry.what.as_str(), entry.planned_cycles),
+        ("0x24:0x10+2 OEM data: 0000 → 0102, 0x24:0x30 OEM data: 00 → 03", 1)
+    );
     let conclusion = entry.conclusion.as_ref().unwrap();
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Noted::Done, 1));
     assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());

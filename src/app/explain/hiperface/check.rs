@@ -2,11 +2,16 @@
 
 use super::words::{field_status, position, raw_position, status_with_number};
 use crate::app::Text;
+use crate::app::check::CheckLine;
 use crate::app::explain::plain;
-use crate::device::hiperface::check::{Finding, Step, Verdict};
+use crate::device::hiperface::check::{Finding, Line, Step};
 
-/// A step of the check.
-pub fn step(step: Step) -> Text {
+/// The lines of a check.
+pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+}
+
+fn step(step: Step) -> Text {
     Text::new(match step {
         Step::Restart => "check.restart",
         Step::Status => "check.status",
@@ -17,17 +22,8 @@ pub fn step(step: Step) -> Text {
     })
 }
 
-/// How a step ended.
-pub fn verdict(verdict: Verdict) -> Text {
-    Text::new(match verdict {
-        Verdict::Good => "check.good",
-        Verdict::Attention => "check.attention",
-        Verdict::Bad => "check.bad",
-    })
-}
-
 /// What a step found.
-pub fn finding(finding: &Finding) -> Text {
+fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Code(code) => status_with_number(*code),
         Finding::Position(found) => position(*found),

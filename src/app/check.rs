@@ -1,0 +1,35 @@
+//! A device check in words, for every kind of device.
+
+use super::Text;
+use crate::device::check::{Line, Verdict};
+
+/// One line of a check.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CheckLine {
+    /// What was checked.
+    pub step: Text,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What was found.
+    pub findings: Vec<Text>,
+}
+
+impl CheckLine {
+    /// A line with the words of its device.
+    pub(in crate::app) fn of<S: Copy, F>(line: &Line<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
+        CheckLine {
+            step: step(line.step),
+            verdict: line.verdict,
+            findings: line.findings.iter().map(finding).collect(),
+        }
+    }
+}
+
+/// How a step ended.
+pub fn verdict(verdict: Verdict) -> Text {
+    Text::new(match verdict {
+        Verdict::Good => "check.good",
+        Verdict::Attention => "check.attention",
+        Verdict::Bad => "check.bad",
+    })
+}

@@ -1,0 +1,34 @@
+//! The lines of a device check, for every kind of device.
+
+use egui::{RichText, Ui};
+
+use super::Skin;
+use super::controls::paragraph;
+use super::icons;
+use crate::app::check::{CheckLine, verdict};
+use crate::device::check::Verdict;
+
+/// Draws the lines of the last check, or what one would do.
+pub(super) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: &'static str) {
+    let Some(lines) = lines else {
+        paragraph(ui, skin.label(skin.say(nothing)));
+        return;
+    };
+    let palette = skin.palette;
+    for line in lines {
+        let (icon, colour) = match line.verdict {
+            Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
+            Verdict::Attention => (icons::WARNING, palette.warn),
+            Verdict::Bad => (icons::X_CIRCLE, palette.bad),
+        };
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icon).color(colour)).on_hover_text(skin.words(&verdict(line.verdict)));
+            ui.vertical(|ui| {
+                ui.label(skin.words(&line.step));
+                for finding in &line.findings {
+                    ui.add(egui::Label::new(skin.caption(skin.words(finding))).wrap().selectable(true));
+                }
+            });
+        });
+    }
+}
