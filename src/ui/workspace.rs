@@ -31,7 +31,7 @@ fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, ac
     let (Some(encoder), Some(device)) = (studio.hiperface(), studio.shown()) else {
         return nothing(ui, skin, actions);
     };
-    running(ui, skin, device, actions);
+    running(ui, skin, device, None, actions);
     lost(ui, skin, device, actions);
     hiperface::page_ui(ui, skin, (studio, device), encoder, views.hiperface(encoder), actions);
 }
@@ -41,11 +41,10 @@ fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions
         return nothing(ui, skin, actions);
     };
     let view = views.biss(encoder);
-    let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running());
-    if !(is_led && view.page == biss::Page::Procedures) {
-        // A procedure that is followed step by step says how far it is by itself.
-        running(ui, skin, device, actions);
-    }
+    let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && view.page == biss::Page::Procedures;
+    // How far it is stands below, step by step: here, what ending it does.
+    let instead = is_led.then(|| skin.say("guide.cancel_note"));
+    running(ui, skin, device, instead, actions);
     lost(ui, skin, device, actions);
     biss::page_ui(ui, skin, (studio, device), encoder, view, actions);
 }
@@ -65,8 +64,8 @@ fn nothing(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
     });
 }
 
-/// What runs, how far it is, and a way to end it.
-fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+/// What runs, how far it is, or what is to be known `instead`, and a way to end it.
+fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, instead: Option<String>, actions: &mut Vec<Action>) {
     let opening = *device.phase() == Phase::Opening;
     let running = device.running();
     // A review that is open says how far it is by itself.
@@ -77,7 +76,9 @@ fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal(|ui| {
             spinner(ui, skin);
+            let is_told_below = instead.is_some();
             let words = match &running {
+                _ if is_told_below => instead.unwrap_or_default(),
                 Some(running) => {
                     let what = skin.words(&running.what);
                     match &running.progress {
@@ -95,7 +96,7 @@ fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
                     if super::controls::enabled_button(ui, !stopping, icons::X, &word).clicked() {
                         actions.push(Action::Stop);
                     }
-                    if let Some((done, total, _)) = running.progress {
+                    if let Some((done, total, _)) = running.progress.filter(|_| !is_told_below) {
                         let part = done as f32 / total.max(1) as f32;
                         ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(120.0));
                     }

@@ -32,19 +32,9 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
             _ => "guide.start",
         });
         let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
-        let (skip, cancel) = (skin.say("guide.skip"), skin.say("shell.cancel"));
-        let note = skin.say("guide.cancel_note");
-        let stopping = encoder.session.line().and_then(|line| line.running()).is_some_and(|own| own.stopping);
-        let model = Steps {
-            steps: &list,
-            start,
-            skip: demand.map(|_| skip.as_str()),
-            cancel: (guide.is_running() && !stopping).then_some((cancel.as_str(), note.as_str())),
-        };
+        let skip = skin.say("guide.skip");
+        let model = Steps { steps: &list, start, skip: demand.map(|_| skip.as_str()) };
         let event = steps(ui, skin, &model);
-        if stopping && guide.is_running() {
-            ui.label(skin.label(skin.say("shell.stopping")));
-        }
         match (event, demand) {
             (Some(StepsEvent::Start), Some(own)) => {
                 actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Go)));
@@ -52,7 +42,6 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
             (Some(StepsEvent::Skip), Some(own)) => {
                 actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Skip)));
             }
-            (Some(StepsEvent::Cancel), _) => actions.push(Action::Stop),
             _ => {}
         }
     });

@@ -83,8 +83,6 @@ pub struct Steps<'a> {
     pub start: Option<(&'a str, Result<(), &'a str>)>,
     /// What leaves the step out that waits.
     pub skip: Option<&'a str>,
-    /// What ends the procedure: its word, and what it does then.
-    pub cancel: Option<(&'a str, &'a str)>,
 }
 
 /// What the user wants.
@@ -94,8 +92,6 @@ pub enum StepsEvent {
     Start,
     /// Leave out what waits.
     Skip,
-    /// End the procedure.
-    Cancel,
 }
 
 impl Gauge {
@@ -163,14 +159,6 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
     for (upper, lower) in dots.iter().zip(dots.iter().skip(1)) {
         let (from, to) = (upper.y + DOT + skin.space.inside, lower.y - DOT - skin.space.inside);
         ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, skin.palette.line));
-    }
-    if let Some((word, note)) = model.cancel {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if enabled_button(ui, true, icons::X, word).clicked() {
-                event = Some(StepsEvent::Cancel);
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| paragraph(ui, skin.label(note)));
-        });
     }
     event
 }

@@ -31,7 +31,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
         let turn = Step { gauges: vec![speed], ..step("Turn", StepState::Waiting, "Run the motor at 500 rpm.") };
         let list = [step("Ask", StepState::Done, "Another drive"), turn, step("Check", StepState::ToCome, "")];
         let start = Some(("Start", run.refused.map_or(Ok(()), Err)));
-        let model = Steps { steps: &list, start, skip: Some("Leave out"), cancel: Some(("Cancel", "It goes back.")) };
+        let model = Steps { steps: &list, start, skip: Some("Leave out") };
         run.events.extend(steps(ui, &skin(), &model));
     })
 }
@@ -39,9 +39,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
 #[test]
 fn what_is_pressed_is_told() {
     let mut harness = procedure(Run { speed: Some(500.5), ..Run::default() });
-    for (label, event) in
-        [("Start", StepsEvent::Start), ("Leave out", StepsEvent::Skip), ("Cancel", StepsEvent::Cancel)]
-    {
+    for (label, event) in [("Start", StepsEvent::Start), ("Leave out", StepsEvent::Skip)] {
         harness.get_by_label(label).click();
         harness.run();
         assert_eq!(harness.state_mut().events.pop(), Some(event));
