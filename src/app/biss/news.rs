@@ -114,11 +114,14 @@ impl Encoder {
                 let begun = matches!(*error, JobError::Interrupted { .. });
                 // As the user wished; what was written until then is to be looked at.
                 let severity = if begun { Severity::Warning } else { Severity::Note };
-                services.tell(severity, texts.clone(), Some(&self.session.name()));
                 if self.review.as_ref().is_some_and(Review::is_planning) {
                     self.review = None;
                 }
-                self.write_failed(&error, &texts);
+                if self.write_failed(&error, &texts) {
+                    services.note(severity, texts, Some(&self.session.name()));
+                } else {
+                    services.tell(severity, texts, Some(&self.session.name()));
+                }
                 if begun {
                     self.submit(BissJob::Survey, services);
                 }

@@ -14,6 +14,13 @@ use crate::ui::{Skin, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
+    // What came of it is looked at when it is there.
+    let is_over = guide.end.is_some();
+    let seen = ui.scope_id().with("end");
+    if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
+        ui.scroll_to_cursor(Some(egui::Align::Min));
+    }
+    ui.data_mut(|data| data.insert_temp(seen, is_over));
     if let Some(end) = &guide.end {
         end_ui(ui, skin, encoder, guide.ops(), end, actions);
         ui.add_space(skin.space.groups);

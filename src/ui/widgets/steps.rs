@@ -132,7 +132,7 @@ const RAIL: f32 = 32.0;
 pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();
-    // The step that was in turn the last time.
+    // The step that was in turn the last time, and its height.
     let at = ui.scope_id().with("step");
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = skin.space.inside;
@@ -147,8 +147,11 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
                     event = event.or(content(ui, skin, model, step));
                 });
             });
-            if step.state.counts() && ui.data(|data| data.get_temp(at)) != Some(number) {
-                ui.data_mut(|data| data.insert_temp(at, number));
+            // Again when more of it comes: its gauges and buttons are what it is about.
+            let height = drawn.response.rect.height();
+            let before: Option<(usize, f32)> = ui.data(|data| data.get_temp(at));
+            if step.state.counts() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
+                ui.data_mut(|data| data.insert_temp(at, (number, height)));
                 drawn.response.scroll_to_me(None);
             }
             dot(ui.painter(), skin, middle, number, step);
@@ -215,7 +218,7 @@ fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
     if model.start.is_none() && model.skip.is_none() {
         return None;
     }
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {
             let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, word);
             if response.clicked() {

@@ -141,7 +141,9 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
 
 /// A write that is done.
 pub fn written(written: &Written) -> Text {
-    Text::new("review.verified").with("verified", written.verified).with("cycles", written.write_cycles)
+    // Of a calibration the encoder's word is all there is.
+    let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
+    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
 /// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
