@@ -199,13 +199,13 @@ fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
 fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
     let name = if register.name.is_empty() { skin.say("registers.byte") } else { skin.name(&register.name) };
-    let is_code =
-        matches!(register.decoding, Decoding::Choice(_) | Decoding::Bits(_) | Decoding::Text | Decoding::Version);
+    // A code is no quantity.
+    let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
         address: register.address.to_string(),
         name,
         hex: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
-        decimal: shown.number().filter(|_| !is_code).map(|own| own.to_string()).unwrap_or_default(),
+        decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
         meaning: encoder.meaning(shown).map(|own| skin.words(&own)).unwrap_or_default(),
         access: match register.access {
             Access::R => "R",

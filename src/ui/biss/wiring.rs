@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::ui::Skin;
-use crate::ui::controls::{card, paragraph, split};
+use crate::ui::controls::{card, paragraph, two_columns};
 
 /// Width of the column of pins.
 const PIN: f32 = 84.0;
@@ -21,12 +21,16 @@ const PINS: [(&str, &str); 8] = [
 ];
 
 /// Width of the card from which the pins stand in two columns.
-const BESIDE: f32 = 560.0;
+const BESIDE: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        let (left, right) = PINS.split_at(PINS.len() / 2);
-        split(ui, skin, (0.5, BESIDE), (), |ui, ()| pins(ui, skin, left), |ui, ()| pins(ui, skin, right));
+        if ui.available_width() < BESIDE {
+            pins(ui, skin, &PINS);
+        } else {
+            let (left, right) = PINS.split_at(PINS.len() / 2);
+            two_columns(ui, skin, (), |ui, ()| pins(ui, skin, left), |ui, ()| pins(ui, skin, right));
+        }
         ui.add_space(skin.space.inside);
         for note in ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"] {
             paragraph(ui, skin.caption(skin.say(note)));

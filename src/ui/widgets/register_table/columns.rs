@@ -18,11 +18,11 @@ pub(super) enum Column {
 /// Columns with their least widths, in their order; that of the bytes follows from them.
 const WIDTHS: [(Column, f32); 8] = [
     (Column::Marks, 38.0),
-    (Column::Address, 74.0),
+    (Column::Address, 80.0),
     (Column::Name, 118.0),
     (Column::Hex, 60.0),
     (Column::Decimal, 96.0),
-    (Column::Meaning, 136.0),
+    (Column::Meaning, 130.0),
     (Column::Access, 48.0),
     (Column::Default, 84.0),
 ];
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn what_matters_least_falls_away_first() {
         use Column::*;
-        // 38 + 74 + 118 + 100 + 96 + 136 + 48 + 84 = 694.
+        // 38 + 80 + 118 + 100 + 96 + 130 + 48 + 84 = 694.
         assert_eq!(shown(694.0).len(), 8);
         assert_eq!(shown(693.0), [Marks, Address, Name, Hex, Meaning, Access, Default]);
         assert_eq!(shown(597.0), [Marks, Address, Name, Hex, Meaning, Access]);
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn name_and_meaning_take_what_is_left() {
         let columns = Columns::new(794.0, 100.0);
-        assert_eq!(columns.range(Column::Name), Some(Rangef::new(112.0, 275.0)));
-        assert_eq!(columns.range(Column::Hex), Some(Rangef::new(275.0, 375.0)));
-        assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(471.0, 662.0)));
+        assert_eq!(columns.range(Column::Name), Some(Rangef::new(118.0, 281.0)));
+        assert_eq!(columns.range(Column::Hex), Some(Rangef::new(281.0, 381.0)));
+        assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(477.0, 662.0)));
         assert_eq!((columns.width(), Columns::new(100.0, 10.0).width()), (794.0, 426.0));
     }
 }
