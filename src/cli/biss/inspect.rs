@@ -207,8 +207,8 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
         "valid": reading.is_valid(),
         "warning": reading.warning,
     });
-    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame 0x{frame}"));
-    output.show(&json, &format!("{t:10.3} s  0x{}  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
+    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
+    output.show(&json, &format!("{t:10.3} s  {}h  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
 }
 
 fn place(reading: &PositionReading) -> String {
