@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 
+use crate::profile::{Operation, Plan};
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
 /// What a kind of device brings to a write.
 pub(super) trait Write {
     /// Consent and base hold.
     type Confirmed;
-    /// What was written.
-    type Written;
+    /// What was written; nothing, to begin with.
+    type Written: Default;
     /// Why nothing can be written.
     type Refusal;
     /// How far a write came that ended early, and why.
@@ -52,19 +53,35 @@ pub(super) struct Terms {
     pub(super) force_wear: bool,
 }
 
+impl Terms {
+    /// A plan, what is told of its operations, and how much of the device's life is known to be gone.
+    pub(super) fn of<Base, Op: Operation>(
+        device: DeviceKey,
+        plan: &Plan<Base, Op>,
+        note: impl Fn(&Op) -> String,
+        (seen, limit): (Option<u64>, u64),
+        force_wear: bool,
+    ) -> Self {
+        let items = plan.ops.iter().map(note).collect();
+        Terms { device, items, cost: plan.write_cycles(), seen, limit, force_wear }
+    }
+}
+
 /// The before-image is kept, and the logbook has been told.
 pub(super) struct Intended {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
 }
 
-/// A write that is done.
-pub(super) struct Done<W> {
-    pub(super) written: W,
-    /// The before-image.
-    pub(super) backup: PathBuf,
-    /// What the logbook could not take.
-    pub(super) logbook_warning: Option<LogbookError>,
+/// What a commit did.
+#[derive(Clone, Debug, Default)]
+pub struct Committed<W> {
+    /// What was written, as its kind of device counts it.
+    pub written: W,
+    /// The before-image; `None` when there was nothing to write.
+    pub backup: Option<PathBuf>,
+    /// What the logbook could not take: the write itself is done.
+    pub logbook_warning: Option<LogbookError>,
 }
 
 /// A write that is not done, or not to its end.
@@ -84,8 +101,15 @@ pub(super) enum Failed<W: Write> {
     },
 }
 
-/// The one way to write.
-pub(super) fn commit<W: Write>(store: &Store, terms: &Terms, write: &mut W) -> Result<Done<W::Written>, Failed<W>> {
+/// The one way to write. A plan without operations is done.
+pub(super) fn commit<W: Write>(
+    store: &Store,
+    terms: &Terms,
+    write: &mut W,
+) -> Result<Committed<W::Written>, Failed<W>> {
+    if terms.items.is_empty() {
+        return Ok(Committed { written: W::Written::default(), backup: None, logbook_warning: None });
+    }
     check_wear(terms)?;
     let confirmed = write.confirm().map_err(Failed::Refused)?;
     let intended = Intended::note(store, terms, &write.before_image()).map_err(Failed::NotKept)?;
@@ -93,7 +117,7 @@ pub(super) fn commit<W: Write>(store: &Store, terms: &Terms, write: &mut W) -> R
     let (outcome, spent) = W::conclusion(ended.as_ref());
     let (backup, logbook_warning) = intended.conclude(outcome, spent);
     match ended {
-        Ok(written) => Ok(Done { written, backup, logbook_warning }),
+        Ok(written) => Ok(Committed { written, backup: Some(backup), logbook_warning }),
         Err(interrupted) => {
             if let Some(why) = logbook_warning {
                 tracing::warn!("{why}");

@@ -20,32 +20,21 @@ pub(super) fn commit(
 ) -> Result<Committed, JobError> {
     let prepared = &commit.prepared;
     let plan = &prepared.plan;
-    if plan.is_empty() {
-        return Ok(Committed::default());
-    }
     let store = desk.store.clone();
-    let terms = Terms {
-        device: device_key(&prepared.identity, desk.is_virtual),
-        items: plan.ops.iter().map(|op| op.note(&prepared.identity.description)).collect(),
-        cost: plan.write_cycles(),
-        seen: prepared.cycles_seen,
-        limit: WEAR_LIMIT,
-        force_wear: commit.force_wear,
-    };
+    let device = device_key(&prepared.identity, desk.is_virtual);
+    let note = |op: &Op| op.note(&prepared.identity.description);
+    let terms = Terms::of(device, plan, note, (prepared.cycles_seen, WEAR_LIMIT), commit.force_wear);
     encoder.know(desk)?;
     let attendance = commit.attendance.clone();
     let mut write = EncoderWrite { master: encoder.master(desk), commit, attendance, tell };
-    match carry_through(&store, &terms, &mut write) {
-        Ok(done) => {
-            Ok(Committed { written: done.written, backup: Some(done.backup), logbook_warning: done.logbook_warning })
+    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
+        Failed::Worn { seen, cost, limit } => JobError::Worn { used: seen, cost, limit },
+        Failed::Refused(error) => error.into(),
+        Failed::NotKept(error) => JobError::NotKept(error),
+        Failed::Interrupted { interrupted, backup } => {
+            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
         }
-        Err(Failed::Worn { seen, cost, limit }) => Err(JobError::Worn { used: seen, cost, limit }),
-        Err(Failed::Refused(error)) => Err(error.into()),
-        Err(Failed::NotKept(error)) => Err(JobError::NotKept(error)),
-        Err(Failed::Interrupted { interrupted, backup }) => {
-            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind })
-        }
-    }
+    })
 }
 
 struct EncoderWrite<'w, 'm> {

@@ -14,7 +14,7 @@ use crate::profile::biss::{
     Bank, BissPlan, BissProfile, MotorSource, MountingRun, PlanError, PresetParts, RegisterRange, RestoreOptions,
 };
 use crate::protocol::biss::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
-use crate::store::{DeviceKey, FileError, LogbookError, StoreError};
+use crate::store::{DeviceKey, FileError, StoreError};
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
@@ -183,15 +183,7 @@ impl Operator for Attendance {
 }
 
 /// What a commit did.
-#[derive(Clone, Debug, Default)]
-pub struct Committed {
-    /// Counts, and what came of each operation.
-    pub written: Written,
-    /// The before-image; `None` when there was nothing to write.
-    pub backup: Option<PathBuf>,
-    /// What the logbook could not take: the write itself is done.
-    pub logbook_warning: Option<LogbookError>,
-}
+pub type Committed = crate::worker::Committed<Written>;
 
 /// Registers as they were read.
 #[derive(Clone, Debug, PartialEq, Eq)]

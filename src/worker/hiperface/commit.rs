@@ -20,30 +20,18 @@ pub(super) fn commit(
 ) -> Result<Committed, JobError> {
     let prepared = &commit.prepared;
     let plan = &prepared.plan;
-    if plan.is_empty() {
-        return Ok(Committed::default());
-    }
     let store = desk.store.clone();
-    let terms = Terms {
-        device: device_key(&prepared.identity, desk.is_virtual),
-        items: plan.ops.iter().map(Op::item).collect(),
-        cost: plan.write_cycles(),
-        seen: prepared.cycles_seen,
-        limit: WEAR_LIMIT,
-        force_wear: commit.force_wear,
-    };
+    let device = device_key(&prepared.identity, desk.is_virtual);
+    let terms = Terms::of(device, plan, Op::item, (prepared.cycles_seen, WEAR_LIMIT), commit.force_wear);
     let mut write = EncoderWrite { master: encoder.master(desk), commit, tell };
-    match carry_through(&store, &terms, &mut write) {
-        Ok(done) => {
-            Ok(Committed { written: done.written, backup: Some(done.backup), logbook_warning: done.logbook_warning })
+    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
+        Failed::Worn { seen, cost, limit } => JobError::Worn { used: seen, cost, limit },
+        Failed::Refused(error) => error.into(),
+        Failed::NotKept(error) => JobError::NotKept(error),
+        Failed::Interrupted { interrupted, backup } => {
+            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
         }
-        Err(Failed::Worn { seen, cost, limit }) => Err(JobError::Worn { used: seen, cost, limit }),
-        Err(Failed::Refused(error)) => Err(error.into()),
-        Err(Failed::NotKept(error)) => Err(JobError::NotKept(error)),
-        Err(Failed::Interrupted { interrupted, backup }) => {
-            Err(JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind })
-        }
-    }
+    })
 }
 
 /// How backups and the logbook know an encoder.

@@ -12,7 +12,7 @@ use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Ite
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::store::{FileError, LogbookError};
+use crate::store::FileError;
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -193,15 +193,7 @@ pub struct Commit {
 }
 
 /// What a commit did.
-#[derive(Clone, Debug, Default)]
-pub struct Committed {
-    /// Counts.
-    pub written: Written,
-    /// The before-image; `None` when there was nothing to write.
-    pub backup: Option<PathBuf>,
-    /// What the logbook could not take: the write itself is done.
-    pub logbook_warning: Option<LogbookError>,
-}
+pub type Committed = crate::worker::Committed<Written>;
 
 /// A value that was read.
 #[derive(Clone, Debug, PartialEq)]
