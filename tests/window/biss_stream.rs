@@ -29,8 +29,8 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     (samples.iter().map(|own| (own.time.nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
 }
 
-/// All of them 50 µs apart and as the shaft turns: 655 360 steps a second are 32.768 a frame. Between two packets of 5 ms
-/// our clock is followed by a thousandth at most.
+/// All of them 50 µs apart and as the shaft turns: 655 360 steps a second are 32.768 a frame. Between two packets our clock is
+/// followed a little.
 #[track_caller]
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);

@@ -39,7 +39,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };
         let text = Text::new(id).with_number("count", stream.hz(), 0);
         let words = skin.words(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
-        ui.label(skin.caption(words)).on_hover_text(skin.say("live.streamed_hint"));
+        ui.add(egui::Label::new(skin.caption(words)).wrap()).on_hover_text(skin.say("live.streamed_hint"));
     }
     let errors = encoder.record.crc_errors();
     if errors > 0 {
