@@ -3,4 +3,5 @@
 pub mod biss;
 pub mod bridge;
 pub mod hiperface;
+pub mod ssi;
 pub mod ubicom;

@@ -1,0 +1,235 @@
+//! How a position becomes a code word: binary, Gray, Gray excess, BCD (SICK SSI description 2.4; reference section 2).
+
+/// A code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Code {
+    /// The number itself.
+    Binary,
+    /// One bit changes from a position to the next.
+    Gray,
+    /// Gray, cut out of the middle of the whole code, so that one bit changes at the end of the range too, although
+    /// the number of steps is no power of two. It has to be even.
+    GrayExcess,
+    /// Four bits a decimal digit.
+    Bcd,
+}
+
+/// Why positions have no code words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CodeError {
+    /// Gray excess leaves out as many words before the positions as behind them.
+    #[error("gray excess needs an even number of steps, not {0}: with an odd one two bits would change at the end")]
+    Odd(u128),
+    /// More than 64 bits.
+    #[error("{0} decimal digits need more than 64 bits in BCD")]
+    Digits(u32),
+}
+
+/// `word` in Gray: `b ^ (b >> 1)`.
+pub const fn gray(word: u64) -> u64 {
+    word ^ word >> 1
+}
+
+/// The number whose Gray code `word` is.
+pub const fn ungray(word: u64) -> u64 {
+    let word = word ^ word >> 1;
+    let word = word ^ word >> 2;
+    let word = word ^ word >> 4;
+    let word = word ^ word >> 8;
+    let word = word ^ word >> 16;
+    word ^ word >> 32
+}
+
+/// A code for the positions 0 to a last one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coding {
+    code: Code,
+    last: u64,
+    bits: u8,
+    /// Gray excess: the number whose Gray code stands for position 0.
+    offset: u64,
+}
+
+impl Coding {
+    /// The coding of the positions 0…`last`.
+    ///
+    /// # Errors
+    /// [`CodeError`] where the code has no words for so many positions.
+    pub fn new(code: Code, last: u64) -> Result<Self, CodeError> {
+        let binary_bits = bits_of(last);
+        let (bits, offset) = match code {
+            Code::Binary | Code::Gray => (binary_bits, 0),
+            Code::GrayExcess if last % 2 == 0 => return Err(CodeError::Odd(u128::from(last) + 1)),
+            Code::GrayExcess => (binary_bits, (ones(binary_bits) - last) / 2),
+            Code::Bcd => {
+                let digits = last.checked_ilog10().map_or(1, |log| log + 1);
+                let bits = u8::try_from(4 * digits).ok().filter(|bits| *bits <= 64);
+                (bits.ok_or(CodeError::Digits(digits))?, 0)
+            }
+        };
+        Ok(Coding { code, last, bits, offset })
+    }
+
+    /// Which code it is.
+    pub const fn code(&self) -> Code {
+        self.code
+    }
+
+    /// Bits of a code word, 1…64.
+    pub const fn bits(&self) -> u8 {
+        self.bits
+    }
+
+    /// The last position.
+    pub const fn last(&self) -> u64 {
+        self.last
+    }
+
+    /// The code word of a position; `None` behind the last one.
+    pub fn encode(&self, position: u64) -> Option<u64> {
+        if position > self.last {
+            return None;
+        }
+        Some(match self.code {
+            Code::Binary => position,
+            Code::Gray => gray(position),
+            Code::GrayExcess => gray(position + self.offset),
+            Code::Bcd => decimal_to_bcd(position),
+        })
+    }
+
+    /// The position of a code word; `None` where it is none.
+    #[inline]
+    pub fn decode(&self, word: u64) -> Option<u64> {
+        let position = match self.code {
+            Code::Binary => word,
+            Code::Gray => ungray(word),
+            Code::GrayExcess => ungray(word).checked_sub(self.offset)?,
+            Code::Bcd => bcd_to_decimal(word)?,
+        };
+        (position <= self.last).then_some(position)
+    }
+}
+
+/// Bits that a number needs, at least one.
+pub(super) const fn bits_of(number: u64) -> u8 {
+    let bits = 64 - number.leading_zeros();
+    if bits == 0 { 1 } else { bits as u8 }
+}
+
+/// So many ones, 0…64, right-justified.
+pub(super) const fn ones(bits: u8) -> u64 {
+    if bits >= 64 { u64::MAX } else { (1 << bits) - 1 }
+}
+
+fn decimal_to_bcd(mut number: u64) -> u64 {
+    let mut word = 0;
+    let mut place = 0;
+    while number > 0 && place < 64 {
+        word |= number % 10 << place;
+        number /= 10;
+        place += 4;
+    }
+    word
+}
+
+fn bcd_to_decimal(word: u64) -> Option<u64> {
+    let mut number = 0_u64;
+    for place in (0..64).step_by(4).rev() {
+        let digit = word >> place & 0xF;
+        if digit > 9 {
+            return None;
+        }
+        number = number.checked_mul(10)?.checked_add(digit)?;
+    }
+    Some(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Reference section 8, "Gray".
+    #[test]
+    fn gray_words_of_the_reference() {
+        let pairs = [
+            (1000, 0x21C),
+            (8191, 0x1000),
+            (12345, 0x2825),
+            (0xAB_CDEF, 0xFE_2B18),
+            (0x155_5555, 0x1FF_FFFF),
+            (0xFF_FFFF, 0x80_0000),
+        ];
+        for (number, word) in pairs {
+            assert_eq!((gray(number), ungray(word)), (word, number), "{number}");
+        }
+        assert_eq!(ungray(0xFF_FFFE), 0xAA_AAAB);
+    }
+
+    /// The manual's table in 2.4, column Graycode, 0 to 15.
+    #[test]
+    fn gray_words_of_the_manual() {
+        let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
+        for (number, word) in table.into_iter().enumerate() {
+            assert_eq!(gray(number as u64), word);
+        }
+    }
+
+    /// Reference section 2: N, n, code(0), code(1), code(N/2), code(N−1).
+    #[test]
+    fn gray_excess_of_the_reference() {
+        let table = [
+            (10, 4, 0x2, 0x6, 0xC, 0xA),
+            (100, 7, 0x09, 0x08, 0x60, 0x49),
+            (360, 9, 0x06A, 0x06B, 0x180, 0x16A),
+            (720, 10, 0x0D4, 0x0D5, 0x300, 0x2D4),
+            (1000, 10, 0x00A, 0x00B, 0x300, 0x20A),
+            (3600, 12, 0x084, 0x085, 0xC00, 0x884),
+            (5000, 13, 0x0522, 0x0523, 0x1800, 0x1522),
+        ];
+        for (steps, bits, first, second, middle, last) in table {
+            let coding = Coding::new(Code::GrayExcess, steps - 1).unwrap();
+            assert_eq!(coding.bits(), bits, "{steps}");
+            for (position, word) in [(0, first), (1, second), (steps / 2, middle), (steps - 1, last)] {
+                assert_eq!(coding.encode(position), Some(word), "{position} of {steps}");
+                assert_eq!(coding.decode(word), Some(position), "{position} of {steps}");
+            }
+            assert_eq!((first ^ last).count_ones(), 1, "{steps}: over the end of the range");
+        }
+    }
+
+    /// Reference section 8, "Error cases".
+    #[test]
+    fn words_outside_of_gray_excess() {
+        let coding = Coding::new(Code::GrayExcess, 9).unwrap();
+        for word in [0x0, 0x1, 0x3, 0x8, 0x9, 0xB] {
+            assert_eq!(coding.decode(word), None, "{word:X}");
+        }
+        assert_eq!(coding.decode(0xF), Some(7));
+        assert_eq!(Coding::new(Code::GrayExcess, 8), Err(CodeError::Odd(9)));
+    }
+
+    #[test]
+    fn decimal_digits() {
+        let coding = Coding::new(Code::Bcd, 3599).unwrap();
+        assert_eq!(coding.bits(), 16);
+        assert_eq!(coding.encode(3599), Some(0x3599));
+        assert_eq!(coding.decode(0x0A00), None);
+        assert_eq!(coding.decode(0x3600), None);
+        assert_eq!(Coding::new(Code::Bcd, u64::MAX), Err(CodeError::Digits(20)));
+    }
+
+    proptest! {
+        #[test]
+        fn neighbours_differ_in_one_bit(last in 1..u64::MAX, at in any::<u64>()) {
+            let last = last | 1;
+            let coding = Coding::new(Code::GrayExcess, last).unwrap();
+            let at = at % last;
+            let (here, next) = (coding.encode(at).unwrap(), coding.encode(at + 1).unwrap());
+            prop_assert_eq!((here ^ next).count_ones(), 1);
+            prop_assert_eq!(coding.decode(here), Some(at));
+        }
+    }
+}

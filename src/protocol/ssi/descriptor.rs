@@ -1,0 +1,136 @@
+//! A frame as it is designed: what is on which clock. Anything can be written down here; whether it can work is
+//! [`super::Layout`]'s to say.
+
+use super::code::Code;
+use super::range::Range;
+
+/// A frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Descriptor {
+    /// Bits that the host clocks in, 1…64.
+    pub clocks: u8,
+    /// Which positions there are.
+    pub range: Range,
+    /// Their code.
+    pub code: Code,
+    /// What is coded.
+    pub coded: Coded,
+    /// Clocks 1…`area` belong to the position and the zeros around it. Shifting right shifts these.
+    pub area: u8,
+    /// Zeros before the position.
+    pub lead: u8,
+    /// Zeros between multiturn and singleturn, where the range has bits for each.
+    pub between: u8,
+    /// The area comes one clock later: a zero first, its last bit lost (SICK SSI description 3.4, SSI-SHIFT-RIGHT).
+    pub shift_right: bool,
+    /// Error and warning bits, at most 8.
+    pub errors: Vec<ErrorBit>,
+    /// A parity bit.
+    pub parity: Option<Parity>,
+    /// The same bits once more.
+    pub repeat: Option<Repeat>,
+    /// Data wires are exchanged: every bit upside down.
+    pub inverted: bool,
+    /// Words that stand for something else than a position, at most 4; tested before anything is decoded.
+    pub patterns: Vec<Pattern>,
+}
+
+/// What a Gray code goes over; binary and BCD know only the position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coded {
+    /// The position's bits; zeros and error bits are put around the code word.
+    Position,
+    /// The whole area, zeros included (reference section 2: the other reading of the manual, `U`).
+    Area,
+    /// The whole area and the error bits behind it (known from sensors that number them among the data).
+    AreaAndErrors,
+}
+
+/// A bit that is no position.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ErrorBit {
+    /// As its manual calls it.
+    pub name: String,
+    /// Which clock, counted from 1.
+    pub clock: u8,
+    /// What it says of the position.
+    pub meaning: Meaning,
+    /// It speaks when it is 0.
+    pub active_low: bool,
+    /// A transfer clears it: it says what happened since the last one.
+    pub cleared_by_transfer: bool,
+}
+
+/// What a bit or word that is no position says of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Meaning {
+    /// It is not valid.
+    Invalid,
+    /// It is valid; something wants attention.
+    Warning,
+}
+
+/// A bit over those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parity {
+    /// Which clock, counted from 1; it goes over all before.
+    pub clock: u8,
+    /// The ones are even in number, the parity bit among them.
+    pub even: bool,
+}
+
+/// The frame twice in one burst of clocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repeat {
+    /// Clocks of the first one.
+    pub word: u8,
+    /// Zeros between the two, usually one.
+    pub gap: u8,
+}
+
+/// A word with a meaning of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    /// What it stands for.
+    pub name: String,
+    /// Which one: the bits of a whole frame, as they were sent.
+    pub word: Word,
+    /// What it says of the position.
+    pub meaning: Meaning,
+}
+
+/// The bits of a whole frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Word {
+    /// Ones alone.
+    Ones,
+    /// Just these.
+    Bits(u64),
+}
+
+impl Descriptor {
+    /// The position's bits and nothing else, of so many turns and steps, in binary.
+    pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
+        let bits = multiturn + singleturn;
+        Descriptor {
+            clocks: bits,
+            range: Range::Bits { multiturn, singleturn },
+            code: Code::Binary,
+            coded: Coded::Position,
+            area: bits,
+            lead: 0,
+            between: 0,
+            shift_right: false,
+            errors: Vec::new(),
+            parity: None,
+            repeat: None,
+            inverted: false,
+            patterns: Vec::new(),
+        }
+    }
+
+    /// Clocks of one frame, without its repetition.
+    pub fn word(&self) -> u8 {
+        self.repeat.map_or(self.clocks, |repeat| repeat.word)
+    }
+}

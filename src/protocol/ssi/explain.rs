@@ -1,0 +1,186 @@
+//! What every bit of a frame is, and what a frame as a whole gives cause to say.
+
+use super::descriptor::{Meaning, Word};
+use super::layout::{Flags, Layout, Reading};
+use super::range::Range;
+
+/// What a clock of a frame carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// Always 0.
+    Zero,
+    /// This bit of the turns.
+    Multiturn(u8),
+    /// This bit of the steps within a turn.
+    Singleturn(u8),
+    /// This bit of the code word, where turns and steps have no bits of their own.
+    Position(u8),
+    /// This error bit of the descriptor.
+    Error(usize),
+    /// The parity bit.
+    Parity,
+    /// The same as that clock.
+    Again(u8),
+}
+
+/// A clock of a frame with its bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// Counted from 1.
+    pub clock: u8,
+    /// What it carries.
+    pub role: Role,
+    /// The bit as it was sent.
+    pub bit: bool,
+}
+
+/// Something to say of a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// An error bit speaks.
+    Error {
+        /// Its name.
+        name: String,
+        /// What it says of the position.
+        meaning: Meaning,
+        /// It is about the time since the last transfer.
+        cleared_by_transfer: bool,
+    },
+    /// The frame is a word with a meaning of its own.
+    Pattern {
+        /// What it stands for.
+        name: String,
+        /// What it says of the position.
+        meaning: Meaning,
+    },
+    /// Every bit is 1.
+    StuckHigh {
+        /// No position looks like that; else it may be one.
+        sure: bool,
+    },
+    /// Every bit is 0.
+    StuckLow {
+        /// No position looks like that; else it may be one.
+        sure: bool,
+    },
+    /// The code word is no position.
+    Code,
+    /// What should be 0 is not.
+    Padding,
+    /// The parity is wrong.
+    Parity,
+    /// The repetition differs.
+    Repeat,
+}
+
+impl Finding {
+    /// What it says of the position.
+    pub const fn meaning(&self) -> Meaning {
+        match self {
+            Finding::Error { meaning, .. } | Finding::Pattern { meaning, .. } => *meaning,
+            Finding::StuckHigh { sure: true } | Finding::StuckLow { sure: true } => Meaning::Invalid,
+            Finding::Code | Finding::Parity | Finding::Repeat => Meaning::Invalid,
+            Finding::StuckHigh { .. } | Finding::StuckLow { .. } | Finding::Padding => Meaning::Warning,
+        }
+    }
+}
+
+impl Layout {
+    /// What each clock carries, from the first to the last.
+    pub fn roles(&self) -> Vec<Role> {
+        let descriptor = self.descriptor();
+        let word = descriptor.word();
+        let mut roles = vec![Role::Zero; usize::from(descriptor.clocks)];
+        let late = u8::from(descriptor.shift_right);
+        let bits = self.coding().bits();
+        for bit in 0..bits {
+            let from_top = bits - 1 - bit;
+            let (role, gap) = match descriptor.range {
+                Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn => {
+                    if bit >= singleturn {
+                        (Role::Multiturn(bit - singleturn), 0)
+                    } else {
+                        (Role::Singleturn(bit), descriptor.between)
+                    }
+                }
+                _ => (Role::Position(bit), 0),
+            };
+            let clock = descriptor.lead + gap + from_top + 1 + late;
+            if clock <= descriptor.area {
+                put(&mut roles, clock, role);
+            }
+        }
+        for (index, bit) in descriptor.errors.iter().enumerate() {
+            put(&mut roles, bit.clock, Role::Error(index));
+        }
+        if let Some(parity) = descriptor.parity {
+            put(&mut roles, parity.clock, Role::Parity);
+        }
+        if let Some(repeat) = descriptor.repeat {
+            for clock in 1..=word {
+                put(&mut roles, clock + word + repeat.gap, Role::Again(clock));
+            }
+        }
+        roles
+    }
+
+    /// Every bit of a frame with what it carries.
+    pub fn cells(&self, frame: u64) -> Vec<Cell> {
+        let clocks = self.clocks();
+        let numbered = (1..=clocks).zip(self.roles());
+        numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
+    }
+
+    /// What there is to say of a reading: what makes the position invalid first.
+    pub fn findings(&self, reading: Reading) -> Vec<Finding> {
+        let descriptor = self.descriptor();
+        let flags = reading.flags;
+        let mut findings = Vec::new();
+        for (index, pattern) in descriptor.patterns.iter().enumerate() {
+            if flags.has(Flags::pattern(index)) {
+                findings.push(Finding::Pattern { name: pattern.name.clone(), meaning: pattern.meaning });
+            }
+        }
+        let told = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
+        if flags.has(Flags::ONES) && !told {
+            findings.push(Finding::StuckHigh { sure: self.is_no_position(reading) });
+        }
+        if flags.has(Flags::ZEROS) {
+            findings.push(Finding::StuckLow { sure: self.is_no_position(reading) });
+        }
+        for (index, bit) in descriptor.errors.iter().enumerate() {
+            if flags.has(Flags::error(index)) {
+                let (name, meaning) = (bit.name.clone(), bit.meaning);
+                findings.push(Finding::Error { name, meaning, cleared_by_transfer: bit.cleared_by_transfer });
+            }
+        }
+        let of_the_form = [
+            (Flags::CODE, Finding::Code),
+            (Flags::PARITY, Finding::Parity),
+            (Flags::REPEAT, Finding::Repeat),
+            (Flags::PADDING, Finding::Padding),
+        ];
+        findings.extend(of_the_form.into_iter().filter(|(flag, _)| flags.has(*flag)).map(|(_, finding)| finding));
+        findings.sort_by_key(|finding| finding.meaning() == Meaning::Warning);
+        findings
+    }
+
+    /// The position may be used.
+    pub fn is_valid(&self, reading: Reading) -> bool {
+        let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_no_position(reading);
+        !reading.flags.any(self.invalid()) && !stuck
+    }
+
+    /// A healthy encoder does not send this.
+    fn is_no_position(&self, reading: Reading) -> bool {
+        let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
+        let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
+        reading.flags.any(errors)
+    }
+}
+
+fn put(roles: &mut [Role], clock: u8, role: Role) {
+    if let Some(place) = usize::from(clock).checked_sub(1).and_then(|index| roles.get_mut(index)) {
+        *place = role;
+    }
+}

@@ -1,0 +1,240 @@
+//! A frame that can work: positions to bits and back, fast. What each bit is: [`super::explain`].
+
+mod check;
+#[cfg(test)]
+mod tests;
+
+pub use check::LayoutError;
+
+use super::code::{Coding, gray, ones, ungray};
+use super::descriptor::{Coded, Descriptor};
+
+/// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    descriptor: Descriptor,
+    coding: Coding,
+    /// The higher and the lower part of the code word.
+    parts: [Part; 2],
+    /// The code word's lowest bit is pushed out.
+    lost: bool,
+    /// Bits of a word behind the area.
+    behind_area: u8,
+    /// Bits that are Gray as a whole, and how many lie behind them; none: 0 bits.
+    gray: (u8, u8),
+    /// Bits of a word that are always 0.
+    zeros: u64,
+    /// Each error bit in a word.
+    errors: Vec<u64>,
+    /// Error bits that speak when they are 0.
+    low: u64,
+    /// The parity bit in a word and those before it; 0 without one.
+    parity: (u64, u64),
+    /// The frames of the patterns.
+    patterns: Vec<u64>,
+    invalid: Flags,
+}
+
+/// A run of bits of the code word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Part {
+    /// Bits of the word behind it.
+    in_word: u8,
+    /// Bits of the code word behind it.
+    in_code: u8,
+    mask: u64,
+}
+
+/// What a frame says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// The position; 0 where [`Flags::CODE`] says that there is none.
+    pub position: u64,
+    /// What was seen beside it.
+    pub flags: Flags,
+}
+
+/// What was seen in a frame beside its position: error bits, patterns, and what does not fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Flags(u32);
+
+impl Flags {
+    /// Nothing.
+    pub const NONE: Flags = Flags(0);
+    /// The code word is none: digits above 9, or outside of gray excess.
+    pub const CODE: Flags = Flags(1 << 16);
+    /// A bit that is always 0 is 1: another layout, a wrong number of clocks, a disturbed line.
+    pub const PADDING: Flags = Flags(1 << 17);
+    /// The parity is wrong.
+    pub const PARITY: Flags = Flags(1 << 18);
+    /// The repetition is another.
+    pub const REPEAT: Flags = Flags(1 << 19);
+    /// Every bit is 1.
+    pub const ONES: Flags = Flags(1 << 20);
+    /// Every bit is 0.
+    pub const ZEROS: Flags = Flags(1 << 21);
+
+    /// Error bit `index` of the descriptor speaks.
+    pub const fn error(index: usize) -> Flags {
+        if index < 8 { Flags(1 << index) } else { Flags::NONE }
+    }
+
+    /// The frame is pattern `index` of the descriptor.
+    pub const fn pattern(index: usize) -> Flags {
+        if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
+    }
+
+    /// All of `other` are set.
+    pub const fn has(self, other: Flags) -> bool {
+        other.0 != 0 && self.0 & other.0 == other.0
+    }
+
+    /// Any of `other` is set.
+    pub const fn any(self, other: Flags) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// Both.
+    #[must_use]
+    pub const fn with(self, other: Flags) -> Flags {
+        Flags(self.0 | other.0)
+    }
+
+    #[must_use]
+    const fn when(self, condition: bool) -> Flags {
+        if condition { self } else { Flags::NONE }
+    }
+}
+
+impl Layout {
+    /// Checks a frame.
+    ///
+    /// # Errors
+    /// [`LayoutError`] with the reason why it cannot work.
+    pub fn new(descriptor: Descriptor) -> Result<Self, LayoutError> {
+        check::layout(descriptor)
+    }
+
+    /// The frame as it was designed.
+    pub const fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    /// The code of the positions; binary where the Gray code goes over more than them.
+    pub const fn coding(&self) -> &Coding {
+        &self.coding
+    }
+
+    /// Bits in a burst, 1…64.
+    pub const fn clocks(&self) -> u8 {
+        self.descriptor.clocks
+    }
+
+    /// The position's lowest bit is not sent: shifting right has pushed it out.
+    pub const fn loses_lowest_bit(&self) -> bool {
+        self.lost
+    }
+
+    /// Flags that say that a position is not valid.
+    pub const fn invalid(&self) -> Flags {
+        self.invalid
+    }
+
+    /// The frame of a position, in which those error bits speak that `flags` has; right-justified, the first clock's
+    /// bit the highest. `None` behind the last position.
+    pub fn encode(&self, position: u64, flags: Flags) -> Option<u64> {
+        let code = self.coding.encode(position)?;
+        let mut word =
+            self.parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word);
+        if self.descriptor.coded == Coded::Area {
+            word = self.over(word, gray);
+        }
+        if self.descriptor.shift_right {
+            word = word >> self.behind_area >> 1 << self.behind_area;
+        }
+        for (index, bit) in self.errors.iter().enumerate() {
+            word |= if flags.has(Flags::error(index)) { *bit } else { 0 };
+        }
+        word ^= self.low;
+        if self.descriptor.coded == Coded::AreaAndErrors {
+            word = self.over(word, gray);
+        }
+        let (bit, before) = self.parity;
+        let even = (word & before).count_ones() % 2 == 0;
+        word |= if even == self.even() { 0 } else { bit };
+        let frame = self.repeated(word);
+        Some(if self.descriptor.inverted { !frame & ones(self.clocks()) } else { frame })
+    }
+
+    /// What a frame says. Bits above its clocks are not looked at.
+    #[inline]
+    pub fn decode(&self, frame: u64) -> Reading {
+        let all = ones(self.clocks());
+        let frame = frame & all;
+        let mut flags = Flags::ONES.when(frame == all).with(Flags::ZEROS.when(frame == 0));
+        for (index, pattern) in self.patterns.iter().enumerate() {
+            flags = flags.with(Flags::pattern(index).when(*pattern == frame));
+        }
+        let frame = if self.descriptor.inverted { !frame & all } else { frame };
+        let sent = frame >> (self.clocks() - self.descriptor.word());
+        if self.descriptor.repeat.is_some() {
+            flags = flags.with(self.repetition(frame, sent));
+        }
+        let (bit, before) = self.parity;
+        let ones_in_all = (sent & (bit | before)).count_ones();
+        flags = flags.with(Flags::PARITY.when(bit != 0 && (ones_in_all % 2 == 0) != self.even()));
+
+        let mut word = if self.descriptor.coded == Coded::AreaAndErrors { self.over(sent, ungray) } else { sent };
+        for (index, bit) in self.errors.iter().enumerate() {
+            flags = flags.with(Flags::error(index).when((word ^ self.low) & bit != 0));
+        }
+        if self.descriptor.shift_right {
+            let area = word >> self.behind_area;
+            flags = flags.with(Flags::PADDING.when(area >> (self.descriptor.area - 1) != 0));
+            let back = area << 1 & ones(self.descriptor.area);
+            word = word & ones(self.behind_area) | back << self.behind_area;
+        }
+        if self.descriptor.coded == Coded::Area {
+            word = self.over(word, ungray);
+            if self.descriptor.shift_right {
+                word &= !(1 << self.behind_area);
+            }
+        }
+        flags = flags.with(Flags::PADDING.when(word & self.zeros != 0));
+        let code = self.parts.iter().fold(0, |code, part| code | (word >> part.in_word & part.mask) << part.in_code);
+        match self.coding.decode(code) {
+            Some(position) if self.lost => Reading { position: position & !1, flags },
+            Some(position) => Reading { position, flags },
+            None => Reading { position: 0, flags: flags.with(Flags::CODE) },
+        }
+    }
+
+    /// What many frames say, in their order. As many as the shorter of both has.
+    pub fn decode_all(&self, frames: &[u64], readings: &mut [Reading]) {
+        for (frame, reading) in frames.iter().zip(readings) {
+            *reading = self.decode(*frame);
+        }
+    }
+
+    /// Does something to the bits of a word that are Gray as a whole.
+    fn over(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
+        let (bits, behind) = self.gray;
+        what(word >> behind & ones(bits)) << behind | word & !(ones(bits) << behind)
+    }
+
+    fn even(&self) -> bool {
+        self.descriptor.parity.is_none_or(|parity| parity.even)
+    }
+
+    fn repeated(&self, word: u64) -> u64 {
+        let first = word << (self.clocks() - self.descriptor.word());
+        first | self.descriptor.repeat.map_or(0, |repeat| first >> (repeat.word + repeat.gap))
+    }
+
+    /// What stands behind the word against what should.
+    fn repetition(&self, frame: u64, word: u64) -> Flags {
+        let differs = frame ^ self.repeated(word);
+        let again = self.repeated(ones(self.descriptor.word()));
+        Flags::REPEAT.when(differs & again != 0).with(Flags::PADDING.when(differs & !again != 0))
+    }
+}

@@ -1,0 +1,19 @@
+//! SSI: frames of any layout, the families that the manual describes, and what their times allow.
+//!
+//! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual" below; the project's reference of it where a section is
+//! named so). The manual's pictures of bits are not to be had; layouts follow its text, which numbers the clocks from 1.
+
+mod code;
+mod descriptor;
+mod explain;
+mod layout;
+mod range;
+
+/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+pub const KIND: &str = "ssi";
+
+pub use code::{Code, CodeError, Coding, gray, ungray};
+pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
+pub use explain::{Cell, Finding, Role};
+pub use layout::{Flags, Layout, LayoutError, Reading};
+pub use range::{Fraction, Place, Range, RangeError};

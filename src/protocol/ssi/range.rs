@@ -1,0 +1,195 @@
+//! Which positions an encoder sends, and what they are: turns and steps, a round axis, a length (reference section 5).
+
+use super::code::{bits_of, ones};
+
+/// Positions from 0 to a last one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// Whole turns in some bits, steps within one in others. Without multiturn bits: a singleturn encoder.
+    Bits {
+        /// Bits of the revolutions, 0…32.
+        multiturn: u8,
+        /// Bits within one, 0…32.
+        singleturn: u8,
+    },
+    /// Any number of steps a turn, and of turns.
+    Steps {
+        /// Steps within a turn, at least 2.
+        per_turn: u32,
+        /// Turns, at least 1.
+        turns: u32,
+    },
+    /// Steps spread evenly over a number of turns that is a fraction; then it begins again (endless shaft).
+    RoundAxis {
+        /// Steps altogether, at least 2.
+        steps: u32,
+        /// Turns for them.
+        revolutions: Fraction,
+    },
+    /// A linear encoder.
+    Length {
+        /// Bits of the position, 1…64.
+        bits: u8,
+        /// Length of a step.
+        step_nanometres: u32,
+    },
+}
+
+/// A number of turns, more than none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fraction {
+    /// Above the line, at least 1.
+    pub numerator: u32,
+    /// Below it, at least 1.
+    pub denominator: u32,
+}
+
+/// Why there is no such range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RangeError {
+    /// A field is wider than it can be.
+    #[error("{field} must have at most {limit} bits, not {bits}")]
+    Wide {
+        /// `multiturn`, `singleturn` or `position`.
+        field: &'static str,
+        /// Bits asked for.
+        bits: u8,
+        /// Most bits.
+        limit: u8,
+    },
+    /// Nothing to tell apart.
+    #[error("a range of a single position says nothing: give it bits or steps")]
+    Empty,
+    /// A fraction with a zero in it.
+    #[error("revolutions must be more than 0/0: {0}/{1}")]
+    Fraction(u32, u32),
+}
+
+/// What a position is on the shaft or scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// On a shaft.
+    Shaft {
+        /// Whole turns.
+        turns: u64,
+        /// Steps within the turn.
+        steps: u64,
+        /// Angle within the turn, 0…360.
+        degrees: f64,
+    },
+    /// On a scale.
+    Length {
+        /// From the scale's zero.
+        millimetres: f64,
+    },
+}
+
+impl Range {
+    /// The last position.
+    ///
+    /// # Errors
+    /// [`RangeError`]: this range cannot be.
+    pub fn last(&self) -> Result<u64, RangeError> {
+        match *self {
+            Range::Bits { multiturn, singleturn } => {
+                for (field, bits) in [("multiturn", multiturn), ("singleturn", singleturn)] {
+                    if bits > 32 {
+                        return Err(RangeError::Wide { field, bits, limit: 32 });
+                    }
+                }
+                match multiturn + singleturn {
+                    0 => Err(RangeError::Empty),
+                    bits => Ok(ones(bits)),
+                }
+            }
+            Range::Steps { per_turn, turns } => {
+                let steps = u64::from(per_turn) * u64::from(turns);
+                if steps < 2 { Err(RangeError::Empty) } else { Ok(steps - 1) }
+            }
+            Range::RoundAxis { revolutions: Fraction { numerator, denominator }, .. }
+                if numerator == 0 || denominator == 0 =>
+            {
+                Err(RangeError::Fraction(numerator, denominator))
+            }
+            Range::RoundAxis { steps, .. } if steps < 2 => Err(RangeError::Empty),
+            Range::RoundAxis { steps, .. } => Ok(u64::from(steps) - 1),
+            Range::Length { bits: 0, .. } => Err(RangeError::Empty),
+            Range::Length { bits, .. } if bits > 64 => Err(RangeError::Wide { field: "position", bits, limit: 64 }),
+            Range::Length { bits, .. } => Ok(ones(bits)),
+        }
+    }
+
+    /// What a position is. It may be behind the last one: nothing wraps here.
+    pub fn place(&self, position: u64) -> Place {
+        match *self {
+            Range::Bits { singleturn, .. } => {
+                let steps = position & ones(singleturn);
+                let turns = position.checked_shr(u32::from(singleturn)).unwrap_or(0);
+                Place::Shaft { turns, steps, degrees: angle(steps, power_of_two(singleturn)) }
+            }
+            Range::Steps { per_turn, .. } => {
+                let per_turn = u64::from(per_turn.max(1));
+                let steps = position % per_turn;
+                Place::Shaft { turns: position / per_turn, steps, degrees: angle(steps, per_turn as f64) }
+            }
+            Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
+                let around = u128::from(position) * u128::from(numerator);
+                let turn = (u128::from(steps) * u128::from(denominator)).max(1);
+                let turns = around / turn;
+                let first = (turns * turn).div_ceil(u128::from(numerator).max(1));
+                Place::Shaft {
+                    turns: turns as u64,
+                    steps: u128::from(position).saturating_sub(first) as u64,
+                    degrees: (around % turn) as f64 * 360.0 / turn as f64,
+                }
+            }
+            Range::Length { step_nanometres, .. } => {
+                Place::Length { millimetres: position as f64 * f64::from(step_nanometres) * 1e-6 }
+            }
+        }
+    }
+
+    /// The position of a turn and steps within it; `None` where the range has no such turn or step, or no turns at all.
+    pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
+        let last = self.last().ok()?;
+        let position = match *self {
+            Range::Bits { singleturn, .. } if steps <= ones(singleturn) => turns.checked_mul(1 << singleturn)? | steps,
+            Range::Steps { per_turn, .. } if steps < u64::from(per_turn) => {
+                turns.checked_mul(u64::from(per_turn))?.checked_add(steps)?
+            }
+            Range::RoundAxis { steps: all, revolutions: Fraction { numerator, denominator } } => {
+                let turn = u128::from(all) * u128::from(denominator);
+                let first = (u128::from(turns) * turn).div_ceil(u128::from(numerator));
+                let next = (u128::from(turns) + 1).checked_mul(turn)?.div_ceil(u128::from(numerator));
+                let position = first + u128::from(steps);
+                u64::try_from(position).ok().filter(|_| position < next)?
+            }
+            Range::Bits { .. } | Range::Steps { .. } | Range::Length { .. } => return None,
+        };
+        (position <= last).then_some(position)
+    }
+
+    /// Bits of the revolutions, where they are bits of their own.
+    pub const fn multiturn_bits(&self) -> u8 {
+        match self {
+            Range::Bits { multiturn, .. } => *multiturn,
+            _ => 0,
+        }
+    }
+
+    /// Bits that the positions need in binary.
+    ///
+    /// # Errors
+    /// [`RangeError`]: this range cannot be.
+    pub fn bits(&self) -> Result<u8, RangeError> {
+        self.last().map(bits_of)
+    }
+}
+
+fn power_of_two(bits: u8) -> f64 {
+    f64::from(bits).exp2()
+}
+
+fn angle(steps: u64, per_turn: f64) -> f64 {
+    steps as f64 * 360.0 / per_turn
+}
