@@ -1,7 +1,10 @@
 //! How a position becomes a code word: binary, Gray, Gray excess, BCD (SICK SSI description 2.4; reference section 2).
 
+use serde::Deserialize;
+
 /// A code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Code {
     /// The number itself.
     Binary,

@@ -1,6 +1,8 @@
 //! A frame as it is designed: what is on which clock. Anything can be written down here; whether it can work is
 //! [`super::Layout`]'s to say.
 
+use serde::Deserialize;
+
 use super::code::Code;
 use super::range::Range;
 
@@ -47,7 +49,8 @@ pub enum Coded {
 }
 
 /// A bit that is no position.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ErrorBit {
     /// As its manual calls it.
     pub name: String,
@@ -56,13 +59,16 @@ pub struct ErrorBit {
     /// What it says of the position.
     pub meaning: Meaning,
     /// It speaks when it is 0.
+    #[serde(default)]
     pub active_low: bool,
     /// A transfer clears it: it says what happened since the last one.
+    #[serde(default)]
     pub cleared_by_transfer: bool,
 }
 
 /// What a bit or word that is no position says of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Meaning {
     /// It is not valid.
     Invalid,
@@ -89,7 +95,8 @@ pub struct Repeat {
 }
 
 /// A word with a meaning of its own.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pattern {
     /// What it stands for.
     pub name: String,
@@ -100,7 +107,8 @@ pub struct Pattern {
 }
 
 /// The bits of a whole frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Word {
     /// Ones alone.
     Ones,

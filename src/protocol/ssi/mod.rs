@@ -6,8 +6,10 @@
 mod code;
 mod descriptor;
 mod explain;
+mod family;
 mod layout;
 mod range;
+mod timing;
 
 /// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
 pub const KIND: &str = "ssi";
@@ -15,5 +17,10 @@ pub const KIND: &str = "ssi";
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
 pub use explain::{Cell, Finding, Role};
+pub use family::{
+    Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
+    StepLimits, TextError,
+};
 pub use layout::{Flags, Layout, LayoutError, Reading};
 pub use range::{Fraction, Place, Range, RangeError};
+pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};
