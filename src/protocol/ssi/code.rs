@@ -62,7 +62,7 @@ impl Coding {
         let binary_bits = bits_of(last);
         let (bits, offset) = match code {
             Code::Binary | Code::Gray => (binary_bits, 0),
-            Code::GrayExcess if last % 2 == 0 => return Err(CodeError::Odd(u128::from(last) + 1)),
+            Code::GrayExcess if last.is_multiple_of(2) => return Err(CodeError::Odd(u128::from(last) + 1)),
             Code::GrayExcess => (binary_bits, (ones(binary_bits) - last) / 2),
             Code::Bcd => {
                 let digits = last.checked_ilog10().map_or(1, |log| log + 1);
@@ -129,7 +129,7 @@ fn decimal_to_bcd(mut number: u64) -> u64 {
     let mut word = 0;
     let mut place = 0;
     while number > 0 && place < 64 {
-        word |= number % 10 << place;
+        word |= (number % 10) << place;
         number /= 10;
         place += 4;
     }

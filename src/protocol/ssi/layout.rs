@@ -160,7 +160,7 @@ impl Layout {
             word = self.over(word, gray);
         }
         let (bit, before) = self.parity;
-        let even = (word & before).count_ones() % 2 == 0;
+        let even = (word & before).count_ones().is_multiple_of(2);
         word |= if even == self.even() { 0 } else { bit };
         let frame = self.repeated(word);
         Some(if self.descriptor.inverted { !frame & ones(self.clocks()) } else { frame })
@@ -182,7 +182,7 @@ impl Layout {
         }
         let (bit, before) = self.parity;
         let ones_in_all = (sent & (bit | before)).count_ones();
-        flags = flags.with(Flags::PARITY.when(bit != 0 && (ones_in_all % 2 == 0) != self.even()));
+        flags = flags.with(Flags::PARITY.when(bit != 0 && ones_in_all.is_multiple_of(2) != self.even()));
 
         let mut word = if self.descriptor.coded == Coded::AreaAndErrors { self.over(sent, ungray) } else { sent };
         for (index, bit) in self.errors.iter().enumerate() {

@@ -7,6 +7,7 @@ mod code;
 mod descriptor;
 mod explain;
 mod family;
+mod find;
 mod layout;
 mod range;
 mod timing;
@@ -21,6 +22,7 @@ pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
     StepLimits, TextError,
 };
+pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
 pub use layout::{Flags, Layout, LayoutError, Reading};
 pub use range::{Fraction, Place, Range, RangeError};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};
