@@ -25,4 +25,5 @@ mod cli_simulate;
 mod cli_status;
 mod foreign;
 mod source;
+mod ssi_export;
 mod support;

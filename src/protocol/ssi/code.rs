@@ -88,6 +88,11 @@ impl Coding {
         self.last
     }
 
+    /// Gray excess: the number whose Gray code stands for position 0; 0 for the other codes.
+    pub const fn offset(&self) -> u64 {
+        self.offset
+    }
+
     /// The code word of a position; `None` behind the last one.
     pub fn encode(&self, position: u64) -> Option<u64> {
         if position > self.last {

@@ -12,37 +12,37 @@ use super::descriptor::{Coded, Descriptor};
 /// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    descriptor: Descriptor,
-    coding: Coding,
+    pub(super) descriptor: Descriptor,
+    pub(super) coding: Coding,
     /// The higher and the lower part of the code word.
-    parts: [Part; 2],
+    pub(super) parts: [Part; 2],
     /// The code word's lowest bit is pushed out.
-    lost: bool,
+    pub(super) lost: bool,
     /// Bits of a word behind the area.
-    behind_area: u8,
+    pub(super) behind_area: u8,
     /// Bits that are Gray as a whole, and how many lie behind them; none: 0 bits.
-    gray: (u8, u8),
+    pub(super) gray: (u8, u8),
     /// Bits of a word that are always 0.
-    zeros: u64,
+    pub(super) zeros: u64,
     /// Each error bit in a word.
-    errors: Vec<u64>,
+    pub(super) errors: Vec<u64>,
     /// Error bits that speak when they are 0.
-    low: u64,
+    pub(super) low: u64,
     /// The parity bit in a word and those before it; 0 without one.
-    parity: (u64, u64),
+    pub(super) parity: (u64, u64),
     /// The frames of the patterns.
-    patterns: Vec<u64>,
-    invalid: Flags,
+    pub(super) patterns: Vec<u64>,
+    pub(super) invalid: Flags,
 }
 
 /// A run of bits of the code word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Part {
+pub(super) struct Part {
     /// Bits of the word behind it.
-    in_word: u8,
+    pub(super) in_word: u8,
     /// Bits of the code word behind it.
-    in_code: u8,
-    mask: u64,
+    pub(super) in_code: u8,
+    pub(super) mask: u64,
 }
 
 /// What a frame says.
@@ -56,7 +56,7 @@ pub struct Reading {
 
 /// What was seen in a frame beside its position: error bits, patterns, and what does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Flags(u32);
+pub struct Flags(pub(super) u32);
 
 impl Flags {
     /// Nothing.

@@ -6,6 +6,7 @@
 mod code;
 mod descriptor;
 mod explain;
+mod export;
 mod family;
 mod find;
 mod layout;
@@ -18,6 +19,7 @@ pub const KIND: &str = "ssi";
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
 pub use explain::{Cell, Finding, Role};
+pub use export::{FormatError, bit_table, c99, from_linuxcnc, structured_text, to_linuxcnc};
 pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
     StepLimits, TextError,

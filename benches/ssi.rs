@@ -1,0 +1,91 @@
+//! How fast SSI frames are decoded (goal: 100 million a second on one core for 25 bits in Gray), beside a decoder that
+//! goes through them bit by bit, and how long it takes to find the layout of 2000 frames.
+//!
+//! `cargo bench --bench ssi`
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use encoder_studio::protocol::ssi::{Families, Flags, Layout, Reading, Settings, find};
+
+const FRAMES: usize = 1 << 14;
+const PASSES: usize = 64;
+const ROUNDS: usize = 9;
+
+/// Median of some rounds, in seconds.
+fn median<T>(mut work: impl FnMut() -> T) -> f64 {
+    let mut times: Vec<f64> = (0..ROUNDS)
+        .map(|_| {
+            let begun = Instant::now();
+            black_box(work());
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[ROUNDS / 2]
+}
+
+fn layout(text: &str) -> Layout {
+    let (key, settings) = Settings::parse(text).unwrap();
+    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+}
+
+/// Frames of any positions, some with an error bit.
+fn frames(layout: &Layout) -> Vec<u64> {
+    let mut random = fastrand::Rng::with_seed(1);
+    let frame = |_| {
+        let flags = if random.u8(..) == 0 { Flags::error(0) } else { Flags::NONE };
+        layout.encode(random.u64(..=layout.coding().last()), flags).unwrap()
+    };
+    (0..FRAMES).map(frame).collect()
+}
+
+/// 25 bits in Gray, 12 of them turns, the way that the manual tells it: bit by bit, from the first clock on.
+fn bit_by_bit(frame: u64) -> (u32, u32) {
+    let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
+    for clock in 1..=25 {
+        before ^= frame >> (25 - clock) & 1;
+        if clock <= 12 {
+            turns = turns << 1 | before as u32;
+        } else {
+            steps = steps << 1 | before as u32;
+        }
+    }
+    (turns, steps)
+}
+
+fn main() {
+    println!("{FRAMES} frames {PASSES} times over, medians of {ROUNDS}\n");
+    for text in
+        ["atm60,code=gray", "atm60,code=gray,err=fix", "afm60,code=gray", "atm60,steps=3600,code=gray-excess", "ttk70"]
+    {
+        let layout = layout(text);
+        let frames = frames(&layout);
+        let mut readings = vec![Reading::default(); FRAMES];
+        let seconds = median(|| {
+            for _ in 0..PASSES {
+                layout.decode_all(black_box(&frames), &mut readings);
+                black_box(&readings);
+            }
+        });
+        println!("{text:36} {:7.1} million frames/s", (FRAMES * PASSES) as f64 / seconds / 1e6);
+    }
+    let plain = layout("atm60,code=gray");
+    let frames = frames(&plain);
+    let mut readings = vec![(0, 0); FRAMES];
+    let seconds = median(|| {
+        for _ in 0..PASSES {
+            for (reading, frame) in readings.iter_mut().zip(black_box(&frames)) {
+                *reading = bit_by_bit(*frame);
+            }
+            black_box(&readings);
+        }
+    });
+    println!("{:36} {:7.1} million frames/s", "bit by bit, 25 bits in Gray", (FRAMES * PASSES) as f64 / seconds / 1e6);
+
+    let turning: Vec<u64> = (0..2000).filter_map(|at| plain.encode(4_000_000 + at * 13 / 10, Flags::NONE)).collect();
+    let families = Families::built_in();
+    let seconds = median(|| find(black_box(&turning), 25, &families));
+    println!("\nthe layout of 2000 frames of 25 bits is found in {:.0} ms", seconds * 1e3);
+}

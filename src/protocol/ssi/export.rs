@@ -1,0 +1,22 @@
+//! A frame for other programs: a decoder in C and in structured text, a picture, a table, the settings of a control's SSI
+//! module, the format string of LinuxCNC.
+
+mod c;
+mod linuxcnc;
+mod procedure;
+mod structured_text;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use c::c99;
+pub use linuxcnc::{FormatError, from_linuxcnc, to_linuxcnc};
+pub use structured_text::structured_text;
+pub use table::bit_table;
+
+/// A name as programs have them: letters, digits and underscores, no digit first.
+fn identifier(name: &str) -> String {
+    let word: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    if word.starts_with(|c: char| c.is_ascii_digit()) || word.is_empty() { format!("_{word}") } else { word }
+}

@@ -1,0 +1,62 @@
+use super::*;
+use crate::protocol::ssi::{Families, Layout, Settings};
+
+fn layout(text: &str) -> Layout {
+    let (key, settings) = Settings::parse(text).unwrap();
+    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+}
+
+#[test]
+fn format_strings_of_linuxcnc() {
+    let table = [
+        ("atm60,code=gray", "position%25ge"),
+        ("ahs36", "error%1bposition%14e"),
+        ("ahs36,st=12,code=gray", "error%1b%2pposition%12ge"),
+        ("ahm36,st=12,err=following", "%2perror%1bposition%24e"),
+        ("atm60,mt=8,st=8", "%5pposition%16e%4p"),
+        ("ttk70,clocks=31", "%5ptemperature%1bgap%1bposition%24e"),
+        ("ars60", "transmitter%1bposition-error%1bposition%15e"),
+    ];
+    for (text, format) in table {
+        let layout = layout(text);
+        assert_eq!(to_linuxcnc(&layout).as_deref(), Ok(format), "{text}");
+        let read = from_linuxcnc(format).unwrap();
+        assert_eq!(to_linuxcnc(&read).as_deref(), Ok(format), "{text}");
+        for frame in [0x123_4567, 0x2A_5B5A, 1] {
+            assert_eq!(read.decode(frame).position, layout.decode(frame).position, "{text}");
+        }
+    }
+    assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clocks(), 25);
+}
+
+#[test]
+fn what_linuxcnc_cannot_do_is_said() {
+    let cases = [
+        ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
+        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that goes over zeros or error bits"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(to_linuxcnc(&layout(text)).unwrap_err().to_string(), reason);
+    }
+    let cases = [
+        ("", "there is no position: a field of the kind e or u, with g before for Gray"),
+        ("error%1b", "there is no position: a field of the kind e or u, with g before for Gray"),
+        ("a%12eb%12e", "there are two positions, \"b\" and \"a\""),
+        ("position%24", "\"position%24\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
+        ("position%0e", "\"position%0e\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
+        ("low%16l", "\"l\" is a field of other encoders: p b u s f e are understood, with g before for Gray"),
+        ("position%60e%5p", "the fields have more than 64 bits together"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(from_linuxcnc(text).unwrap_err().to_string(), reason, "{text}");
+    }
+}
+
+#[test]
+fn a_row_for_each_clock() {
+    let table = bit_table(&layout("ahs36,st=12,err=following"));
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 16);
+    assert_eq!(rows[..2], ["clock,frame_bit,meaning", "1,14,ST11"]);
+    assert_eq!(rows[12..], ["12,3,ST0", "13,2,ERROR", "14,1,0", "15,0,0"]);
+}
