@@ -16,6 +16,7 @@ mod positions;
 mod profiles;
 mod runner;
 mod simulate;
+mod ssi;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -144,6 +145,7 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),
         Command::Decode(decode) => (kind::of(decode.protocol).decode)(&output, &decode.hex),
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
+        Command::Ssi(command) => ssi::ssi(&output, &command),
         Command::Simulate(simulate) => simulate::simulate(&simulate),
         Command::Diff(diff) => profiles::diff(common, &output, &diff),
         Command::Verify(verify) => profiles::verify(common, &output, &verify.file),

@@ -22,6 +22,7 @@ mod cli_offline;
 mod cli_ports;
 mod cli_position;
 mod cli_simulate;
+mod cli_ssi;
 mod cli_status;
 mod foreign;
 mod source;

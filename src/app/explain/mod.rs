@@ -6,6 +6,7 @@ pub mod biss;
 mod detail;
 pub mod hiperface;
 pub mod signal;
+pub mod ssi;
 
 use std::path::Path;
 

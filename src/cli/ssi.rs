@@ -1,0 +1,249 @@
+//! `ssi`: frames of any layout, without an encoder.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::args::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
+use super::number::{out_of_range, parse_number};
+use super::output::{Lines, Output};
+use super::runner::failed;
+use super::{Done, Failure, Result};
+use crate::app::explain;
+use crate::protocol::ssi::{
+    Families, Finding, Flags, Layout, Meaning, Place, Reading, Role, Settings, bit_table, c99, from_linuxcnc,
+    structured_text, to_linuxcnc,
+};
+use crate::store::write_atomically;
+
+pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
+    match command {
+        Ssi::Decode(arguments) => decode(output, arguments),
+        Ssi::Encode(arguments) => encode(output, arguments),
+        Ssi::Export(arguments) => export(output, arguments),
+    }
+}
+
+/// The layout that `--layout` names. What the manual does not speak of is a remark.
+fn layout(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Layout> {
+    if let Some(format) = spec.strip_prefix("linuxcnc:") {
+        return from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")));
+    }
+    let families = Families::built_in();
+    let (key, settings) = Settings::parse(spec).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+    let Some(family) = families.named(&key) else {
+        let known: Vec<&str> = families.iter().map(|family| family.key.as_str()).collect();
+        return Err(Failure::Usage(format!("--layout: there is no family {key:?}; families: {}", known.join(" "))));
+    };
+    let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
+    for advice in &resolved.advice {
+        output.remark(&explain::ssi::advice(advice).terminal());
+    }
+    Ok(resolved.layout)
+}
+
+fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
+    let layout = layout(output, spec)?;
+    // All are looked at before any is told.
+    let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
+    for frame in frames {
+        let told = Told { layout: &layout, frame, reading: layout.decode(frame) };
+        output.show(&told.json(), &told.text())?;
+    }
+    Ok(Done::Well)
+}
+
+/// The bits of a frame, right-justified.
+fn frame(layout: &Layout, text: &str) -> Result<u64> {
+    let clocks = layout.clocks();
+    let hex = text.strip_prefix("0x").or(text.strip_prefix("0X"));
+    let bits = text.strip_prefix("0b").or(text.strip_prefix("0B")).unwrap_or(text).replace('_', "");
+    let (frame, count) = match hex {
+        Some(digits) => {
+            let frame = u64::from_str_radix(digits, 16).ok();
+            (frame, frame.map(|frame| u64::BITS - frame.leading_zeros()))
+        }
+        None if bits.len() > 64 && bits.chars().all(|bit| matches!(bit, '0' | '1')) => {
+            (Some(0), u32::try_from(bits.len()).ok())
+        }
+        None => (u64::from_str_radix(&bits, 2).ok().filter(|_| !bits.starts_with('+')), u32::try_from(bits.len()).ok()),
+    };
+    let (Some(frame), Some(count)) = (frame, count) else {
+        let form =
+            format!("{text:?} is not a frame: bits in the order of the clocks (0b1010 or 1010), or 0x and hex digits");
+        return Err(Failure::Usage(form));
+    };
+    let clocks = u32::from(clocks);
+    if count > clocks || (hex.is_none() && count != clocks) {
+        let has = if hex.is_some() { "needs" } else { "has" };
+        return Err(Failure::Failed(vec![format!("{text} {has} {count} bits; the layout has {clocks} clocks.")]));
+    }
+    Ok(frame)
+}
+
+/// A frame with what it says.
+struct Told<'a> {
+    layout: &'a Layout,
+    frame: u64,
+    reading: Reading,
+}
+
+impl Told<'_> {
+    /// The position, if the bits are one, and what it is.
+    fn place(&self) -> Option<(u64, Place)> {
+        let range = self.layout.descriptor().range;
+        let is_none = self.reading.flags.has(Flags::CODE);
+        (!is_none).then(|| (self.reading.position, range.place(self.reading.position)))
+    }
+
+    fn bits(&self) -> String {
+        format!("{:0width$b}", self.frame, width = usize::from(self.layout.clocks()))
+    }
+
+    fn names(&self, meaning: Meaning) -> Vec<String> {
+        let findings = self.layout.findings(self.reading);
+        findings.iter().filter(|finding| finding.meaning() == meaning).map(name).collect()
+    }
+
+    fn json(&self) -> Json {
+        let place = self.place();
+        let mut json = Map::new();
+        json.insert("raw_bits".to_owned(), json!(self.bits()));
+        json.insert("position".to_owned(), json!(place.map(|(position, _)| position)));
+        let (turns, steps, degrees) = match place {
+            Some((_, Place::Shaft { turns, steps, degrees })) => (json!(turns), json!(steps), json!(degrees)),
+            _ => (Json::Null, Json::Null, Json::Null),
+        };
+        json.extend([("turns".to_owned(), turns), ("steps".to_owned(), steps), ("degrees".to_owned(), degrees)]);
+        if let Some((_, Place::Length { millimetres })) = place {
+            json.insert("millimetres".to_owned(), json!(millimetres));
+        }
+        json.insert("valid".to_owned(), json!(self.layout.is_valid(self.reading)));
+        json.insert("errors".to_owned(), json!(self.names(Meaning::Invalid)));
+        json.insert("warnings".to_owned(), json!(self.names(Meaning::Warning)));
+        Json::Object(json)
+    }
+
+    fn text(&self) -> String {
+        let mut lines = Lines::default();
+        lines.add("frame", fields(self.layout, self.frame));
+        match self.place() {
+            Some((position, Place::Shaft { turns, steps, degrees })) => {
+                lines.add("position", position);
+                lines.add("turns", turns).add("steps", steps).add("degrees", format!("{degrees:.4}"));
+            }
+            Some((position, Place::Length { millimetres })) => {
+                lines.add("position", position).add("millimetres", format!("{millimetres:.4}"));
+            }
+            None => {
+                lines.add("position", "none");
+            }
+        }
+        let findings = self.layout.findings(self.reading);
+        let told = findings.iter().map(|finding| format!("{}\n", explain::ssi::finding(finding).terminal()));
+        lines.text() + &told.collect::<String>()
+    }
+}
+
+/// The bits, those that belong together in one word: `MT 000100100011  ST 10101011110000  ERROR 0`.
+fn fields(layout: &Layout, frame: u64) -> String {
+    let mut words: Vec<(String, String)> = Vec::new();
+    for cell in layout.cells(frame) {
+        let name = match cell.role {
+            Role::Zero => "0".to_owned(),
+            Role::Multiturn(_) => "MT".to_owned(),
+            Role::Singleturn(_) => "ST".to_owned(),
+            Role::Position(_) => "P".to_owned(),
+            Role::Again(_) => "again".to_owned(),
+            Role::Error(_) | Role::Parity => layout.role_name(cell.role),
+        };
+        let bit = if cell.bit { '1' } else { '0' };
+        match words.last_mut() {
+            Some((last, bits)) if *last == name => bits.push(bit),
+            _ => words.push((name, bit.to_string())),
+        }
+    }
+    let words: Vec<String> = words.into_iter().map(|(name, bits)| format!("{name} {bits}")).collect();
+    words.join("  ")
+}
+
+/// What a script calls a finding.
+fn name(finding: &Finding) -> String {
+    match finding {
+        Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
+        Finding::StuckHigh { .. } => "line stuck high".to_owned(),
+        Finding::StuckLow { .. } => "line stuck low".to_owned(),
+        Finding::Code => "invalid code".to_owned(),
+        Finding::Padding => "format mismatch".to_owned(),
+        Finding::Parity => "parity".to_owned(),
+        Finding::Repeat => "repetition".to_owned(),
+    }
+}
+
+fn encode(output: &Output, arguments: &SsiEncode) -> Result {
+    let layout = layout(output, &arguments.layout)?;
+    let position = position(&layout, arguments)?;
+    let errors = &layout.descriptor().errors;
+    let mut flags = Flags::NONE;
+    for name in &arguments.errors {
+        let Some(index) = errors.iter().position(|bit| bit.name.eq_ignore_ascii_case(name)) else {
+            let known: Vec<&str> = errors.iter().map(|bit| bit.name.as_str()).collect();
+            let known = if known.is_empty() { "this layout has none".to_owned() } else { known.join(", ") };
+            return Err(Failure::Usage(format!("there is no error bit {name:?}: {known}")));
+        };
+        flags = flags.with(Flags::error(index));
+    }
+    let last = layout.coding().last();
+    let frame = layout.encode(position, flags).ok_or_else(|| beyond("position", &position.to_string(), last))?;
+    if layout.loses_lowest_bit() && position % 2 == 1 {
+        output.remark("Shifting to the right pushes the lowest bit out: the frame is that of the position before.");
+    }
+    let clocks = usize::from(layout.clocks());
+    let bits = format!("{frame:0clocks$b}");
+    let hex = format!("{frame:0digits$X}", digits = clocks.div_ceil(4));
+    let mut lines = Lines::default();
+    lines.add("bits", &bits).add("hex", &hex).add("frame", fields(&layout, frame));
+    output.show(&json!({ "bits": bits, "hex": hex }), &lines.text())?;
+    Ok(Done::Well)
+}
+
+fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
+    let last = layout.coding().last();
+    let number = |what: &str, text: &String, last: u64| {
+        let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("--{what}: {text:?} is not a number")))?;
+        u64::try_from(number).ok().filter(|number| *number <= last).ok_or_else(|| beyond(what, text, last))
+    };
+    if let Some(text) = &arguments.position {
+        return number("position", text, last);
+    }
+    let range = layout.descriptor().range;
+    let Place::Shaft { turns, .. } = range.place(last) else {
+        return Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()));
+    };
+    let turns = arguments.turns.as_ref().map_or(Ok(0), |text| number("turns", text, turns))?;
+    // The last step of this turn: one before the next turn begins, or the last position of all.
+    let begins = range.position(turns, 0).unwrap_or(0);
+    let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
+    let text = arguments.steps.as_ref().ok_or_else(|| Failure::Usage("give --position, or --steps".to_owned()))?;
+    Ok(begins + number("steps", text, next - begins)?)
+}
+
+fn beyond(what: &str, text: &str, last: u64) -> Failure {
+    out_of_range(what, text, 0, i64::try_from(last).unwrap_or(i64::MAX))
+}
+
+fn export(output: &Output, SsiExport { layout: spec, format, file }: &SsiExport) -> Result {
+    let layout = layout(output, spec)?;
+    let text = match format {
+        SsiFormat::C => c99(&layout, &spec.spec),
+        SsiFormat::St => structured_text(&layout, &spec.spec),
+        SsiFormat::Linuxcnc => to_linuxcnc(&layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
+        SsiFormat::Csv => bit_table(&layout),
+    };
+    match file {
+        None => output.show(&json!({ "text": text }), &text)?,
+        Some(path) => {
+            write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file(&error)))?;
+            output.show(&json!({ "file": path.display().to_string() }), "")?;
+        }
+    }
+    Ok(Done::Well)
+}

@@ -1,0 +1,108 @@
+//! `ssi`: frames without an encoder. Expected frames are those of the reference, section 8.
+
+use serde_json::{Value, json};
+
+use super::support::Bench;
+
+#[test]
+fn frames_are_made_and_read() {
+    let bench = Bench::new();
+    let table: [(&[&str], &str, &str); 6] = [
+        (&["ahm36", "--turns", "0x123", "--steps", "0x2A5B"], "000100100011101010010110110", "091D4B6"),
+        (&["ahm36,code=gray", "--turns", "0x123", "--steps", "0x2A5B"], "000110110010011111011101100", "0D93EEC"),
+        (&["ahs36,st=12,err=following", "--steps", "0xABC", "--error", "error"], "101010111100100", "55E4"),
+        (
+            &["afm60,st=15", "--turns", "0x5A5", "--steps", "0x4321", "--error", "ERRSYNC"],
+            "010110100101100001100100001001",
+            "16961909",
+        ),
+        (
+            &["atm60,steps=3600,code=gray-excess,align=right24", "--position", "1234"],
+            "0000000000000111001011110",
+            "0000E5E",
+        ),
+        (&["ttk70", "--position", "0xABCDEF"], "10101011110011011110111100", "2AF37BC"),
+    ];
+    for (words, bits, hex) in table {
+        let encoded = bench.run(&[&["ssi", "encode", "--json", "--layout"], words].concat()).json();
+        assert_eq!(encoded, json!({ "bits": bits, "hex": hex }), "{words:?}");
+    }
+    let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
+    for frame in ["000100100011101010010110110", "0b000100100011101010010110110", "0x091D4B6"] {
+        let told = decoded("ahm36", frame);
+        // 2A5Bh of 16384 steps: 238.0847… degrees.
+        assert_eq!(told["raw_bits"], "000100100011101010010110110");
+        assert_eq!(
+            (&told["position"], &told["turns"], &told["steps"]),
+            (&json!(4_778_587), &json!(0x123), &json!(0x2A5B))
+        );
+        assert!((told["degrees"].as_f64().unwrap() - 10843.0 * 360.0 / 16384.0).abs() < 1e-9);
+        assert_eq!((&told["errors"], &told["warnings"], &told["valid"]), (&json!([]), &json!([]), &json!(true)));
+    }
+    let told = decoded("ttk70,clocks=31", "0x091A2B40");
+    assert_eq!(
+        (&told["errors"], &told["turns"], &told["millimetres"]),
+        (&json!(["gap"]), &Value::Null, &json!(1193.046))
+    );
+    assert_eq!(decoded("kh53", "0xFFFFFE")["errors"], json!(["overspeed or gap"]));
+    assert_eq!(decoded("kh53", "0x0FFFFE")["warnings"], json!(["perhaps overspeed or gap"]));
+    assert_eq!(decoded("afm60s", "0x1FFFFFFFF")["errors"][0], "safety fault");
+    assert_eq!(decoded("afm60", "0x1FFFFFFFF")["errors"][0], "line stuck high");
+    assert_eq!(decoded("ahs36,st=12", "101010111100010")["warnings"], json!(["format mismatch"]));
+    let none = decoded("atm60,steps=3600,code=gray-excess", "0x0");
+    assert_eq!((&none["position"], &none["errors"]), (&Value::Null, &json!(["line stuck low", "invalid code"])));
+    let text = bench.run(&["ssi", "decode", "--layout", "ahm36", "000100100011101010010110110"]).out;
+    assert!(text.contains("MT 000100100011  ST 10101001011011  ERROR 0"), "{text}");
+}
+
+#[test]
+fn layouts_go_to_other_programs() {
+    let bench = Bench::new();
+    let export = |format: &str| bench.run(&["ssi", "export", "--layout", "ahs36,code=gray", "--format", format]).out;
+    assert_eq!(export("linuxcnc"), "error%1bposition%14ge\n");
+    assert!(export("c").contains("ssi_reading ssi_decode(uint64_t frame)"));
+    assert!(export("st").contains("FUNCTION_BLOCK SSI_DECODE"));
+    assert_eq!(export("csv").lines().nth(15), Some("15,0,ERROR"));
+    let file = bench.file("decoder.c");
+    bench.run(&["ssi", "export", "--layout", "atm60", "--format", "c", "-o", &file]);
+    assert!(bench.read("decoder.c").starts_with("/* SSI decoder: atm60\n"));
+    let told = bench.run(&["ssi", "decode", "--json", "--layout", "linuxcnc:error%1bposition%14ge", "0x7EEC"]).json();
+    assert_eq!(told["position"], 0x2A5B);
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let bench = Bench::new();
+    let fails = |status: i32, words: &[&str], said: &[&str]| {
+        bench.run(&[&["ssi"], words].concat()).fails(status, said);
+    };
+    fails(2, &["decode", "--layout", "bce", "0"], &["no family \"bce\"", "ahs36 ahm36", "kh53"]);
+    fails(2, &["decode", "--layout", "ahs36,code=grey", "0"], &["binary, gray, gray-excess or bcd", "grey"]);
+    fails(2, &["decode", "--layout", "ahs36", "12"], &["\"12\" is not a frame", "0b1010"]);
+    fails(2, &["encode", "--layout", "ahs36"], &["--position"]);
+    fails(2, &["encode", "--layout", "ahs36", "--steps", "1", "--error", "GAP"], &["\"GAP\"", "ERROR"]);
+    fails(2, &["encode", "--layout", "ttk70", "--steps", "1"], &["a length", "--position"]);
+    fails(1, &["decode", "--layout", "ahs36", "1010"], &["1010 has 4 bits", "15 clocks"]);
+    fails(1, &["decode", "--layout", "ahs36", "0x8000"], &["needs 16 bits", "15 clocks"]);
+    fails(1, &["encode", "--layout", "ahs36", "--position", "16384"], &["not within 0 to 16383"]);
+    fails(1, &["encode", "--layout", "ahs36", "--position", "-1"], &["not within 0 to 16383"]);
+    fails(
+        1,
+        &["encode", "--layout", "ahm36,steps=1000,turns=400", "--turns", "2", "--steps", "1000"],
+        &["not within 0 to 999"],
+    );
+    fails(1, &["encode", "--layout", "ttk70,clocks=32", "--position", "1"], &["at most 31 clocks, not 32"]);
+    fails(
+        1,
+        &["encode", "--layout", "ahs36,steps=359,code=gray-excess", "--position", "1"],
+        &["even number of steps", "359"],
+    );
+    fails(
+        1,
+        &["export", "--layout", "ahs36,steps=360,code=gray-excess", "--format", "linuxcnc"],
+        &["cannot decode gray excess"],
+    );
+    let remark = bench.run(&["ssi", "encode", "--layout", "ahs36,steps=360,code=bcd", "--position", "359"]);
+    assert_eq!(remark.status, Some(0));
+    assert!(remark.err.contains("does not name the code bcd"), "{remark:?}");
+}
