@@ -118,10 +118,11 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
                 cleared_by_transfer: false,
             })),
             'p' => {}
-            _ => match position.replace((field.clone(), begins)) {
-                Some((first, _)) => return Err(FormatError::Two(first.name, field.name)),
-                None => {}
-            },
+            _ => {
+                if let Some((first, _)) = position.replace((field.clone(), begins)) {
+                    return Err(FormatError::Two(first.name, field.name));
+                }
+            }
         }
     }
     let (field, begins) = position.ok_or(FormatError::None)?;

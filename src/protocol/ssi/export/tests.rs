@@ -1,3 +1,5 @@
+//! Format strings and tables; what is compiled is tested beside the program (`tests/behaviour/ssi_export.rs`).
+
 use super::*;
 use crate::protocol::ssi::{Families, Layout, Settings};
 

@@ -1,3 +1,5 @@
+//! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
+
 use super::*;
 use crate::protocol::ssi::{Finding, Flags, Meaning, Place, Range, ungray};
 

@@ -134,7 +134,7 @@ fn any_other(seen: &Seen<'_>, last: u8) -> Vec<Candidate> {
             }
         }
     }
-    if last % 4 == 0 && last <= 32 {
+    if last.is_multiple_of(4) && last <= 32 {
         let digits = 10_u32.saturating_pow(u32::from(last) / 4);
         let range = Range::Steps { per_turn: digits, turns: 1 };
         descriptors.push(Descriptor {

@@ -1,3 +1,5 @@
+//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found.
+
 use fastrand::Rng;
 
 use super::*;

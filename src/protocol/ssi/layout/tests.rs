@@ -1,3 +1,5 @@
+//! Any layout that works, there and back; those that cannot work, with the reason.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Times of the reference, sections 1 and 5.
+
 use super::*;
 use crate::protocol::ssi::Families;
 
