@@ -1,16 +1,20 @@
 //! What can be written on the command line.
 
+mod analyse;
+mod ssi;
+
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(super) use analyse::Analyse;
+pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
+
 use super::Failure;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
-use crate::signal::capture::Columns;
-use crate::signal::quality::Family;
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
 /// window.
@@ -319,122 +323,6 @@ pub(super) struct Decode {
 }
 
 #[derive(Args)]
-pub(super) struct Analyse {
-    /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
-    #[arg(value_name = "FILE.csv")]
-    pub(super) file: PathBuf,
-    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS. Then, where there are such
-    /// columns, reference=N (mechanical degrees) and absolute=N (steps of 1/32 period).
-    #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
-    pub(super) columns: Option<Columns>,
-    /// Volts in one unit of the sine and cosine columns.
-    #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
-    pub(super) volts_per_unit: Option<f64>,
-    /// The encoders by whose limits the signal is judged.
-    #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
-    pub(super) limits: Limits,
-    /// Signal periods in a revolution: for the speed, for what repeats with the revolution, and with a reference for DNL
-    /// and INL.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
-    pub(super) periods: Option<u32>,
-}
-
-/// Families of encoders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Limits {
-    /// 0.9 … 1.1 V peak to peak, references at 2.0 … 3.0 V.
-    Hiperface,
-    /// 0.8 … 1.2 V peak to peak, references at 2.25 … 2.75 V.
-    AfsAfm60,
-    /// 0.9 … 1.1 V peak to peak, references at 2.375 … 2.625 V.
-    Ttk70,
-}
-
-impl Limits {
-    pub(super) fn family(self) -> Family {
-        match self {
-            Limits::Hiperface => Family::Hiperface,
-            Limits::AfsAfm60 => Family::AfsAfm60,
-            Limits::Ttk70 => Family::Ttk70,
-        }
-    }
-}
-
-#[derive(Subcommand)]
-pub(super) enum Ssi {
-    /// What frames say.
-    Decode(SsiDecode),
-    /// The frame of a position.
-    Encode(SsiEncode),
-    /// A decoder or table for other programs.
-    Export(SsiExport),
-}
-
-#[derive(Args)]
-pub(super) struct SsiDecode {
-    #[command(flatten)]
-    pub(super) layout: SsiLayout,
-    /// Bits in the order of the clocks (0b1010… or 1010…), or 0x… right-justified; repeatable.
-    #[arg(required = true, value_name = "FRAME")]
-    pub(super) frames: Vec<String>,
-}
-
-#[derive(Args)]
-pub(super) struct SsiEncode {
-    #[command(flatten)]
-    pub(super) layout: SsiLayout,
-    /// Turns and steps as one number.
-    #[arg(long, value_name = "N", required_unless_present = "steps", conflicts_with_all = ["turns", "steps"], allow_negative_numbers = true)]
-    pub(super) position: Option<String>,
-    /// Whole turns; 0 if left out.
-    #[arg(long, value_name = "T", requires = "steps", allow_negative_numbers = true)]
-    pub(super) turns: Option<String>,
-    /// Steps within the turn.
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub(super) steps: Option<String>,
-    /// An error bit that speaks, by its name; repeatable.
-    #[arg(long = "error", value_name = "NAME")]
-    pub(super) errors: Vec<String>,
-}
-
-#[derive(Args)]
-pub(super) struct SsiExport {
-    #[command(flatten)]
-    pub(super) layout: SsiLayout,
-    /// What to write.
-    #[arg(long, value_enum)]
-    pub(super) format: SsiFormat,
-    /// The file to write; without it, it is printed.
-    #[arg(short = 'o', long = "output", value_name = "FILE")]
-    pub(super) file: Option<PathBuf>,
-}
-
-#[derive(Args)]
-pub(super) struct SsiLayout {
-    /// A family with its settings, as ahm36,code=gray,st=12. What is left out is as delivered, with the largest resolution.
-    ///
-    /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
-    /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
-    /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres). Or
-    /// linuxcnc: with a format string of LinuxCNC behind it.
-    #[arg(long = "layout", value_name = "SPEC")]
-    pub(super) spec: String,
-}
-
-/// What a layout can be exported as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum SsiFormat {
-    /// A function in C99.
-    C,
-    /// A function block in IEC 61131-3 structured text.
-    St,
-    /// The format string of LinuxCNC's ssi_chan.
-    Linuxcnc,
-    /// A row for each clock.
-    Csv,
-}
-
-#[derive(Args)]
 pub(super) struct Simulate {
     /// The kind of device.
     pub(super) device: DeviceKind,
@@ -476,41 +364,6 @@ impl FromStr for Code {
         let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
         Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
     }
-}
-
-fn parse_columns(text: &str) -> Result<Columns, String> {
-    let number = |word: &str| word.trim().parse().ok().filter(|number: &usize| *number > 0);
-    let mut numbers: Vec<usize> = Vec::new();
-    let (mut reference_angle, mut absolute) = (None, None);
-    for word in text.split(',') {
-        let place = match word.split_once('=') {
-            None => &mut None,
-            Some(("reference", _)) => &mut reference_angle,
-            Some(("absolute", _)) => &mut absolute,
-            Some((name, _)) => return Err(format!("{name} is no column; there are reference= and absolute=")),
-        };
-        let column = number(word.split_once('=').map_or(word, |(_, number)| number));
-        *place = Some(column.ok_or("columns are numbers from 1, as in 1,2,3 or 1,2,3,reference=4")?);
-        if !word.contains('=') {
-            numbers.extend(column);
-        }
-    }
-    let (time, sine, cosine, references) = match *numbers.as_slice() {
-        [time, sine, cosine] => (Some(time), sine, cosine, None),
-        [time, sine, refsin, cosine, refcos] => (Some(time), sine, cosine, Some((refsin, refcos))),
-        _ => return Err("three or five column numbers from 1 are needed, as in 1,2,3".to_owned()),
-    };
-    numbers.extend(reference_angle.into_iter().chain(absolute));
-    let different: std::collections::BTreeSet<&usize> = numbers.iter().collect();
-    if different.len() < numbers.len() {
-        return Err("a column stands there twice".to_owned());
-    }
-    Ok(Columns { time, sine, cosine, references, reference_angle, absolute })
-}
-
-fn parse_factor(text: &str) -> Result<f64, String> {
-    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
-    factor.ok_or_else(|| "a number above 0 is needed, as in 0.001".to_owned())
 }
 
 /// An access code: one or two hex digits, with or without `0x` or a final `h`.

@@ -1,0 +1,85 @@
+//! What can be written behind `analyse`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::signal::capture::Columns;
+use crate::signal::quality::Family;
+
+#[derive(Args)]
+pub(in crate::cli) struct Analyse {
+    /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
+    #[arg(value_name = "FILE.csv")]
+    pub(in crate::cli) file: PathBuf,
+    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS. Then, where there are such
+    /// columns, reference=N (mechanical degrees) and absolute=N (steps of 1/32 period).
+    #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
+    pub(in crate::cli) columns: Option<Columns>,
+    /// Volts in one unit of the sine and cosine columns.
+    #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
+    pub(in crate::cli) volts_per_unit: Option<f64>,
+    /// The encoders by whose limits the signal is judged.
+    #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
+    pub(in crate::cli) limits: Limits,
+    /// Signal periods in a revolution: for the speed, for what repeats with the revolution, and with a reference for DNL
+    /// and INL.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    pub(in crate::cli) periods: Option<u32>,
+}
+
+/// Families of encoders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Limits {
+    /// 0.9 … 1.1 V peak to peak, references at 2.0 … 3.0 V.
+    Hiperface,
+    /// 0.8 … 1.2 V peak to peak, references at 2.25 … 2.75 V.
+    AfsAfm60,
+    /// 0.9 … 1.1 V peak to peak, references at 2.375 … 2.625 V.
+    Ttk70,
+}
+
+impl Limits {
+    pub(in crate::cli) fn family(self) -> Family {
+        match self {
+            Limits::Hiperface => Family::Hiperface,
+            Limits::AfsAfm60 => Family::AfsAfm60,
+            Limits::Ttk70 => Family::Ttk70,
+        }
+    }
+}
+
+fn parse_columns(text: &str) -> Result<Columns, String> {
+    let number = |word: &str| word.trim().parse().ok().filter(|number: &usize| *number > 0);
+    let mut numbers: Vec<usize> = Vec::new();
+    let (mut reference_angle, mut absolute) = (None, None);
+    for word in text.split(',') {
+        let place = match word.split_once('=') {
+            None => &mut None,
+            Some(("reference", _)) => &mut reference_angle,
+            Some(("absolute", _)) => &mut absolute,
+            Some((name, _)) => return Err(format!("{name} is no column; there are reference= and absolute=")),
+        };
+        let column = number(word.split_once('=').map_or(word, |(_, number)| number));
+        *place = Some(column.ok_or("columns are numbers from 1, as in 1,2,3 or 1,2,3,reference=4")?);
+        if !word.contains('=') {
+            numbers.extend(column);
+        }
+    }
+    let (time, sine, cosine, references) = match *numbers.as_slice() {
+        [time, sine, cosine] => (Some(time), sine, cosine, None),
+        [time, sine, refsin, cosine, refcos] => (Some(time), sine, cosine, Some((refsin, refcos))),
+        _ => return Err("three or five column numbers from 1 are needed, as in 1,2,3".to_owned()),
+    };
+    numbers.extend(reference_angle.into_iter().chain(absolute));
+    let different: std::collections::BTreeSet<&usize> = numbers.iter().collect();
+    if different.len() < numbers.len() {
+        return Err("a column stands there twice".to_owned());
+    }
+    Ok(Columns { time, sine, cosine, references, reference_angle, absolute })
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+    factor.ok_or_else(|| "a number above 0 is needed, as in 0.001".to_owned())
+}

@@ -1,0 +1,79 @@
+//! What can be written behind `ssi`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+#[derive(Subcommand)]
+pub(in crate::cli) enum Ssi {
+    /// What frames say.
+    Decode(SsiDecode),
+    /// The frame of a position.
+    Encode(SsiEncode),
+    /// A decoder or table for other programs.
+    Export(SsiExport),
+}
+
+#[derive(Args)]
+pub(in crate::cli) struct SsiDecode {
+    #[command(flatten)]
+    pub(in crate::cli) layout: SsiLayout,
+    /// Bits in the order of the clocks (0b1010… or 1010…), or 0x… right-justified; repeatable.
+    #[arg(required = true, value_name = "FRAME")]
+    pub(in crate::cli) frames: Vec<String>,
+}
+
+#[derive(Args)]
+pub(in crate::cli) struct SsiEncode {
+    #[command(flatten)]
+    pub(in crate::cli) layout: SsiLayout,
+    /// Turns and steps as one number.
+    #[arg(long, value_name = "N", required_unless_present = "steps", conflicts_with_all = ["turns", "steps"], allow_negative_numbers = true)]
+    pub(in crate::cli) position: Option<String>,
+    /// Whole turns; 0 if left out.
+    #[arg(long, value_name = "T", requires = "steps", allow_negative_numbers = true)]
+    pub(in crate::cli) turns: Option<String>,
+    /// Steps within the turn.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(in crate::cli) steps: Option<String>,
+    /// An error bit that speaks, by its name; repeatable.
+    #[arg(long = "error", value_name = "NAME")]
+    pub(in crate::cli) errors: Vec<String>,
+}
+
+#[derive(Args)]
+pub(in crate::cli) struct SsiExport {
+    #[command(flatten)]
+    pub(in crate::cli) layout: SsiLayout,
+    /// What to write.
+    #[arg(long, value_enum)]
+    pub(in crate::cli) format: SsiFormat,
+    /// The file to write; without it, it is printed.
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    pub(in crate::cli) file: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(in crate::cli) struct SsiLayout {
+    /// A family with its settings, as ahm36,code=gray,st=12. What is left out is as delivered, with the largest resolution.
+    ///
+    /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
+    /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
+    /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres). Or
+    /// linuxcnc: with a format string of LinuxCNC behind it.
+    #[arg(long = "layout", value_name = "SPEC")]
+    pub(in crate::cli) spec: String,
+}
+
+/// What a layout can be exported as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum SsiFormat {
+    /// A function in C99.
+    C,
+    /// A function block in IEC 61131-3 structured text.
+    St,
+    /// The format string of LinuxCNC's ssi_chan.
+    Linuxcnc,
+    /// A row for each clock.
+    Csv,
+}
