@@ -17,15 +17,19 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
         ui,
         skin,
         &mut *actions,
-        |ui, actions| identity(ui, skin, encoder, actions),
+        |ui, actions| {
+            identity(ui, skin, encoder, actions);
+            if !is_profile {
+                ui.add_space(skin.space.groups);
+                check(ui, skin, encoder, actions);
+            }
+        },
         |ui, actions| {
             if is_profile {
                 wiring::card_ui(ui, skin);
                 return;
             }
             status(ui, skin, encoder, actions);
-            ui.add_space(skin.space.groups);
-            check(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
                 motor::card_ui(ui, skin, encoder, motor, actions);
