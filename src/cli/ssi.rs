@@ -1,5 +1,7 @@
 //! `ssi`: frames of any layout, without an encoder.
 
+use std::time::Duration;
+
 use serde_json::{Map, Value as Json, json};
 
 use super::args::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
@@ -9,8 +11,8 @@ use super::runner::failed;
 use super::{Done, Failure, Result};
 use crate::app::explain;
 use crate::protocol::ssi::{
-    Families, Finding, Flags, Layout, Meaning, Place, Reading, Role, Settings, bit_table, c99, from_linuxcnc,
-    structured_text, to_linuxcnc,
+    Families, Finding, Flags, Layout, Meaning, Place, Range, Reading, Reads, Role, Settings, Times, bit_table, c99,
+    frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg, to_linuxcnc,
 };
 use crate::store::write_atomically;
 
@@ -22,10 +24,11 @@ pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
     }
 }
 
-/// The layout that `--layout` names. What the manual does not speak of is a remark.
-fn layout(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Layout> {
+/// The layout that `--layout` names, with the times of its family. What the manual does not speak of is a remark.
+fn layout(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<(Layout, Option<Times>)> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
-        return from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")));
+        let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+        return Ok((layout, None));
     }
     let families = Families::built_in();
     let (key, settings) = Settings::parse(spec).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
@@ -37,11 +40,11 @@ fn layout(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Layout> {
     for advice in &resolved.advice {
         output.remark(&explain::ssi::advice(advice).terminal());
     }
-    Ok(resolved.layout)
+    Ok((resolved.layout, Some(family.times)))
 }
 
 fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
-    let layout = layout(output, spec)?;
+    let (layout, _) = layout(output, spec)?;
     // All are looked at before any is told.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
@@ -179,7 +182,7 @@ fn name(finding: &Finding) -> String {
 }
 
 fn encode(output: &Output, arguments: &SsiEncode) -> Result {
-    let layout = layout(output, &arguments.layout)?;
+    let (layout, _) = layout(output, &arguments.layout)?;
     let position = position(&layout, arguments)?;
     let errors = &layout.descriptor().errors;
     let mut flags = Flags::NONE;
@@ -230,13 +233,33 @@ fn beyond(what: &str, text: &str, last: u64) -> Failure {
     out_of_range(what, text, 0, i64::try_from(last).unwrap_or(i64::MAX))
 }
 
-fn export(output: &Output, SsiExport { layout: spec, format, file }: &SsiExport) -> Result {
-    let layout = layout(output, spec)?;
+fn export(output: &Output, arguments: &SsiExport) -> Result {
+    let SsiExport { layout: spec, format, file, .. } = arguments;
+    let (layout, times) = layout(output, spec)?;
+    let title = &spec.spec;
     let text = match format {
-        SsiFormat::C => c99(&layout, &spec.spec),
-        SsiFormat::St => structured_text(&layout, &spec.spec),
+        SsiFormat::C => c99(&layout, title),
+        SsiFormat::St => structured_text(&layout, title),
         SsiFormat::Linuxcnc => to_linuxcnc(&layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
         SsiFormat::Csv => bit_table(&layout),
+        SsiFormat::Sheet => settings_sheet(&layout, times.as_ref(), title),
+        SsiFormat::Svg => frame_svg(&layout, None, title),
+        SsiFormat::Timing => {
+            let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
+            let times = times.ok_or_else(unknown)?;
+            let reads = Reads {
+                clocks: layout.clocks(),
+                clock_hz: f64::from(arguments.clock),
+                pause: Duration::from_micros(arguments.pause.into()),
+                cable_metres: arguments.cable.map(f64::from),
+                synchronous: arguments.synchronous,
+                any_steps: !matches!(layout.descriptor().range, Range::Bits { .. } | Range::Length { .. }),
+            };
+            for warning in times.reckon(&reads).warnings {
+                output.remark(&explain::ssi::timing(&warning).terminal());
+            }
+            timing_svg(&layout, &times, &reads, title)
+        }
     };
     match file {
         None => output.show(&json!({ "text": text }), &text)?,

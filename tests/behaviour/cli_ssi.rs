@@ -63,6 +63,25 @@ fn layouts_go_to_other_programs() {
     assert!(export("c").contains("ssi_reading ssi_decode(uint64_t frame)"));
     assert!(export("st").contains("FUNCTION_BLOCK SSI_DECODE"));
     assert_eq!(export("csv").lines().nth(15), Some("15,0,ERROR"));
+    let sheet = export("sheet");
+    for line in [
+        "Frame length                    15 bits",
+        "does not program the encoder",
+        "Bit number LSB of the position  1",
+        "power failure bit    1",
+    ] {
+        assert!(sheet.contains(line), "{line}\n{sheet}");
+    }
+    assert_eq!(export("svg").matches("<rect").count(), 1 + 15);
+    let timing = |more: &[&str]| {
+        let asked = ["ssi", "export", "--layout", "ahs36", "--format", "timing"];
+        bench.run(&[&asked[..], more].concat())
+    };
+    // 15 clocks of 400 kHz: 37.5 µs.
+    assert!(timing(&[]).out.contains("15 clocks, 37.50 µs"));
+    assert_eq!(timing(&[]).err, "");
+    assert!(timing(&["--cable", "150"]).err.contains("at most 200 kHz"));
+    assert!(timing(&["--pause", "20"]).err.contains("longer than 25 µs"));
     let file = bench.file("decoder.c");
     bench.run(&["ssi", "export", "--layout", "atm60", "--format", "c", "-o", &file]);
     assert!(bench.read("decoder.c").starts_with("/* SSI decoder: atm60\n"));

@@ -1,7 +1,7 @@
 //! SSI in words: what a frame gives cause to say, and what was set that the manual does not speak of.
 
 use crate::app::Text;
-use crate::protocol::ssi::{Advice, Finding, Meaning};
+use crate::protocol::ssi::{Advice, Finding, Meaning, Warning};
 
 /// Something that a frame gives cause to say.
 pub fn finding(finding: &Finding) -> Text {
@@ -32,5 +32,25 @@ pub fn advice(advice: &Advice) -> Text {
     match advice {
         Advice::Code(code) => Text::new("ssi.other_code").with("code", code),
         Advice::Clocks { bits, clocks } => Text::new("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
+    }
+}
+
+/// A time of a transfer that does not fit.
+pub fn timing(warning: &Warning) -> Text {
+    let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
+    let kilohertz = |hz: f64| hz / 1000.0;
+    match warning {
+        Warning::EncoderClock { most_hz } => {
+            Text::new("ssi.clock_encoder").with_number("khz", kilohertz((*most_hz).into()), 0)
+        }
+        Warning::CableClock { most_hz } => {
+            Text::new("ssi.clock_cable").with_number("khz", kilohertz((*most_hz).into()), 0)
+        }
+        Warning::CableLong => Text::new("ssi.cable_long"),
+        Warning::ClockSlow { least_hz } => Text::new("ssi.clock_slow").with_number("khz", kilohertz(*least_hz), 1),
+        Warning::PauseShort { least } => Text::new("ssi.pause_short").with_number("micros", micros(least), 0),
+        Warning::PauseLong { most } => Text::new("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
+        Warning::Repeats { update } => Text::new("ssi.repeats").with_number("micros", micros(update), 0),
+        Warning::NoSynchronous => Text::new("ssi.no_synchronous"),
     }
 }

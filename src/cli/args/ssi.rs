@@ -48,6 +48,18 @@ pub(in crate::cli) struct SsiExport {
     /// What to write.
     #[arg(long, value_enum)]
     pub(in crate::cli) format: SsiFormat,
+    /// timing: the clock in hertz.
+    #[arg(long, value_name = "HZ", default_value_t = 400_000, value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
+    pub(in crate::cli) clock: u32,
+    /// timing: the pause behind a burst, in microseconds.
+    #[arg(long, value_name = "US", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(in crate::cli) pause: u32,
+    /// timing: the cable in metres.
+    #[arg(long, value_name = "M")]
+    pub(in crate::cli) cable: Option<u16>,
+    /// timing: positions are made when the host clocks.
+    #[arg(long)]
+    pub(in crate::cli) synchronous: bool,
     /// The file to write; without it, it is printed.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub(in crate::cli) file: Option<PathBuf>,
@@ -76,4 +88,10 @@ pub(in crate::cli) enum SsiFormat {
     Linuxcnc,
     /// A row for each clock.
     Csv,
+    /// What to set in common SSI modules of controls.
+    Sheet,
+    /// A picture of the frame.
+    Svg,
+    /// A picture of a burst in time, with what does not fit said on stderr.
+    Timing,
 }

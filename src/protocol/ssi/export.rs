@@ -4,14 +4,18 @@
 mod c;
 mod linuxcnc;
 mod procedure;
+mod sheet;
 mod structured_text;
+mod svg;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use c::c99;
 pub use linuxcnc::{FormatError, from_linuxcnc, to_linuxcnc};
+pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
+pub use svg::{frame_svg, timing_svg};
 pub use table::bit_table;
 
 /// A name as programs have them: letters, digits and underscores, no digit first.

@@ -19,7 +19,9 @@ pub const KIND: &str = "ssi";
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
 pub use explain::{Cell, Finding, Role};
-pub use export::{FormatError, bit_table, c99, from_linuxcnc, structured_text, to_linuxcnc};
+pub use export::{
+    FormatError, bit_table, c99, frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+};
 pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
     StepLimits, TextError,
