@@ -84,14 +84,30 @@ pub struct Committed<W> {
     pub logbook_warning: Option<LogbookError>,
 }
 
+/// Why a write was not begun, whatever the device says. Nothing was written.
+#[derive(Debug, thiserror::Error)]
+pub enum NotBegun {
+    /// The device counts as worn.
+    #[error("{seen} write cycles seen, {cost} more would exceed {limit}")]
+    Worn {
+        /// Seen so far.
+        seen: u64,
+        /// What the plan costs.
+        cost: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The before-image cannot be kept.
+    #[error(transparent)]
+    NotKept(FileError),
+}
+
 /// A write that is not done, or not to its end.
 pub(super) enum Failed<W: Write> {
-    /// The device counts as worn; nothing was written.
-    Worn { seen: u64, cost: u64, limit: u64 },
+    /// Nothing was written.
+    NotBegun(NotBegun),
     /// Consent or base do not hold; nothing was written.
     Refused(W::Refusal),
-    /// The before-image cannot be kept; nothing was written.
-    NotKept(FileError),
     /// It was begun and not finished.
     Interrupted {
         /// How far it came.
@@ -110,9 +126,10 @@ pub(super) fn commit<W: Write>(
     if terms.items.is_empty() {
         return Ok(Committed { written: W::Written::default(), backup: None, logbook_warning: None });
     }
-    check_wear(terms)?;
+    check_wear(terms).map_err(Failed::NotBegun)?;
     let confirmed = write.confirm().map_err(Failed::Refused)?;
-    let intended = Intended::note(store, terms, &write.before_image()).map_err(Failed::NotKept)?;
+    let kept = Intended::note(store, terms, &write.before_image());
+    let intended = kept.map_err(|error| Failed::NotBegun(NotBegun::NotKept(error)))?;
     let ended = write.carry_out(&confirmed, &intended);
     let (outcome, spent) = W::conclusion(ended.as_ref());
     let (backup, logbook_warning) = intended.conclude(outcome, spent);
@@ -142,11 +159,11 @@ pub(super) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     }
 }
 
-fn check_wear<W: Write>(terms: &Terms) -> Result<(), Failed<W>> {
+fn check_wear(terms: &Terms) -> Result<(), NotBegun> {
     let Terms { cost, limit, force_wear, .. } = *terms;
     let seen = terms.seen.unwrap_or(0);
     if !force_wear && seen.saturating_add(cost) > limit {
-        return Err(Failed::Worn { seen, cost, limit });
+        return Err(NotBegun::Worn { seen, cost, limit });
     }
     Ok(())
 }
@@ -266,7 +283,7 @@ mod tests {
                     assert!(label == "cut off" && interrupted == 1 && backup.exists());
                 }
                 Err(Failed::Refused(())) => assert_eq!(label, "refused"),
-                Err(Failed::Worn { seen: 9, cost: 2, limit: 10 }) => assert_eq!(label, "worn"),
+                Err(Failed::NotBegun(NotBegun::Worn { seen: 9, cost: 2, limit: 10 })) => assert_eq!(label, "worn"),
                 Err(_) => panic!("{label}"),
             }
         }

@@ -26,7 +26,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
-pub use commit::Committed;
+pub use commit::{Committed, NotBegun};
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;

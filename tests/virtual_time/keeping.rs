@@ -5,6 +5,7 @@ use std::fs;
 use encoder_studio::profile::hiperface::FieldRange;
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber};
 use encoder_studio::store::Store;
+use encoder_studio::worker::NotBegun;
 use encoder_studio::worker::hiperface::{Change, JobError};
 
 use crate::support::{Desk, backup};
@@ -22,7 +23,7 @@ fn without_a_before_image_nothing_is_written() {
         fs::write(&path, "a file").unwrap();
         let memory = desk.memory();
         let error = desk.change(store_byte(0xEE)).unwrap_err();
-        assert!(matches!(error, JobError::NotKept(_)), "{in_the_way}: {error:?}");
+        assert!(matches!(error, JobError::NotBegun(NotBegun::NotKept(_))), "{in_the_way}: {error:?}");
         assert_eq!((desk.memory(), desk.wear()), (memory, 0), "{in_the_way}");
     }
 }

@@ -10,7 +10,7 @@ pub use damage::damage;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
 pub use write::{change, failure, op, plan, preset, wear, weight, written};
 
-use super::{adapter, file, link, store};
+use super::{adapter, link, not_begun, store};
 use crate::app::Text;
 use crate::device::biss::procedure::Failure;
 use crate::device::biss::{Asked, Error};
@@ -23,10 +23,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotKept(error) => vec![Text::new("write.not_kept").with_text("why", file(error))],
-        JobError::Worn { used, cost, limit } => {
-            vec![Text::new("write.worn").with("used", used).with("cost", cost).with("limit", limit)]
-        }
+        JobError::NotBegun(why) => vec![not_begun(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             write::interruption(interrupted, backup, *planned, *kind)
         }
@@ -41,7 +38,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
             Failure::Device(error) => lost(error).map(link),
             _ => None,
         },
-        JobError::Plan(_) | JobError::NotKept(_) | JobError::Worn { .. } => None,
+        JobError::Plan(_) | JobError::NotBegun(_) => None,
     }
 }
 

@@ -25,7 +25,7 @@ pub use words::{
     status_with_number,
 };
 
-use super::{file, link, phrase};
+use super::{link, not_begun, phrase};
 use crate::app::Text;
 use crate::device::hiperface::Error;
 use crate::device::hiperface::write::{Interrupted, Written};
@@ -38,10 +38,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
         JobError::Plan(error) => vec![plan(error)],
-        JobError::NotKept(error) => vec![Text::new("write.not_kept").with_text("why", file(error))],
-        JobError::Worn { used, cost, limit } => {
-            vec![Text::new("write.worn").with("used", used).with("cost", cost).with("limit", limit)]
-        }
+        JobError::NotBegun(why) => vec![not_begun(why)],
         JobError::Interrupted { interrupted, backup, planned, kind } => {
             interruption(interrupted, backup, *planned, *kind)
         }

@@ -19,7 +19,7 @@ use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{Body, ProfileError};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
-use crate::worker::OpenError;
+use crate::worker::{NotBegun, OpenError};
 
 /// A wire.
 pub fn link(error: &LinkError) -> Text {
@@ -116,6 +116,16 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
             Text::new("profile.other_kind").with("path", path).with("found", found).with("wanted", wanted)
         }
         error => Text::new("profile.invalid").with("path", path).with_text("why", document(error)),
+    }
+}
+
+/// Why a write was not begun.
+pub fn not_begun(why: &NotBegun) -> Text {
+    match why {
+        NotBegun::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
+        NotBegun::Worn { seen, cost, limit } => {
+            Text::new("write.worn").with("used", seen).with("cost", cost).with("limit", limit)
+        }
     }
 }
 

@@ -14,7 +14,8 @@ use crate::profile::biss::{
     Bank, BissPlan, BissProfile, MotorSource, MountingRun, PlanError, PresetParts, RegisterRange, RestoreOptions,
 };
 use crate::protocol::biss::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
-use crate::store::{DeviceKey, FileError, StoreError};
+use crate::store::{DeviceKey, StoreError};
+use crate::worker::NotBegun;
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
@@ -256,19 +257,9 @@ pub enum JobError {
     /// It cannot be planned; nothing was written.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The before-image cannot be kept; nothing was written.
+    /// The encoder counts as worn, or its before-image cannot be kept; nothing was written.
     #[error(transparent)]
-    NotKept(FileError),
-    /// The encoder counts as worn; nothing was written.
-    #[error("{used} write cycles seen, {cost} more would exceed {limit}")]
-    Worn {
-        /// Seen so far.
-        used: u64,
-        /// What the plan costs.
-        cost: u64,
-        /// The limit.
-        limit: u64,
-    },
+    NotBegun(#[from] NotBegun),
     /// It was begun and not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {

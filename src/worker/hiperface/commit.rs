@@ -25,9 +25,8 @@ pub(super) fn commit(
     let terms = Terms::of(device, plan, Op::item, (prepared.cycles_seen, WEAR_LIMIT), commit.force_wear);
     let mut write = EncoderWrite { master: encoder.master(desk), commit, tell };
     carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
-        Failed::Worn { seen, cost, limit } => JobError::Worn { used: seen, cost, limit },
+        Failed::NotBegun(why) => why.into(),
         Failed::Refused(error) => error.into(),
-        Failed::NotKept(error) => JobError::NotKept(error),
         Failed::Interrupted { interrupted, backup } => {
             JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
         }

@@ -12,7 +12,7 @@ use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Ite
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::store::FileError;
+use crate::worker::NotBegun;
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -279,19 +279,9 @@ pub enum JobError {
     /// It cannot be planned; nothing was written.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The before-image cannot be kept; nothing was written.
+    /// The encoder counts as worn, or its before-image cannot be kept; nothing was written.
     #[error(transparent)]
-    NotKept(FileError),
-    /// The encoder counts as worn; nothing was written.
-    #[error("{used} write cycles seen, {cost} more would exceed {limit}")]
-    Worn {
-        /// Seen so far.
-        used: u64,
-        /// What the plan costs.
-        cost: u64,
-        /// The limit.
-        limit: u64,
-    },
+    NotBegun(#[from] NotBegun),
     /// It was begun and not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {

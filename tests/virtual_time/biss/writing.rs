@@ -10,6 +10,7 @@ use encoder_studio::profile::biss::{BissProfile, Op, PlanError, PresetSetting, R
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::biss::{Filter, PresetValue};
 use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
+use encoder_studio::worker::NotBegun;
 use encoder_studio::worker::biss::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
 use jiff::Timestamp;
 
@@ -184,7 +185,7 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
     assert_eq!(prepared.cycles_seen, Some(999));
     let before = bench.flash_cycles();
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
-    assert!(matches!(error, JobError::Worn { used: 999, cost: 2, limit: 1000 }), "{error}");
+    assert!(matches!(error, JobError::NotBegun(NotBegun::Worn { seen: 999, cost: 2, limit: 1000 })), "{error}");
     assert_eq!(bench.flash_cycles(), before);
     // One is left.
     let one = bench.prepare(filter()).unwrap();
