@@ -151,7 +151,7 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
             json!({"result": "skipped", "after": after.map(|run| if run.is_clockwise() { "clockwise" } else { "counterclockwise" })})
         }
         Outcome::Stored { registers } => json!({"result": "stored", "registers": registers}),
-        Outcome::PresetStored(value) => {
+        Outcome::PresetStored { value, .. } => {
             json!({"result": "preset stored", "singleturn": value.singleturn(), "multiturn": value.multiturn()})
         }
         Outcome::PresetFired { from, to, .. } => {

@@ -162,7 +162,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
-            let words = skin.words(&explain::biss::preset(value, layout));
+            let words = skin.words(&explain::biss::preset(value, layout.singleturn_bits()));
             row(ui, skin, &skin.say("biss_status.preset"), skin.mono(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {

@@ -234,7 +234,7 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
         });
         ui.add_space(skin.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
-            let words = skin.words(&explain::biss::preset(stored, layout));
+            let words = skin.words(&explain::biss::preset(stored, layout.singleturn_bits()));
             row(ui, skin, &skin.say("preset_card.stored"), skin.mono(words));
         }
         paragraph(ui, skin.label(skin.say("preset_card.fire_words")));

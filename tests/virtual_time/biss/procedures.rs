@@ -144,11 +144,12 @@ fn a_preset_is_stored_and_carried_out_with_two_restarts() {
         let before = bench.flash_cycles();
         let written = bench.change(preset(98_304, 2)).unwrap().written;
         assert_eq!((bench.flash_cycles() - before, written.write_cycles, written.verified), (2, 2, 2));
-        let [Outcome::PresetStored(value), Outcome::PresetFired { parts, from, to }] = written.outcomes.as_slice()
+        let [Outcome::PresetStored { value, singleturn_bits }, Outcome::PresetFired { parts, from, to }] =
+            written.outcomes.as_slice()
         else {
             panic!("{:?}", written.outcomes)
         };
-        assert_eq!((*value, *parts), (PresetValue::new(98_304, 2).unwrap(), PresetParts::Both));
+        assert_eq!((*value, *singleturn_bits, *parts), (PresetValue::new(98_304, 2).unwrap(), 17, PresetParts::Both));
         assert_eq!(((from.turns, from.steps), (to.turns, to.steps)), ((1, 7), (2, 98_304)));
         let stored: Vec<u8> = (2..8).map(|at_| bench.encoder_reads(at(&format!("0x01:0x0{at_}"))).unwrap()).collect();
         assert_eq!(stored, [0x00, 0x80, 0x01, 0x02, 0x00, 0x00]);

@@ -113,11 +113,13 @@ pub fn wiegand_needs() -> Text {
     speeds(Text::new("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
 }
 
-fn temperatures(text: Text) -> Text {
+/// With the temperatures of a calibration.
+pub(super) fn temperatures(text: Text) -> Text {
     text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
 }
 
-fn speeds(text: Text, range: SpeedRange) -> Text {
+/// With the slowest and the fastest speed.
+pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
@@ -130,11 +132,9 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
             Some(_) => "guide.skipped_wiegand",
         })],
         Outcome::Stored { registers } => vec![Text::new("guide.stored").with("count", registers)],
-        Outcome::PresetStored(value) => vec![
-            Text::new("guide.preset_stored")
-                .with("singleturn", value.singleturn())
-                .with("multiturn", value.multiturn()),
-        ],
+        Outcome::PresetStored { value, singleturn_bits } => {
+            vec![Text::new("guide.preset_stored").with_text("value", super::preset(*value, *singleturn_bits))]
+        }
         Outcome::PresetFired { parts, from, to } => {
             let id = match parts {
                 PresetParts::Both => "guide.preset_both",
@@ -212,7 +212,7 @@ fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::protocol::biss::WiegandResult;
+    use crate::protocol::biss::{PresetValue, WiegandResult};
 
     #[test]
     fn modes_are_called_as_the_protocol_calls_them_and_have_german_names() {
@@ -239,6 +239,15 @@ mod tests {
         let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
         let weights: Vec<Severity> = report.iter().map(|(severity, _)| *severity).collect();
         assert_eq!(weights, [Severity::Good, Severity::Warning, Severity::Note]);
+    }
+
+    /// Manual 6.7: 18000h of 17 bits are 270°.
+    #[test]
+    fn a_stored_preset_value_is_told_as_an_angle() {
+        let value = PresetValue::new(0x18000, 2).unwrap();
+        let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
+        assert_eq!(texts[0].words(English), "Preset value stored: 270.000° (step 98304), turn 2.");
+        assert!(texts[0].words(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::encoder;
-use super::guide::{blocker, mode, step, task};
+use super::guide::{blocker, mode, speeds, step, task, temperatures};
 use crate::app::biss::words::filter;
 use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeWords, OpWords};
@@ -33,19 +33,20 @@ pub fn change(change: &Change) -> Text {
 
 /// An operation in words; each run of registers by itself, named as everywhere.
 pub fn op(op: &Op, layout: &Layout) -> OpWords {
+    let bits = layout.singleturn_bits();
     match op {
         Op::StoreData { area, registers } => OpWords {
             item: Text::new("biss_op.data").with_text("area", explain::name(&area.name)),
             changes: runs(registers),
         },
         Op::StorePreset { from, to } => {
-            OpWords::one(Text::new("biss_op.preset"), preset(*from, layout), preset(*to, layout))
+            OpWords::one(Text::new("biss_op.preset"), preset(*from, bits), preset(*to, bits))
         }
         Op::FirePreset { parts, value } => {
             let new = match parts {
-                PresetParts::Both => preset(*value, layout),
-                PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, layout),
-                PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, layout),
+                PresetParts::Both => preset(*value, bits),
+                PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, bits),
+                PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, bits),
             };
             OpWords::one(Text::new("biss_op.fire"), Text::new("biss_op.place"), new)
         }
@@ -78,13 +79,13 @@ fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
     RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// A preset value as angle, step and turn.
-pub fn preset(value: PresetValue, layout: &Layout) -> Text {
-    preset_words("biss_op.preset_value", value, layout)
+/// A preset value as angle, step and turn; a turn has as many steps as these bits.
+pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
+    preset_words("biss_op.preset_value", value, singleturn_bits)
 }
 
-fn preset_words(id: &'static str, value: PresetValue, layout: &Layout) -> Text {
-    let steps = (1_u64 << layout.singleturn_bits()) as f64;
+fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Text {
+    let steps = (1_u64 << singleturn_bits) as f64;
     Text::new(id)
         .with_number("degrees", f64::from(value.singleturn()) * 360.0 / steps, 3)
         .with("singleturn", value.singleturn())
@@ -167,7 +168,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         // An operation that may have been carried out counts as a write cycle, where it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
-        (None, ChangeKind::Bytes) => Text::new("write.backup_bytes"),
+        (None, ChangeKind::Bytes) => Text::new("biss_write.bytes"),
         (None, ChangeKind::Guided) => Text::new("biss_write.guided"),
         (None, ChangeKind::WiegandTest) => Text::new("biss_write.wiegand"),
         (None, ChangeKind::Filter) => Text::new("biss_write.filter"),
@@ -183,9 +184,9 @@ pub fn weight(text: &Text) -> Severity {
         "biss_left.operation" => Severity::Good,
         "biss_left.at"
         | "write.backup"
-        | "write.backup_bytes"
         | "write.backup_calibration"
         | "write.untouched"
+        | "biss_write.bytes"
         | "biss_write.guided"
         | "biss_write.wiegand"
         | "biss_write.filter"
@@ -248,14 +249,14 @@ pub fn failure(failure: &Failure) -> Text {
 
 fn calibration(run: Run, status: CalibrationStatus) -> Text {
     let why = match status {
-        CalibrationStatus::WrongDirection => "biss_failure.direction",
-        CalibrationStatus::Temperature => "biss_failure.temperature",
-        CalibrationStatus::Speed => "biss_failure.speed",
-        CalibrationStatus::Failed => "biss_failure.calibration",
+        CalibrationStatus::WrongDirection => Text::new("biss_failure.direction"),
+        CalibrationStatus::Temperature => temperatures(Text::new("biss_failure.temperature")),
+        CalibrationStatus::Speed => speeds(Text::new("biss_failure.speed"), run.allowed()),
+        CalibrationStatus::Failed => Text::new("biss_failure.calibration"),
         other => return unknown(other.byte()),
     };
     let id = if run.is_clockwise() { "biss_failure.table_lost" } else { "biss_failure.table_kept" };
-    Text::new(id).with_text("why", Text::new(why))
+    Text::new(id).with_text("why", why)
 }
 
 fn wiegand(status: WiegandStatus, code: u8) -> Text {
@@ -301,7 +302,7 @@ mod tests {
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
             (ChangeKind::Restore, "restoring the profile again"),
-            (ChangeKind::Bytes, "Give the command again"),
+            (ChangeKind::Bytes, "any other register stays as it was written"),
             (ChangeKind::Guided, "done before stands"),
             (ChangeKind::WiegandTest, "changes nothing but its saved result"),
             (ChangeKind::Filter, "status biss"),
@@ -316,6 +317,15 @@ mod tests {
         interrupted.unclear = RegisterAddress::direct(0x6A);
         let words = last(&interrupted, ChangeKind::Bytes);
         assert!(words.contains("not known") && words.contains("read biss 0x6A"), "{words}");
+    }
+
+    #[test]
+    fn a_calibration_that_failed_names_the_limits_of_its_run() {
+        let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
+        for (status, limits) in cases {
+            let text = failure(&Failure::Calibration { run: Run::CalibrationClockwise, status });
+            assert!(text.words(English).contains(limits) && text.words(German).contains(limits), "{text:?}");
+        }
     }
 
     fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Left {

@@ -51,7 +51,12 @@ pub enum Outcome {
         registers: u64,
     },
     /// A preset value was stored.
-    PresetStored(PresetValue),
+    PresetStored {
+        /// Which.
+        value: PresetValue,
+        /// As many bits as a turn has steps.
+        singleturn_bits: u8,
+    },
     /// A preset was carried out.
     PresetFired {
         /// Which part of the position.

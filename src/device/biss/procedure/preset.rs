@@ -31,7 +31,8 @@ impl Guide<'_, '_> {
             for (address, byte) in &registers {
                 guide.read_back(*address, *byte)?;
             }
-            Ok(Outcome::PresetStored(to))
+            let singleturn_bits = guide.master.station().frame().singleturn_bits();
+            Ok(Outcome::PresetStored { value: to, singleturn_bits })
         })
     }
 
