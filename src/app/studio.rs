@@ -66,11 +66,14 @@ impl Studio {
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
-        // A link says nothing about the device, unless only one kind is reached by it: then it is the one that was shown.
-        let tab = match (&link, self.settings.tab) {
-            (Some(link), _) if link.scheme == Scheme::Bridge => Tab::Biss,
-            (_, Tab::Signals) => Tab::Hiperface,
-            (_, tab) => tab,
+        // A link that only one kind can open is for that one; any other for the kind that was shown.
+        let shown = if self.settings.tab == Tab::Signals { Tab::Hiperface } else { self.settings.tab };
+        let tab = match &link {
+            Some(link) if link.scheme == Scheme::Bridge => Tab::Biss,
+            Some(link) if shown.check(link).is_err() => {
+                Tab::DEVICES.into_iter().find(|tab| tab.check(link).is_ok()).unwrap_or(shown)
+            }
+            _ => shown,
         };
         let link = link.or_else(|| profile.is_none().then(|| tab.virtual_link()));
         if let Some(link) = link {

@@ -2,6 +2,7 @@
 
 use super::connect::BissForm;
 use crate::link::LinkUrl;
+use crate::worker::{OpenError, biss, hiperface};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -30,6 +31,14 @@ impl Tab {
 }
 
 impl Tab {
+    /// Whether a link can lead to a device of its kind, as far as that can be told without opening it.
+    pub(super) fn check(self, url: &LinkUrl) -> Result<(), OpenError> {
+        match self {
+            Tab::Biss => biss::check(url),
+            Tab::Hiperface | Tab::Signals => hiperface::check(url),
+        }
+    }
+
     /// The virtual device of its kind.
     pub(super) fn virtual_link(self) -> LinkUrl {
         match self {

@@ -30,6 +30,24 @@ fn the_virtual_encoder_is_read_over_either_way() {
     }
 }
 
+#[test]
+fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
+    let cases = [
+        (Tab::Hiperface, "sim:?bridge=on", Tab::Biss),
+        (Tab::Hiperface, "serial:/dev/nowhere?order=low-first", Tab::Biss),
+        (Tab::Biss, "sim:?model=sel37", Tab::Hiperface),
+        (Tab::Hiperface, "sim:", Tab::Hiperface),
+        (Tab::Biss, "sim:", Tab::Biss),
+        (Tab::Biss, "sim:?nobody=1", Tab::Biss),
+    ];
+    for (shown, link, expected) in cases {
+        let mut desk = Desk::fresh("");
+        desk.act(Action::ShowTab(shown));
+        desk.studio.begin(Some(link.parse().unwrap()), None);
+        assert_eq!(desk.studio.settings.tab, expected, "{link}");
+    }
+}
+
 /// Over the configuration pin a position carries no bits: the registers tell.
 #[test]
 fn a_position_is_marked_over_either_way() {

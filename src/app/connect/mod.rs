@@ -21,8 +21,8 @@ use super::{Text, explain};
 use crate::app::action::{Done, OpenFailed, Opened};
 use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::link::LinkUrl;
-use crate::worker::hiperface::{self, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
-use crate::worker::{Event, Progress, biss};
+use crate::worker::hiperface::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
+use crate::worker::{Event, Progress};
 
 /// What can be done in the dialog.
 pub enum Action {
@@ -111,11 +111,7 @@ impl Connect {
     /// Why this is no link to the kind of device that is chosen, or the link.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
-        let checked = match self.device {
-            Tab::Biss => biss::check(&url),
-            Tab::Hiperface | Tab::Signals => hiperface::check(&url),
-        };
-        checked.map_err(|error| target::refused(&url, &error))?;
+        self.device.check(&url).map_err(|error| target::refused(&url, &error))?;
         Ok(url)
     }
 
