@@ -33,7 +33,8 @@ pub(super) struct Arguments {
 /// Which commands are for which kinds of device.
 const KINDS: &str = "\
 Kinds of device: hiperface and biss; diff, verify and restore find it in the profile. find is for hiperface alone; do has
-other actions for each (help do). Without hardware: --link sim:, as in
+other actions for each (help do). Of SSI encoders ssi explains frames, offline: none is connected. Without hardware:
+--link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -308,6 +309,11 @@ pub(super) fn action_name(action: Action) -> String {
 /// An action that is for another kind of device.
 pub(super) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
     Failure::Usage(format!("{} is not an action of {kind} devices; these are {known}", action_name(action)))
+}
+
+/// An option that is for another kind of device.
+pub(super) fn no_option(option: &str, kind: &str) -> Failure {
+    Failure::Usage(format!("{option} is not for {kind} devices"))
 }
 
 #[derive(Args)]

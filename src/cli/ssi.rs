@@ -61,7 +61,7 @@ fn frame(layout: &Layout, text: &str) -> Result<u64> {
     let bits = text.strip_prefix("0b").or(text.strip_prefix("0B")).unwrap_or(text).replace('_', "");
     let (frame, count) = match hex {
         Some(digits) => {
-            let frame = u64::from_str_radix(digits, 16).ok();
+            let frame = u64::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));
             (frame, frame.map(|frame| u64::BITS - frame.leading_zeros()))
         }
         None if bits.len() > 64 && bits.chars().all(|bit| matches!(bit, '0' | '1')) => {

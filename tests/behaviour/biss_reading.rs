@@ -199,6 +199,14 @@ fn registers_are_read_by_their_names() {
     }
 }
 
+#[test]
+fn a_value_without_words_has_no_key_for_them() {
+    let bench = Bench::new();
+    let read = |item: &str| bench.run(&["read", "biss", item, "--link", "sim:", JSON]).json();
+    assert_eq!(read("0x24:0x10"), json!({"item": "0x24:0x10", "value": 0}));
+    assert_eq!(read("0x66")["text"], json!("30 °C"));
+}
+
 /// Bank selection aside.
 #[test]
 fn reading_writes_nothing() {

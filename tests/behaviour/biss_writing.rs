@@ -197,6 +197,10 @@ fn what_cannot_be_written_is_told() {
     assert_eq!(written(&encoder), [""; 0]);
     bench.run(&["do", "hiperface", "calibrate", "--link", "sim:", "--yes"]).fails(2, &["calibrate", "set-position"]);
     bench.run(&["do", "biss", "calibrate", "--link", "sim:", "--yes", "--timeout", "0"]).fails(2, &["timeout"]);
+    for option in ["--exact", "--kit"] {
+        bench.run(&["do", "biss", "check", "--link", "sim:", option]).fails(2, &[option, "biss"]);
+    }
+    bench.run(&["do", "hiperface", "reset", "--link", "sim:", "--timeout", "5"]).fails(2, &["--timeout", "hiperface"]);
 }
 
 #[test]

@@ -98,6 +98,7 @@ fn what_is_wrong_is_said() {
     fails(2, &["decode", "--layout", "bce", "0"], &["no family \"bce\"", "ahs36 ahm36", "kh53"]);
     fails(2, &["decode", "--layout", "ahs36,code=grey", "0"], &["binary, gray, gray-excess or bcd", "grey"]);
     fails(2, &["decode", "--layout", "ahs36", "12"], &["\"12\" is not a frame", "0b1010"]);
+    fails(2, &["decode", "--layout", "ahs36", "0x+54B6"], &["\"0x+54B6\" is not a frame"]);
     fails(2, &["encode", "--layout", "ahs36"], &["--position"]);
     fails(2, &["encode", "--layout", "ahs36", "--steps", "1", "--error", "GAP"], &["\"GAP\"", "ERROR"]);
     fails(2, &["encode", "--layout", "ttk70", "--steps", "1"], &["a length", "--position"]);

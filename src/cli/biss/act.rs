@@ -9,7 +9,7 @@ use serde_json::json;
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
 use crate::app::explain;
-use crate::cli::args::{Action, Common, Do, action_name, no_action};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
 use crate::cli::check;
 use crate::cli::consent::{answer, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
@@ -18,7 +18,7 @@ use crate::cli::profiles::{load, show_done};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::profile::biss::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
-use crate::protocol::biss::{Filter, PresetValue};
+use crate::protocol::biss::{Filter, KIND, PresetValue};
 use crate::worker::biss::{BissJob, BissOutput, Change};
 
 /// How long a person may take to turn the motor as it is needed.
@@ -26,6 +26,9 @@ const PERSON: Duration = Duration::from_secs(300);
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    if let Some((_, option)) = [(act.exact, "--exact"), (act.kit, "--kit")].into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action, words.as_slice()) {
         (Action::Check, []) => check_device(common, output),
@@ -54,7 +57,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (Action::WiegandTest, _) => Err(takes("nothing or \"save\"")),
         (Action::Filter, _) => Err(takes("balanced or dynamic")),
         (other, _) => {
-            Err(no_action(other, "biss", "check, calibrate, wiegand-test, filter, preset, lead-back and mounting"))
+            Err(no_action(other, KIND, "check, calibrate, wiegand-test, filter, preset, lead-back and mounting"))
         }
     }
 }

@@ -247,7 +247,10 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),
     };
-    let json = json!({"item": range.to_string(), "value": value, "text": said});
+    let mut json = json!({"item": range.to_string(), "value": value});
+    if let (Some(said), Some(keys)) = (&said, json.as_object_mut()) {
+        keys.insert("text".to_owned(), json!(said));
+    }
     let text = said.map_or_else(|| format!("{shown}\n"), |said| format!("{shown}  {said}\n"));
     output.show(&json, &text)?;
     Ok(Done::Well)

@@ -5,14 +5,14 @@ use serde_json::json;
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
 use crate::app::explain;
-use crate::cli::args::{Action, Common, Do, action_name, no_action, parse_code};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option, parse_code};
 use crate::cli::check;
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
-use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
+use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, KIND};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
@@ -20,6 +20,9 @@ const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, re
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    if act.timeout.is_some() {
+        return Err(no_option("--timeout", KIND));
+    }
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {
         (Action::Reset, []) => return reset(common, output),
@@ -56,7 +59,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             | Action::LeadBack
             | Action::Mounting),
             _,
-        ) => return Err(no_action(other, "hiperface", ACTIONS)),
+        ) => return Err(no_action(other, KIND, ACTIONS)),
     };
     change_and_show(common, output, change, &act.consent, &action_name(act.action))
 }
