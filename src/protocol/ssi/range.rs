@@ -169,6 +169,25 @@ impl Range {
         (position <= last).then_some(position)
     }
 
+    /// The position of a shaft that has turned by `raw` steps from its zero, of which a turn has `per_turn`, at least 1;
+    /// it begins again behind its last one (reference section 5: "position = floor(…)"). A length counts the steps.
+    pub fn of_shaft(&self, raw: u64, per_turn: u64) -> u64 {
+        let (raw, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
+        let last = self.last().unwrap_or(0);
+        let (steps, numerator, denominator) = match *self {
+            Range::Bits { multiturn, .. } => (u128::from(last) + 1, 1_u128 << multiturn, 1),
+            Range::Steps { turns, .. } => (u128::from(last) + 1, u128::from(turns), 1),
+            Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
+                (u128::from(steps), u128::from(numerator), u128::from(denominator).max(1))
+            }
+            Range::Length { .. } => return raw as u64 & last,
+        };
+        // Steps of the shaft until it begins again, as a fraction with `denominator` below the line.
+        let round = (per_turn * numerator).max(1);
+        let around = (raw * denominator) % round;
+        u64::try_from(around * steps / round).unwrap_or(last)
+    }
+
     /// Bits of the revolutions, where they are bits of their own.
     pub const fn multiturn_bits(&self) -> u8 {
         match self {
@@ -192,4 +211,26 @@ fn power_of_two(bits: u8) -> f64 {
 
 fn angle(steps: u64, per_turn: f64) -> f64 {
     steps as f64 * 360.0 / per_turn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reference section 5: 100 steps over 12.5 turns of 8192, and 3600 over one.
+    #[test]
+    fn positions_of_a_shaft() {
+        let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
+        for (raw, position) in [(0, 0), (49152, 48), (102_399, 99), (102_400, 0)] {
+            assert_eq!(axis.of_shaft(raw, 8192), position, "{raw}");
+        }
+        assert_eq!(Range::Steps { per_turn: 3600, turns: 1 }.of_shaft(4096, 8192), 1800);
+        // Turn 1234h and 270° of 2^17: the lowest 12 bits of the turns, three quarters of 2^13.
+        let bits = Range::Bits { multiturn: 12, singleturn: 13 };
+        assert_eq!(bits.of_shaft(0x1234 << 17 | 0x18000, 1 << 17), 0x234 << 13 | 0x1800);
+        assert_eq!(Range::Bits { multiturn: 0, singleturn: 18 }.of_shaft(0x18000, 1 << 17), 0x30000);
+        assert_eq!(Range::Length { bits: 24, step_nanometres: 1000 }.of_shaft(0x100_0007, 1 << 17), 7);
+        let most = Range::Bits { multiturn: 32, singleturn: 32 };
+        assert_eq!(most.of_shaft(u64::MAX, 1 << 32), u64::MAX);
+    }
 }

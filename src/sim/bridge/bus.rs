@@ -6,6 +6,7 @@ use fastrand::Rng;
 use super::config::{Config, Line};
 use crate::protocol::biss::Reading;
 use crate::protocol::bridge::BissStatus;
+use crate::protocol::ssi::{Flags, Layout};
 use crate::sim::biss::Encoder;
 use crate::units::Moment;
 
@@ -15,22 +16,17 @@ pub(super) struct Bus {
     pub(super) encoder: Encoder,
     line: Line,
     noise: f64,
-    gray: bool,
+    ssi: Option<Layout>,
     rng: Rng,
 }
 
 impl Bus {
-    /// The SSI encoder: 12 bits of revolutions, 13 within one.
-    const SSI_MULTITURN: u8 = 12;
-    const SSI_SINGLETURN: u8 = 13;
-    const SSI_BITS: u8 = Self::SSI_MULTITURN + Self::SSI_SINGLETURN;
-
     pub(super) fn new(config: &Config) -> Self {
         Bus {
             encoder: Encoder::new(&config.encoder),
             line: config.line,
             noise: config.noise,
-            gray: config.gray,
+            ssi: config.ssi.clone(),
             rng: Rng::with_seed(config.encoder.seed()),
         }
     }
@@ -56,21 +52,22 @@ impl Bus {
 
     /// The first `bits` bits of an SSI word taken at a moment.
     pub(super) fn ssi(&mut self, at: Moment, bits: u8) -> u64 {
-        match (self.line, self.encoder.reading(at)) {
-            (Line::Low, _) => 0,
-            (Line::High | Line::Open, _) | (Line::Good, None) => ones(bits),
-            (Line::Good, Some(reading)) => {
-                let word = clocked(self.ssi_word(&reading), Self::SSI_BITS, bits);
-                self.damaged(word, bits)
+        match (self.line, self.encoder.reading(at), &self.ssi) {
+            (Line::Low, _, _) => 0,
+            (Line::Good, Some(reading), Some(layout)) => {
+                let frame = clocked(self.ssi_frame(layout, &reading), layout.clocks(), bits);
+                self.damaged(frame, bits)
             }
+            _ => ones(bits),
         }
     }
 
-    fn ssi_word(&self, reading: &Reading) -> u64 {
-        let spare = self.encoder.layout().singleturn_bits().saturating_sub(Self::SSI_SINGLETURN);
-        let multiturn = u64::from(reading.multiturn) & ones(Self::SSI_MULTITURN);
-        let word = multiturn << Self::SSI_SINGLETURN | u64::from(reading.singleturn >> spare);
-        if self.gray { word ^ word >> 1 } else { word }
+    /// The frame of an SSI encoder on the same shaft.
+    fn ssi_frame(&self, layout: &Layout, reading: &Reading) -> u64 {
+        let singleturn = self.encoder.layout().singleturn_bits();
+        let raw = u64::from(reading.multiturn) << singleturn | u64::from(reading.singleturn);
+        let position = layout.descriptor().range.of_shaft(raw, 1 << singleturn);
+        layout.encode(position, Flags::NONE).unwrap_or(0)
     }
 
     /// One bit is inverted in some frames.

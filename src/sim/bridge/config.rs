@@ -2,6 +2,7 @@
 //! and its own.
 
 use crate::protocol::bridge::VERSION;
+use crate::protocol::ssi::{Families, Layout, Settings};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, biss};
 
@@ -13,7 +14,8 @@ pub struct Config {
     pub(super) rpm: f64,
     pub(super) line: Line,
     pub(super) noise: f64,
-    pub(super) gray: bool,
+    /// The frame of an SSI encoder on the same shaft; none: there is no such encoder.
+    pub(super) ssi: Option<Layout>,
     pub(super) switched_supply: bool,
     pub(super) uart: bool,
     pub(super) version: u8,
@@ -38,7 +40,7 @@ impl Default for Config {
             rpm: 0.0,
             line: Line::Good,
             noise: 0.0,
-            gray: true,
+            ssi: ssi(DELIVERED),
             switched_supply: false,
             uart: false,
             version: VERSION,
@@ -77,7 +79,10 @@ impl Config {
                 self.line = setting.one_of(&lines, "good, open, low or high")?;
             }
             "noise" => self.noise = setting.decimal(0.0..=1.0, "the share of damaged frames from 0 to 1")?,
-            "ssi" => self.gray = setting.one_of(&[("gray", true), ("binary", false)], "gray or binary")?,
+            "ssi" => {
+                let allowed = "a family of SSI encoders with its settings, as atm60,code=gray";
+                self.ssi = Some(ssi(setting.value).ok_or_else(|| setting.refused(allowed))?);
+            }
             "supply" => {
                 let supplies = [("external", false), ("switched", true)];
                 self.switched_supply = setting.one_of(&supplies, "external or switched")?;
@@ -91,6 +96,15 @@ impl Config {
         }
         Ok(())
     }
+}
+
+/// 12 bits of turns, 13 within one.
+const DELIVERED: &str = "atm60,code=gray";
+
+fn ssi(text: &str) -> Option<Layout> {
+    let (key, settings) = Settings::parse(text).ok()?;
+    let families = Families::built_in();
+    Some(settings.resolve(families.named(&key)?).ok()?.layout)
 }
 
 #[cfg(test)]
@@ -107,14 +121,14 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let config =
-            read("line=low&noise=0.5&ssi=binary&supply=switched&uart=hiperface&version=2&rpm=60&seed=3").unwrap();
+            read("line=low&noise=0.5&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60&seed=3").unwrap();
         let pairs = [("rpm", "60"), ("seed", "3")].map(|(key, value)| (key.to_owned(), value.to_owned()));
         let expected = Config {
             encoder: biss::Config::from_pairs(&pairs).unwrap(),
             rpm: 60.0,
             line: Line::Low,
             noise: 0.5,
-            gray: false,
+            ssi: Some(ssi("ahm36,st=12").unwrap()),
             switched_supply: true,
             uart: true,
             version: 2,

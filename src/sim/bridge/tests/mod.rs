@@ -253,7 +253,7 @@ fn a_stream_keeps_its_bus_busy() {
 #[test]
 fn ssi_words_in_gray_and_binary() {
     let natural = 0x234 << 13 | 0x1800;
-    for (query, word) in [("ssi=binary", natural), ("ssi=gray", natural ^ natural >> 1)] {
+    for (query, word) in [("ssi=atm60", natural), ("ssi=atm60,code=gray", natural ^ natural >> 1)] {
         let mut host = Host::with(query);
         host.refuses(Request::SsiRead, ErrorCode::BAD_ARGUMENT);
         host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });

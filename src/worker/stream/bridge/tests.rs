@@ -124,7 +124,7 @@ fn twenty_thousand_frames_a_second_come_without_a_gap() {
 #[test]
 fn words_of_ssi_come_the_same_way() {
     let words = SsiWords { clocks: 25, clock_hz: 1_000_000, pause_us: 30, period_us: 100 };
-    let mut bench = bench(words, virtual_adapter("rpm=60&position=0&ssi=binary"));
+    let mut bench = bench(words, virtual_adapter("rpm=60&position=0&ssi=atm60"));
     let batches = bench.take(Duration::from_secs(1));
     let (there, lost) = count(&batches);
     assert!((9_940..=10_300).contains(&there) && lost == 0, "{there} words, {lost} lost");
