@@ -1,5 +1,6 @@
 //! A decoder in C99, without anything but the standard's integers.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::identifier;
@@ -125,8 +126,16 @@ pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
         Flags::REPEAT => descriptor.repeat.is_some(),
         _ => true,
     });
+    let mut known = BTreeSet::new();
     errors
         .chain(patterns)
         .chain(form.map(|(name, flag, meaning)| (name.to_owned(), flag, meaning.to_owned())))
+        .map(|(mut name, flag, meaning)| {
+            // Two bits may be called the same.
+            while !known.insert(name.clone()) {
+                name.push('_');
+            }
+            (name, flag, meaning)
+        })
         .collect()
 }

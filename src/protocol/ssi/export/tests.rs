@@ -54,6 +54,14 @@ fn what_linuxcnc_cannot_do_is_said() {
     }
 }
 
+/// Two definitions of one name are one flag too few, and a compiler's warning.
+#[test]
+fn flags_have_names_of_their_own() {
+    let text = c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");
+    let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#define ")?.split(' ').next()).collect();
+    assert_eq!(names, ["SSI_ERROR", "SSI_ERROR_", "SSI_ONES", "SSI_NO_CODE", "SSI_PADDING", "SSI_ONES_", "SSI_ZEROS"]);
+}
+
 #[test]
 fn a_row_for_each_clock() {
     let table = bit_table(&layout("ahs36,st=12,err=following"));

@@ -73,6 +73,9 @@ pub enum SettingsError {
         /// What it does not have.
         field: &'static str,
     },
+    /// Two that say the same in other ways.
+    #[error("{0} and {1} exclude one another")]
+    Both(&'static str, &'static str),
     /// A number out of its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
     Limit {
@@ -209,6 +212,20 @@ impl Settings {
         };
         if let Some(steps) = self.steps {
             let Some(limits) = family.steps else { return Err(none("number of steps that is not a power of two")) };
+            let others = [
+                (self.multiturn.is_some(), "mt"),
+                (self.singleturn.is_some(), "st"),
+                (self.step_nanometres.is_some(), "step"),
+            ];
+            if let Some((_, other)) = others.into_iter().find(|(given, _)| *given) {
+                return Err(SettingsError::Both("steps", other));
+            }
+            if self.revolutions.is_some() && self.turns.is_some() {
+                return Err(SettingsError::Both("revolutions", "turns"));
+            }
+            if family.multiturn.is_none() && self.turns.is_some_and(|turns| turns > 1) {
+                return Err(none("turns"));
+            }
             limit("steps", (2, limits.total.into()), steps.into())?;
             return match (self.revolutions, self.turns) {
                 (Some(revolutions), _) => {

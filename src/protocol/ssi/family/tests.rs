@@ -56,6 +56,21 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ttk70,clocks=31", 0, 0x12_3456, "gap", "0001001000110100010101101000000"),
 ];
 
+/// What was said and not taken would give another position.
+#[test]
+fn settings_that_would_be_ignored_are_refused() {
+    let cases = [
+        ("ahm36,steps=3600,mt=12", "steps and mt exclude one another"),
+        ("ahm36,steps=3600,st=12", "steps and st exclude one another"),
+        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns exclude one another"),
+        ("afs60,steps=1000,turns=4", "AFS60 SSI has no turns"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(resolve(text).unwrap_err(), reason, "{text}");
+    }
+    assert!(resolve("afs60,steps=1000,turns=1").is_ok());
+}
+
 #[test]
 fn frames_of_the_reference() {
     for (text, turns, steps, error, bits) in GOLDEN {
