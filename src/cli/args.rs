@@ -323,7 +323,7 @@ pub(super) struct Decode {
     ///
     /// biss: UBICOM frames, bridge packets (up to their 00), position frames of the kit encoder (41 bits right-justified:
     /// 16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as "position"
-    /// prints them (024698000h, or raw=610893824 from JSON or a table).
+    /// prints them (0x024698000, or raw=610893824 from JSON or a table).
     #[arg(required = true)]
     pub(super) hex: Vec<String>,
 }

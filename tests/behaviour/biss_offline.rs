@@ -66,16 +66,16 @@ fn position_words_are_decoded_as_they_are_printed() {
     let table = bench.run(&["position", "biss", "--csv", "--count", "1", "--link", "sim:"]).out;
     let raw = format!("raw={}", table.lines().nth(1).unwrap().split(',').nth(1).unwrap());
     let line = bench.run(&["position", "biss", "--link", "sim:?bridge=on"]).out;
-    let hex = line.split_whitespace().find(|word| word.ends_with('h')).unwrap();
-    assert_eq!((raw.as_str(), hex), ("raw=610893824", "024698000h"));
+    let hex = line.split_whitespace().find(|word| word.starts_with("0x")).unwrap();
+    assert_eq!((raw.as_str(), hex), ("raw=610893824", "0x024698000"));
     let told = bench.run(&["decode", "biss", &raw, hex, "raw=0x24698000", "024698000CF", "--json"]).json();
     for one in told["frames"].as_array().unwrap() {
         assert_eq!((&one["raw"], &one["turns"], &one["steps"]), (&json!(0x2469_8000), &json!(4660), &json!(98_304)));
     }
     bench.run(&["decode", "biss", "raw=8589934592"]).fails(1, &["33 bits"]);
     // Nine digits may be either.
-    bench.run(&["decode", "biss", "123456789"]).fails(2, &["024698000h", "raw="]);
-    bench.run(&["decode", "biss", "raw=x"]).fails(2, &["raw=x", "024698000h"]);
+    bench.run(&["decode", "biss", "123456789"]).fails(2, &["0x024698000", "raw="]);
+    bench.run(&["decode", "biss", "raw=x"]).fails(2, &["raw=x", "0x024698000"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `decode`: captured UBICOM frames, bridge packets, position frames and position words in words, offline. Which of them
 //! bytes are is found by what fits: the sum, the CRC. A position word has neither, so it is written as `position` prints it:
-//! `024698000h`, or `raw=610893824`.
+//! `0x024698000`, nine digits, or `raw=610893824`.
 
 mod bridge;
 mod position;
@@ -37,14 +37,17 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// A word of 11 hex digits, or a short one with 0x, is the bits of a frame; one with raw= or a final h a position word;
-/// others are bytes.
+/// Nine hex digits with 0x, what has raw= in front or a final h is a position word; 11 hex digits, or others with 0x, are the
+/// bits of a frame; what is left are bytes.
 fn captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
         (false, digits) => digits.len() == 11 && digits.chars().all(|c| c.is_ascii_hexdigit()),
     };
-    let is_word = |word: &String| word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H']));
+    let is_word = |word: &String| match digits(word) {
+        (true, digits) => digits.len() == position::WORD_DIGITS,
+        (false, word) => word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H'])),
+    };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
         words.iter().try_for_each(|word| ensure_no_word(word))?;
         return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
@@ -65,9 +68,9 @@ const RAW: &str = "raw=";
 fn position_word(word: &str) -> Result<u64> {
     let number = match word.strip_prefix(RAW) {
         Some(number) => parse_number(number).and_then(|number| u64::try_from(number).ok()),
-        None => u64::from_str_radix(word.trim_end_matches(['h', 'H']), 16).ok(),
+        None => u64::from_str_radix(digits(word).1.trim_end_matches(['h', 'H']), 16).ok(),
     };
-    number.ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, as 024698000h or raw=610893824")))
+    number.ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, as 0x024698000 or raw=610893824")))
 }
 
 /// An odd number of digits is no bytes, and may be a position word, decimal or hexadecimal: that has to be said.
@@ -76,7 +79,7 @@ fn ensure_no_word(word: &str) -> Result<()> {
     if !is_number {
         return Ok(());
     }
-    let why = "has an odd number of digits, so it is not bytes; a position word is written 024698000h (hexadecimal) or \
+    let why = "has an odd number of digits, so it is not bytes; a position word is written 0x024698000 (nine digits) or \
                raw=610893824 (as JSON and tables have it), a position frame with 11 digits or 0x";
     Err(Failure::Usage(format!("{word:?} {why}")))
 }

@@ -208,7 +208,7 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
         "warning": reading.warning,
     });
     let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
-    output.show(&json, &format!("{t:10.3} s  {}h  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
+    output.show(&json, &format!("{t:10.3} s  0x{}  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
 }
 
 fn place(reading: &PositionReading) -> String {
