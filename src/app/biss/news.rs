@@ -126,21 +126,13 @@ impl Encoder {
                     self.submit(BissJob::Survey, services);
                 }
             }
-            Event::PollFailed(error) if explain::biss::loss(&error).is_some() => {
-                let why = explain::biss::loss(&error);
-                self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
-            }
-            // Of an earlier wish: the one in force now goes on.
-            Event::PollFailed(_) if self.session.is_polling() => {}
-            Event::PollFailed(error) => {
-                let mut texts = vec![Text::new("session.poll_failed")];
-                let why = explain::biss::job(&error);
-                if let Some(first) = why.first().filter(|_| is_silence(&error) && !self.session.is_busy()) {
-                    self.session.phase = Phase::Silent(first.clone());
+            Event::PollFailed(error) => match explain::biss::loss(&error) {
+                Some(why) => self.lose(why, services),
+                None => {
+                    let is_silent = is_silence(&error);
+                    self.session.polling_failed(explain::biss::job(&error), is_silent, services);
                 }
-                texts.extend(why);
-                services.tell(Severity::Error, texts, Some(&self.session.name()));
-            }
+            },
             Event::Lost(error) => self.lose(explain::link(&error), services),
         }
     }

@@ -106,21 +106,13 @@ impl Encoder {
             }
             Event::Failed(id, error) => self.failed(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
-            Event::PollFailed(error) if explain::hiperface::loss(&error).is_some() => {
-                let why = explain::hiperface::loss(&error);
-                self.lose(why.unwrap_or_else(|| Text::new("session.ended")), services);
-            }
-            // Of an earlier wish: the one in force now goes on.
-            Event::PollFailed(_) if self.session.line.as_ref().is_some_and(|line| line.polling().is_some()) => {}
-            Event::PollFailed(error) => {
-                let mut texts = vec![Text::new("session.poll_failed")];
-                let why = explain::hiperface::job(&error);
-                if let Some(first) = why.first().filter(|_| self.is_silence(&error) && !self.session.is_busy()) {
-                    self.session.phase = Phase::Silent(first.clone());
+            Event::PollFailed(error) => match explain::hiperface::loss(&error) {
+                Some(why) => self.lose(why, services),
+                None => {
+                    let is_silent = self.is_silence(&error);
+                    self.session.polling_failed(explain::hiperface::job(&error), is_silent, services);
                 }
-                texts.extend(why);
-                services.tell(Severity::Error, texts, Some(&self.session.name()));
-            }
+            },
             Event::Lost(error) => self.lose(explain::link(&error), services),
         }
     }

@@ -228,6 +228,18 @@ impl<D: Kind> Session<D> {
         }
     }
 
+    /// Polling has ended by itself: why, and whether the device says nothing at all. One that was wished since goes on.
+    pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
+        if self.is_polling() {
+            return;
+        }
+        if let Some(first) = why.first().filter(|_| is_silent && !self.is_busy()) {
+            self.phase = Phase::Silent(first.clone());
+        }
+        let texts = std::iter::once(Text::new("session.poll_failed")).chain(why).collect();
+        services.tell(Severity::Error, texts, Some(&self.name()));
+    }
+
     /// Starts a job, or says why not and gives false.
     pub(in crate::app) fn submit(&mut self, job: D::Job, what: Text, writes: bool, services: &mut Services) -> bool {
         let name = self.name();
