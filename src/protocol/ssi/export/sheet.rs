@@ -88,7 +88,7 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> St
         let _ = writeln!(text, "\n{why} Read the whole frame as binary, and decode it in the program.");
     }
     module(&mut text, "SIMATIC TM PosInput, SSI_Absolute_Encoder", &siemens(layout, &places, gray));
-    module(&mut text, "Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", &beckhoff(&places, gray));
+    module(&mut text, "Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", &beckhoff(layout, &places, gray));
     module(&mut text, "Delta AS02HC", &delta(layout, &places, gray));
     module(&mut text, "Synapticon SOMANET (object 2209h)", &synapticon(layout, &places, gray));
     text
@@ -132,14 +132,16 @@ fn siemens(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, S
     ]
 }
 
-fn beckhoff(places: &Places, gray: bool) -> Vec<(&'static str, String)> {
+fn beckhoff(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, String)> {
     let frame_type = match places.frame {
         25 => "0 (multiturn, 25 bits)".to_owned(),
         13 => "1 (singleturn, 13 bits)".to_owned(),
         bits @ 1..=32 => format!("2 (variable, {bits} bits)"),
         bits => format!("none: the terminal reads up to 32 bits, not {bits}"),
     };
-    let fails = u8::from(matches!(places.others.as_slice(), [.., (0, _)]));
+    // A parity bit says nothing of the encoder.
+    let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
+    let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
     let behind = places.behind() - fails;
     let mut settings = vec![
         (":06 SSI coding", if gray { "1 (Gray)" } else { "0 (binary)" }.to_owned()),

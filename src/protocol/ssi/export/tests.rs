@@ -1,7 +1,7 @@
 //! Format strings and tables; what is compiled is tested beside the program (`tests/behaviour/ssi_export.rs`).
 
 use super::*;
-use crate::protocol::ssi::{Families, Layout, Settings};
+use crate::protocol::ssi::{Descriptor, Families, Layout, Parity, Settings};
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
@@ -52,6 +52,20 @@ fn what_linuxcnc_cannot_do_is_said() {
     for (text, reason) in cases {
         assert_eq!(from_linuxcnc(text).unwrap_err().to_string(), reason, "{text}");
     }
+}
+
+#[test]
+fn a_parity_bit_is_no_error_bit_in_the_sheet() {
+    let sheet = |layout: &Layout| settings_sheet(layout, None, "").lines().map(str::to_owned).collect::<Vec<_>>();
+    let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
+    let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
+    assert!(error.ends_with("1: the last bit is an error bit"), "{error}");
+    let parity = Some(Parity { clock: 15, even: true });
+    let own = Layout::new(Descriptor { clocks: 15, parity, ..Descriptor::plain(0, 14) }).unwrap();
+    let lines = sheet(&own);
+    let error = power_failure(&lines).unwrap();
+    assert!(error.ends_with(" 0"), "{error}");
+    assert!(lines.iter().any(|line| line.contains("divide the value by 2 ")), "{lines:?}");
 }
 
 /// Two definitions of one name are one flag too few, and a compiler's warning.
