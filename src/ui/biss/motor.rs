@@ -22,7 +22,6 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor
                     actions.push(Action::Biss(encoder.session.id, Biss::Turn(rpm)));
                 }
             }
-            ui.label(skin.label(skin.say("unit.revolutions_per_minute")));
         });
     });
 }

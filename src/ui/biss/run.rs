@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use super::motor;
 use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
 use crate::app::{Action, Severity, Text, explain::biss as says};
-use crate::device::biss::procedure::{Answer, Demand, Detail, Run, Task};
+use crate::device::biss::procedure::{Advice, Answer, Demand, Detail, Run, Task};
 use crate::profile::biss::Op;
 use crate::ui::controls::{button, card, enabled_button, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
@@ -76,7 +76,9 @@ fn step(
     let mut step = Step { title, state, word: skin.say(word), ..Step::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
-            let notes: Vec<String> = demand.advice.iter().map(|own| skin.words(&says::advice(*own))).collect();
+            // What is best of the speed the gauges say, which do not come and go.
+            let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
+            let notes: Vec<String> = lasting.map(|own| skin.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");
             step.gauges = gauges(skin, demand);
         }

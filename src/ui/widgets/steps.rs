@@ -206,19 +206,16 @@ fn content(ui: &mut Ui, skin: &Skin, model: &Steps<'_>, step: &Step) -> Option<S
     buttons(ui, skin, model)
 }
 
-/// Start where the eye ends, and leaving out beside it.
+/// Start where the eye ends, leaving out and why it cannot start beside it: it stays where it is while a motor is brought to
+/// its speed.
 fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
-    if let Some((_, Err(why))) = model.start {
-        ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, RichText::new(why).color(skin.palette.warn));
-        });
-    }
     if model.start.is_none() && model.skip.is_none() {
         return None;
     }
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    // A line high: centred in all the room that is left, they would float in it.
+    let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {
             let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, word);
             if response.clicked() {
@@ -232,6 +229,12 @@ fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
             && enabled_button(ui, true, "", word).clicked()
         {
             event = Some(StepsEvent::Skip);
+        }
+        if let Some((_, Err(why))) = model.start {
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+                paragraph(ui, RichText::new(why).color(skin.palette.warn));
+            });
         }
     });
     event
