@@ -236,7 +236,10 @@ pub(super) fn choice<T: PartialEq + Copy>(
     let options: Vec<(T, String)> = options.into_iter().collect();
     let shown = options.iter().find(|(own, _)| own == value).map(|(_, word)| word.clone()).unwrap_or_default();
     let before = *value;
-    let response = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).show_ui(ui, |ui| {
+    // A long list is as high as there is room for it.
+    let height = ui.ctx().content_rect().height() * 0.6;
+    let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
+    let response = list.show_ui(ui, |ui| {
         for (own, word) in options {
             ui.selectable_value(value, own, word);
         }

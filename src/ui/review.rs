@@ -82,9 +82,14 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
         Stage::Failed { texts, begun } => {
             let (icon, colour) =
                 if *begun { (icons::WARNING, skin.palette.warn) } else { (icons::X_CIRCLE, skin.palette.bad) };
+            let mut indent = 0.0;
             for (at, text) in texts.iter().enumerate() {
                 ui.horizontal_top(|ui| {
-                    ui.label(RichText::new(if at == 0 { icon } else { "  " }).color(colour));
+                    if at == 0 {
+                        indent = ui.label(RichText::new(icon).color(colour)).rect.width() + ui.spacing().item_spacing.x;
+                    } else {
+                        ui.add_space(indent);
+                    }
                     ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
                 });
             }

@@ -173,13 +173,17 @@ impl Skin {
         visuals.striped = false;
         let corner = CornerRadius::same(4);
         let text = Color32::from(palette.text);
+        let line = Color32::from(palette.line);
+        // What can be pressed or ticked stands out from the lines between things.
+        let edge = Color32::from(palette.muted).gamma_multiply(0.6);
+        let accent = Color32::from(palette.accent);
         let widgets = &mut visuals.widgets;
         for (widget, fill, border, ink) in [
-            (&mut widgets.noninteractive, palette.raised.into(), palette.line, text),
-            (&mut widgets.inactive, palette.raised.into(), palette.line, text),
-            (&mut widgets.hovered, faint, palette.accent, text),
-            (&mut widgets.active, faint.gamma_multiply(2.0), palette.accent, text),
-            (&mut widgets.open, faint, palette.accent, text),
+            (&mut widgets.noninteractive, palette.raised.into(), line, text),
+            (&mut widgets.inactive, palette.raised.into(), edge, text),
+            (&mut widgets.hovered, faint, accent, text),
+            (&mut widgets.active, faint.gamma_multiply(2.0), accent, text),
+            (&mut widgets.open, faint, accent, text),
         ] {
             widget.bg_fill = fill;
             widget.weak_bg_fill = fill;
