@@ -140,6 +140,11 @@ impl Encoder {
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
+    /// What can be shown of an area: of a profile as much as it holds, of an encoder only the whole.
+    pub fn shown(&self, area: &Area) -> Option<Area> {
+        if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
+    }
+
     /// Why an area cannot be edited now; `None`: it can.
     pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {

@@ -80,6 +80,26 @@ impl Memory {
         Some((read, wanted))
     }
 
+    /// The banks of an area that were read, as many as follow each other: a profile may hold some of them only. `None`:
+    /// not one was read whole.
+    pub fn part(&self, area: &Area) -> Option<Area> {
+        let is_read = |bank: u8| {
+            let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
+            places.all(|at| at.is_some_and(|at| self.read(at).is_some()))
+        };
+        let mut best: Option<(u8, u8)> = None;
+        let mut first = None;
+        for bank in area.banks() {
+            first = is_read(bank).then(|| first.unwrap_or(bank));
+            if let Some(first) = first
+                && best.is_none_or(|(from, to)| bank - first > to - from)
+            {
+                best = Some((first, bank));
+            }
+        }
+        best.map(|(first, last)| Area { first, last, ..area.clone() })
+    }
+
     /// Another value was read than the time before.
     pub fn has_changed(&self, at: RegisterAddress) -> bool {
         self.changed.contains(&at)
@@ -241,6 +261,21 @@ mod tests {
         memory.take(at("0x43:0x3F"), &[0]);
         assert_eq!(memory.put(&kit(), at("0x43:0x3F"), &[1, 2]), Err(MemoryError::NoData(at("0x44:0x00"))));
         assert!(!memory.is_dirty(), "all or nothing");
+    }
+
+    #[test]
+    fn of_an_area_the_longest_part_that_was_read_is_shown() {
+        let mut memory = Memory::default();
+        let kit = kit();
+        let area = kit.area_at(at("0x24:0x00")).unwrap();
+        let part = |memory: &Memory| memory.part(area).map(|own| (own.first, own.last));
+        memory.take(at("0x24:0x01"), &[0; 63]);
+        assert_eq!(part(&memory), None, "not the whole bank");
+        memory.take(at("0x25:0x00"), &[0; 64]);
+        memory.take(at("0x30:0x00"), &[0; 128]);
+        assert_eq!(part(&memory), Some((0x30, 0x31)));
+        memory.take(at("0x24:0x00"), &[0; 0x20 * 64]);
+        assert_eq!(part(&memory), Some((area.first, area.last)));
     }
 
     #[test]

@@ -33,6 +33,7 @@ pub(super) fn page_ui(
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         foot::foot_ui(ui, skin, studio, device, actions);
     });
+    let shown = encoder.shown(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
             let word = skin.name(&own.name);
@@ -45,16 +46,20 @@ pub(super) fn page_ui(
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("data.read")).clicked() {
             actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
         }
+        let shown = shown.as_ref().unwrap_or(area);
         let text = Text::new("data.banks")
-            .with("first", format!("0x{:02X}", area.first))
-            .with("last", format!("0x{:02X}", area.last))
-            .with("bytes", area.size());
+            .with("first", format!("0x{:02X}", shown.first))
+            .with("last", format!("0x{:02X}", shown.last))
+            .with("bytes", shown.size());
         ui.label(skin.caption(skin.words(&text)));
     });
     ui.add_space(skin.space.inside);
     super::refusal_ui(ui, skin, encoder, actions);
-    match encoder.memory.area(area) {
-        Some((read, wanted)) => bytes(ui, skin, encoder, area, (&read, &wanted), view, actions),
+    match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
+        Some(((read, wanted), own)) => bytes(ui, skin, encoder, &own, (&read, &wanted), view, actions),
+        None if encoder.profile().is_some() => {
+            empty(ui, skin, &skin.say("data.not_in_profile"), None);
+        }
         None => {
             let read = (icons::ARROW_CLOCKWISE, skin.say("data.read"), encoder.session.is_ready());
             if empty(ui, skin, &skin.say("data.not_read"), Some((read.0, &read.1, read.2))) {

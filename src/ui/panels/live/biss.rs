@@ -28,7 +28,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     if ui.available_height() < LOW {
         // In a low window the plot needs the room.
         let (turns, steps) = (skin.say("live.turns"), skin.say("live.step"));
-        let words = format!("{turns} {} · {steps} {} · 0x{}", reading.turns, reading.steps, reading.raw());
+        let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
     } else {
         row(ui, skin, &skin.say("live.turns"), skin.mono(reading.turns.to_string()));
