@@ -281,15 +281,18 @@ fn wiegand(survey: &Survey) -> Option<Line> {
 /// Reads the position again and again. A reading that does not come at all is damage as well.
 fn readings(master: &mut Master<'_>) -> Result<Line, Error> {
     let before = master.station().line.damaged;
+    let told_by_line = master.station().way == Way::ConfigPin;
     let mut damaged = 0;
     for _ in 0..READINGS {
         match master.position() {
             Ok(reading) => damaged += u64::from(reading.crc_errors),
+            // Each of its tries is counted there.
+            Err(Error::Damaged { .. }) if told_by_line => {}
             Err(Error::Damaged { .. } | Error::WrongWidths { .. } | Error::TooWide { .. }) => damaged += 1,
             Err(error) => return Err(error),
         }
     }
-    if master.station().way == Way::ConfigPin {
+    if told_by_line {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
