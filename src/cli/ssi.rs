@@ -234,7 +234,11 @@ fn beyond(what: &str, text: &str, last: u64) -> Failure {
 }
 
 fn export(output: &Output, arguments: &SsiExport) -> Result {
-    let SsiExport { layout: spec, format, file, .. } = arguments;
+    let SsiExport { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
+    let is_timed = clock.is_some() || pause.is_some() || cable.is_some() || *synchronous;
+    if is_timed && *format != SsiFormat::Timing {
+        return Err(Failure::Usage("--clock, --pause, --cable and --synchronous are for --format timing".to_owned()));
+    }
     let (layout, times) = layout(output, spec)?;
     let title = &spec.spec;
     let text = match format {
@@ -249,10 +253,10 @@ fn export(output: &Output, arguments: &SsiExport) -> Result {
             let times = times.ok_or_else(unknown)?;
             let reads = Reads {
                 clocks: layout.clocks(),
-                clock_hz: f64::from(arguments.clock),
-                pause: Duration::from_micros(arguments.pause.into()),
-                cable_metres: arguments.cable.map(f64::from),
-                synchronous: arguments.synchronous,
+                clock_hz: clock.unwrap_or(400_000).into(),
+                pause: Duration::from_micros(pause.unwrap_or(200).into()),
+                cable_metres: cable.map(f64::from),
+                synchronous: *synchronous,
                 any_steps: !matches!(layout.descriptor().range, Range::Bits { .. } | Range::Length { .. }),
             };
             for warning in times.reckon(&reads).warnings {

@@ -100,6 +100,7 @@ fn what_is_wrong_is_said() {
     fails(2, &["decode", "--layout", "ahs36", "12"], &["\"12\" is not a frame", "0b1010"]);
     fails(2, &["decode", "--layout", "ahs36", "0x+54B6"], &["\"0x+54B6\" is not a frame"]);
     fails(2, &["encode", "--layout", "ahs36"], &["--position"]);
+    fails(2, &["export", "--layout", "ahs36", "--format", "c", "--cable", "10"], &["--format timing"]);
     fails(2, &["encode", "--layout", "ahs36", "--steps", "1", "--error", "GAP"], &["\"GAP\"", "ERROR"]);
     fails(2, &["encode", "--layout", "ttk70", "--steps", "1"], &["a length", "--position"]);
     fails(1, &["decode", "--layout", "ahs36", "1010"], &["1010 has 4 bits", "15 clocks"]);

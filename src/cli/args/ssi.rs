@@ -48,12 +48,12 @@ pub(in crate::cli) struct SsiExport {
     /// What to write.
     #[arg(long, value_enum)]
     pub(in crate::cli) format: SsiFormat,
-    /// timing: the clock in hertz.
-    #[arg(long, value_name = "HZ", default_value_t = 400_000, value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
-    pub(in crate::cli) clock: u32,
-    /// timing: the pause behind a burst, in microseconds.
-    #[arg(long, value_name = "US", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(in crate::cli) pause: u32,
+    /// timing: the clock in hertz; 400000 if left out.
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
+    pub(in crate::cli) clock: Option<u32>,
+    /// timing: the pause behind a burst, in microseconds; 200 if left out.
+    #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(in crate::cli) pause: Option<u32>,
     /// timing: the cable in metres.
     #[arg(long, value_name = "M")]
     pub(in crate::cli) cable: Option<u16>,
