@@ -159,11 +159,12 @@ pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
         let named = |words| Text::new("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first says what was done, or is a result of its own; the rest is beside it.
+    // The first says what was done, or how it was judged; the rest is beside it.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
-            0 => verdict(report.result.lowest_cw),
-            1 => verdict(report.result.lowest_ccw),
+            0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),
+            1 => verdict(report.result.lowest_cw),
+            2 => verdict(report.result.lowest_ccw),
             _ => Severity::Note,
         },
         _ if at == 0 => Severity::Good,
@@ -193,7 +194,9 @@ fn tested(report: &WiegandReport) -> Vec<Text> {
             .with_number("lowest", lowest.volts(), 1)
             .with_text("verdict", Text::new(verdict).with_number("limit", PulseVoltage::LIMIT.volts(), 1))
     };
+    let passed = [result.lowest_cw, result.lowest_ccw].into_iter().all(|lowest| lowest > PulseVoltage::LIMIT);
     let mut texts = vec![
+        Text::new(if passed { "guide.wiegand_passed" } else { "guide.wiegand_not_passed" }),
         direction("guide.pulses_cw", result.average_cw, result.lowest_cw),
         direction("guide.pulses_ccw", result.average_ccw, result.lowest_ccw),
     ];
@@ -234,11 +237,12 @@ mod tests {
         };
         let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
         let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
-        assert!(words[0].contains("6.3") && words[0].contains("5.4") && words[0].contains("above"), "{words:?}");
-        assert!(words[1].contains("5.3") && words[1].contains("not above"), "{words:?}");
+        assert!(words[0].contains("not passed"), "{words:?}");
+        assert!(words[1].contains("6.3") && words[1].contains("5.4") && words[1].contains("above"), "{words:?}");
+        assert!(words[2].contains("5.3") && words[2].contains("not above"), "{words:?}");
         let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
         let weights: Vec<Severity> = report.iter().map(|(severity, _)| *severity).collect();
-        assert_eq!(weights, [Severity::Good, Severity::Warning, Severity::Note]);
+        assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
     }
 
     /// Manual 6.7: 18000h of 17 bits are 270°.
