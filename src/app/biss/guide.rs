@@ -31,6 +31,8 @@ pub enum End {
         before: Vec<Outcome>,
         /// The encoder may not be in operation.
         may_lead_back: bool,
+        /// A person wanted it.
+        cancelled: bool,
     },
 }
 
@@ -47,6 +49,8 @@ pub enum Reached {
     Skipped,
     /// It ended the procedure.
     Failed,
+    /// A person ended the procedure in it.
+    Cancelled,
     /// It comes later, or not any more.
     Ahead,
 }
@@ -121,6 +125,7 @@ impl Guide {
                 let reached = match &self.end {
                     Some(End::Done(_)) if is_skipped => Reached::Skipped,
                     Some(End::Done(_)) => Reached::Done,
+                    Some(End::Failed { cancelled: true, .. }) if is_own => Reached::Cancelled,
                     Some(End::Failed { .. }) if is_own => Reached::Failed,
                     Some(End::Failed { .. }) if self.was_led_back(number, step) => Reached::Done,
                     _ if is_own && self.demand().is_some() => Reached::Waits,
@@ -177,7 +182,7 @@ mod tests {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         told.iter().for_each(|step| guide.tell(News { op: 0, step: *step, detail: Detail::Begins }));
         guide.cut = cut;
-        guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back });
+        guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
     }
 
@@ -217,5 +222,15 @@ mod tests {
         // The way back itself.
         assert_eq!(reached(&led, Some(Step::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
         assert_eq!(reached(&[], None, false), [Ahead; 7]);
+    }
+
+    #[test]
+    fn who_cancels_has_not_failed() {
+        let mut guide = Guide::new(vec![Op::Calibrate]);
+        guide.tell(News { op: 0, step: Step::Conditions, detail: Detail::Begins });
+        guide.cut = Some(Step::Conditions);
+        let (texts, before) = (Vec::new(), Vec::new());
+        guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });
+        assert_eq!(guide.steps().first().map(|own| own.reached), Some(Reached::Cancelled));
     }
 }

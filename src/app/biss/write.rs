@@ -10,7 +10,7 @@ use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::device::biss::Error;
-use crate::device::biss::procedure::{Answer, Task, Unattended};
+use crate::device::biss::procedure::{Answer, Failure, Task, Unattended};
 use crate::device::biss::write::Left;
 use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
@@ -190,7 +190,9 @@ impl Encoder {
                 JobError::Device(Error::NotInOperation { .. }) => (Vec::new(), true),
                 _ => (Vec::new(), false),
             };
-            guide.end = Some(End::Failed { texts: texts.to_vec(), before, may_lead_back });
+            let cancelled = matches!(error, JobError::Interrupted { interrupted, .. }
+                if matches!(interrupted.cause, Failure::Device(Error::Cancelled)));
+            guide.end = Some(End::Failed { texts: texts.to_vec(), before, may_lead_back, cancelled });
             return true;
         }
         match &mut self.review {
@@ -208,7 +210,8 @@ impl Encoder {
             review.fail(vec![why.clone()], true);
         }
         if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
-            guide.end = Some(End::Failed { texts: vec![why.clone()], before: Vec::new(), may_lead_back: true });
+            let (texts, before) = (vec![why.clone()], Vec::new());
+            guide.end = Some(End::Failed { texts, before, may_lead_back: true, cancelled: false });
         }
     }
 }

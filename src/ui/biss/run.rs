@@ -71,6 +71,7 @@ fn step(
         Reached::Runs => (StepState::Running, "guide.runs"),
         Reached::Skipped => (StepState::Skipped, "guide.left_out"),
         Reached::Failed => (StepState::Failed, "guide.failed"),
+        Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
         Reached::Ahead => (StepState::ToCome, "guide.ahead"),
     };
     let mut step = Step { title, state, word: skin.say(word), ..Step::default() };
