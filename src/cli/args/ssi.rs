@@ -71,8 +71,9 @@ pub(in crate::cli) struct SsiLayout {
     ///
     /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
     /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
-    /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres). Or
-    /// linuxcnc: with a format string of LinuxCNC behind it.
+    /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres),
+    /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: with a format string of LinuxCNC
+    /// behind it.
     #[arg(long = "layout", value_name = "SPEC")]
     pub(in crate::cli) spec: String,
 }

@@ -2,6 +2,7 @@
 //! family can send, its times and its further signals. It is data: nothing is opened here. What a family's settings
 //! make of it: [`Settings`].
 
+mod sends;
 mod settings;
 #[cfg(test)]
 mod tests;

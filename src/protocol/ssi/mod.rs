@@ -28,5 +28,5 @@ pub use family::{
 };
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
 pub use layout::{Flags, Layout, LayoutError, Reading};
-pub use range::{Fraction, Place, Range, RangeError};
+pub use range::{Direction, Fraction, Place, Range, RangeError};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

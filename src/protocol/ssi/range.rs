@@ -44,6 +44,16 @@ pub struct Fraction {
     pub denominator: u32,
 }
 
+/// Which way the shaft is turned, seen on it, while positions grow; a length: its own direction, or against it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Clockwise: as delivered.
+    #[default]
+    Clockwise,
+    /// Counterclockwise.
+    CounterClockwise,
+}
+
 /// Why there is no such range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
@@ -172,7 +182,21 @@ impl Range {
     /// The position of a shaft that has turned by `raw` steps from its zero, of which a turn has `per_turn`, at least 1;
     /// it begins again behind its last one (reference section 5: "position = floor(…)"). A length counts the steps.
     pub fn of_shaft(&self, raw: u64, per_turn: u64) -> u64 {
-        let (raw, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
+        self.counted(raw, per_turn, Direction::Clockwise)
+    }
+
+    /// The same of an encoder that counts in a direction and stands at `preset` while the shaft is at its zero
+    /// (reference section 5: "Direction", "preset"). A preset behind the last position begins again likewise.
+    pub fn of_shaft_set(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
+        let last = self.last().unwrap_or(0);
+        let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
+        u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
+    }
+
+    /// From 0 at the shaft's zero. What is turned counterclockwise counts like what is turned clockwise, so that either
+    /// direction holds each position as long.
+    fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
+        let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);
         let (steps, numerator, denominator) = match *self {
             Range::Bits { multiturn, .. } => (u128::from(last) + 1, 1_u128 << multiturn, 1),
@@ -180,11 +204,15 @@ impl Range {
             Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
                 (u128::from(steps), u128::from(numerator), u128::from(denominator).max(1))
             }
-            Range::Length { .. } => return raw as u64 & last,
+            Range::Length { .. } if direction == Direction::CounterClockwise => return raw.wrapping_neg() & last,
+            Range::Length { .. } => return raw & last,
         };
         // Steps of the shaft until it begins again, as a fraction with `denominator` below the line.
         let round = (per_turn * numerator).max(1);
-        let around = (raw * denominator) % round;
+        let around = match direction {
+            Direction::Clockwise => (turned * denominator) % round,
+            Direction::CounterClockwise => (round - (turned * denominator) % round) % round,
+        };
         u64::try_from(around * steps / round).unwrap_or(last)
     }
 
@@ -232,5 +260,35 @@ mod tests {
         assert_eq!(Range::Length { bits: 24, step_nanometres: 1000 }.of_shaft(0x100_0007, 1 << 17), 7);
         let most = Range::Bits { multiturn: 32, singleturn: 32 };
         assert_eq!(most.of_shaft(u64::MAX, 1 << 32), u64::MAX);
+    }
+
+    /// Worked out by hand: 360 steps of 4096 of the shaft, and the round axis of the reference.
+    #[test]
+    fn positions_with_direction_and_preset() {
+        use Direction::{Clockwise, CounterClockwise};
+        let degrees = Range::Steps { per_turn: 360, turns: 1 };
+        let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
+        let bits = Range::Bits { multiturn: 4, singleturn: 8 };
+        let length = Range::Length { bits: 24, step_nanometres: 1000 };
+        let all = Range::Length { bits: 64, step_nanometres: 1 };
+        let cases = [
+            ("the preset at zero", degrees, 0, 4096, Clockwise, 100, 100),
+            ("the preset at zero", degrees, 0, 4096, CounterClockwise, 100, 100),
+            ("a quarter turn", degrees, 1024, 4096, Clockwise, 100, 190),
+            ("a quarter turn", degrees, 1024, 4096, CounterClockwise, 100, 10),
+            ("over the end", degrees, 3072, 4096, Clockwise, 100, 10),
+            ("over the end", degrees, 2048, 4096, CounterClockwise, 100, 280),
+            ("one step of the shaft back", degrees, 4095, 4096, CounterClockwise, 0, 0),
+            ("a degree back", degrees, 4096 - 12, 4096, CounterClockwise, 0, 1),
+            ("12.5 turns", axis, 102_400, 8192, CounterClockwise, 7, 7),
+            ("6 turns of 12.5 back", axis, 102_400 - 49_152, 8192, CounterClockwise, 0, 48),
+            ("turns too", bits, 3 << 10 | 512, 1024, CounterClockwise, 0, 12 << 8 | 128),
+            ("a length", length, 7, 1024, CounterClockwise, 3, 0xFF_FFFC),
+            ("a preset behind the end", bits, 0, 1024, Clockwise, 0x1005, 5),
+            ("64 bits", all, u64::MAX, 1, Clockwise, 2, 1),
+        ];
+        for (what, range, raw, per_turn, direction, preset, position) in cases {
+            assert_eq!(range.of_shaft_set(raw, per_turn, direction, preset), position, "{what}, {direction:?}");
+        }
     }
 }

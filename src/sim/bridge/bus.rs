@@ -6,7 +6,7 @@ use fastrand::Rng;
 use super::config::{Config, Line};
 use crate::protocol::biss::Reading;
 use crate::protocol::bridge::BissStatus;
-use crate::protocol::ssi::{Flags, Layout};
+use crate::protocol::ssi::{Flags, Resolved};
 use crate::sim::biss::Encoder;
 use crate::units::Moment;
 
@@ -16,7 +16,7 @@ pub(super) struct Bus {
     pub(super) encoder: Encoder,
     line: Line,
     noise: f64,
-    ssi: Option<Layout>,
+    ssi: Option<Resolved>,
     rng: Rng,
 }
 
@@ -54,8 +54,8 @@ impl Bus {
     pub(super) fn ssi(&mut self, at: Moment, bits: u8) -> u64 {
         match (self.line, self.encoder.reading(at), &self.ssi) {
             (Line::Low, _, _) => 0,
-            (Line::Good, Some(reading), Some(layout)) => {
-                let frame = clocked(self.ssi_frame(layout, &reading), layout.clocks(), bits);
+            (Line::Good, Some(reading), Some(ssi)) => {
+                let frame = clocked(self.ssi_frame(ssi, &reading), ssi.layout.clocks(), bits);
                 self.damaged(frame, bits)
             }
             _ => ones(bits),
@@ -63,11 +63,12 @@ impl Bus {
     }
 
     /// The frame of an SSI encoder on the same shaft.
-    fn ssi_frame(&self, layout: &Layout, reading: &Reading) -> u64 {
+    fn ssi_frame(&self, ssi: &Resolved, reading: &Reading) -> u64 {
         let singleturn = self.encoder.layout().singleturn_bits();
         let raw = u64::from(reading.multiturn) << singleturn | u64::from(reading.singleturn);
-        let position = layout.descriptor().range.of_shaft(raw, 1 << singleturn);
-        layout.encode(position, Flags::NONE).unwrap_or(0)
+        let range = ssi.layout.descriptor().range;
+        let position = range.of_shaft_set(raw, 1 << singleturn, ssi.direction, ssi.preset);
+        ssi.layout.encode(position, Flags::NONE).unwrap_or(0)
     }
 
     /// One bit is inverted in some frames.

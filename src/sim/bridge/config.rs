@@ -2,7 +2,7 @@
 //! and its own.
 
 use crate::protocol::bridge::VERSION;
-use crate::protocol::ssi::{Families, Layout, Settings};
+use crate::protocol::ssi::{Families, Resolved, Settings};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, biss};
 
@@ -14,8 +14,8 @@ pub struct Config {
     pub(super) rpm: f64,
     pub(super) line: Line,
     pub(super) noise: f64,
-    /// The frame of an SSI encoder on the same shaft; none: there is no such encoder.
-    pub(super) ssi: Option<Layout>,
+    /// The frame of an SSI encoder on the same shaft, with its direction and preset; none: there is no such encoder.
+    pub(super) ssi: Option<Resolved>,
     pub(super) switched_supply: bool,
     pub(super) uart: bool,
     pub(super) version: u8,
@@ -101,10 +101,10 @@ impl Config {
 /// 12 bits of turns, 13 within one.
 const DELIVERED: &str = "atm60,code=gray";
 
-fn ssi(text: &str) -> Option<Layout> {
+fn ssi(text: &str) -> Option<Resolved> {
     let (key, settings) = Settings::parse(text).ok()?;
     let families = Families::built_in();
-    Some(settings.resolve(families.named(&key)?).ok()?.layout)
+    settings.resolve(families.named(&key)?).ok()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::{Align, ErrorPlace, Family, Frame};
 use crate::protocol::ssi::code::{Code, CodeError, Coding};
 use crate::protocol::ssi::descriptor::{Coded, Descriptor, ErrorBit};
 use crate::protocol::ssi::layout::{Layout, LayoutError};
-use crate::protocol::ssi::range::{Fraction, Range, RangeError};
+use crate::protocol::ssi::range::{Direction, Fraction, Range, RangeError};
 
 /// What is set at an encoder of a family; what is none is as delivered, with the largest resolution.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +33,10 @@ pub struct Settings {
     pub errors: Option<ErrorPlace>,
     /// Length of a step.
     pub step_nanometres: Option<u32>,
+    /// Which way it counts.
+    pub direction: Option<Direction>,
+    /// The position at the shaft's zero.
+    pub preset: Option<u64>,
 }
 
 /// A family's frame.
@@ -44,6 +48,10 @@ pub struct Resolved {
     pub align: Align,
     /// Where the error bits stand.
     pub errors: ErrorPlace,
+    /// Which way the encoder counts. Its frames are read the same.
+    pub direction: Direction,
+    /// The position at the shaft's zero, within the range. Frames are read the same.
+    pub preset: u64,
     /// What is accepted although the manual does not speak of it.
     pub advice: Vec<Advice>,
 }
@@ -140,6 +148,8 @@ impl Settings {
     /// [`SettingsError`] with the reason why it cannot.
     pub fn resolve(&self, family: &Family) -> Result<Resolved, SettingsError> {
         let range = self.range(family)?;
+        let preset = self.preset.unwrap_or(0);
+        limit(family, "preset", (0, range.last()?), preset)?;
         let code = self.code.unwrap_or_else(|| family.code());
         let bits = Coding::new(code, range.last()?)?.bits();
         let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
@@ -195,18 +205,19 @@ impl Settings {
         let longer = clocks > own && most.is_none();
         let advice = [(!named).then_some(Advice::Code(code)), longer.then_some(Advice::Clocks { bits: own, clocks })];
         let layout = Layout::new(descriptor)?;
-        Ok(Resolved { layout, align, errors: place, advice: advice.into_iter().flatten().collect() })
+        Ok(Resolved {
+            layout,
+            align,
+            errors: place,
+            direction: self.direction.unwrap_or_default(),
+            preset,
+            advice: advice.into_iter().flatten().collect(),
+        })
     }
 
     fn range(&self, family: &Family) -> Result<Range, SettingsError> {
         let none = |field| SettingsError::None { family: family.name.clone(), field };
-        let limit = |field, (least, most): (u64, u64), value: u64| {
-            if (least..=most).contains(&value) {
-                Ok(())
-            } else {
-                Err(SettingsError::Limit { family: family.name.clone(), field, least, most, value })
-            }
-        };
+        let limit = |field, limits, value| limit(family, field, limits, value);
         let within = |field, (least, _, most): (u8, u8, u8), value: u8| {
             limit(field, (least.into(), most.into()), value.into()).map(|()| value)
         };
@@ -268,6 +279,14 @@ impl Settings {
         let asked = self.singleturn.unwrap_or(delivered.min(left));
         let singleturn = within("singleturn bits", (least, delivered, left), asked)?;
         Ok(Range::Bits { multiturn, singleturn })
+    }
+}
+
+fn limit(family: &Family, field: &'static str, (least, most): (u64, u64), value: u64) -> Result<(), SettingsError> {
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(SettingsError::Limit { family: family.name.clone(), field, least, most, value })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
 
 use super::*;
-use crate::protocol::ssi::{Finding, Flags, Meaning, Place, Range, ungray};
+use crate::protocol::ssi::{Direction, Finding, Flags, Meaning, Place, Range, ungray};
 
 fn resolve(text: &str) -> Result<Resolved, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
@@ -206,17 +206,30 @@ fn what_a_family_cannot_do_is_refused_with_the_reason() {
         ("atm60,st=12,st=13", "st is given twice"),
         (
             "atm60,bits=12",
-            "there is no \"bits\"; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step",
+            "there is no \"bits\"; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step, direction, preset",
         ),
         (
             "atm60,gray",
-            "\"gray\" is not NAME=VALUE; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step",
+            "\"gray\" is not NAME=VALUE; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step, direction, preset",
         ),
+        ("ahm36,steps=100,revolutions=25/2,preset=100", "AHM36 SSI: preset must be from 0 to 99, not 100"),
+        ("ahs36,preset=16384", "AHS36 SSI: preset must be from 0 to 16383, not 16384"),
+        ("ahs36,preset=-1", "preset must be a whole number, not \"-1\""),
+        ("ahs36,direction=left", "direction must be cw or ccw, not \"left\""),
         ("bce", "no family bce"),
     ];
     for (text, reason) in cases {
         assert_eq!(resolve(text).unwrap_err(), reason, "{text}");
     }
+}
+
+/// They move the position, not the bits that say it.
+#[test]
+fn direction_and_preset_leave_the_frame_as_it_is() {
+    let (plain, set) = (resolve("ahs36").unwrap(), resolve("ahs36,direction=ccw,preset=16383").unwrap());
+    assert_eq!(plain.layout, set.layout);
+    assert_eq!((plain.direction, plain.preset), (Direction::Clockwise, 0));
+    assert_eq!((set.direction, set.preset), (Direction::CounterClockwise, 16383));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::{Align, ErrorPlace, Settings};
 use crate::protocol::ssi::code::Code;
 use crate::protocol::ssi::descriptor::Coded;
-use crate::protocol::ssi::range::Fraction;
+use crate::protocol::ssi::range::{Direction, Fraction};
 
 /// Why a text is no layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,8 +32,22 @@ pub enum TextError {
     Twice(String),
 }
 
-const NAMES: [&str; 12] =
-    ["code", "over", "mt", "st", "steps", "turns", "revolutions", "clocks", "align", "shift", "err", "step"];
+const NAMES: [&str; 14] = [
+    "code",
+    "over",
+    "mt",
+    "st",
+    "steps",
+    "turns",
+    "revolutions",
+    "clocks",
+    "align",
+    "shift",
+    "err",
+    "step",
+    "direction",
+    "preset",
+];
 
 impl Settings {
     /// Splits `ahm36,code=gray,st=12` into the family's key and its settings.
@@ -57,20 +71,42 @@ impl Settings {
         Ok((key, settings))
     }
 
+    /// The text of these settings of the family with this key: `ahm36,code=gray,st=12`. Only what is set is in it.
+    pub fn emit(&self, key: &str) -> String {
+        fn word<T: ToString>(value: Option<T>) -> Option<String> {
+            value.map(|value| value.to_string())
+        }
+        let revolutions = self.revolutions.map(|turns| match turns.denominator {
+            1 => turns.numerator.to_string(),
+            denominator => format!("{}/{denominator}", turns.numerator),
+        });
+        let values = [
+            word(self.code),
+            word(self.coded),
+            word(self.multiturn),
+            word(self.singleturn),
+            word(self.steps),
+            word(self.turns),
+            revolutions,
+            word(self.clocks),
+            word(self.align),
+            word(self.shift.then_some(1)),
+            word(self.errors),
+            word(self.step_nanometres),
+            word(self.direction),
+            word(self.preset),
+        ];
+        let named = NAMES.iter().zip(values).filter_map(|(name, value)| Some(format!(",{name}={}", value?)));
+        key.to_owned() + &named.collect::<String>()
+    }
+
     fn set(&mut self, name: &str, value: &str) -> Result<(), TextError> {
         let wrong = |expected| TextError::Value { name: name.to_owned(), expected, value: value.to_owned() };
         let small = || value.parse::<u8>().map_err(|_| wrong("a number from 0 to 255"));
         let number = || value.parse::<u32>().map_err(|_| wrong("a whole number"));
         match name {
             "code" => self.code = Some(value.parse().map_err(wrong)?),
-            "over" => {
-                self.coded = Some(match value {
-                    "position" => Coded::Position,
-                    "padded" => Coded::Area,
-                    "errors" => Coded::AreaAndErrors,
-                    _ => return Err(wrong("position, padded or errors")),
-                });
-            }
+            "over" => self.coded = Some(value.parse().map_err(wrong)?),
             "mt" => self.multiturn = Some(small()?),
             "st" => self.singleturn = Some(small()?),
             "steps" => self.steps = Some(number()?),
@@ -91,6 +127,8 @@ impl Settings {
             }
             "err" => self.errors = Some(value.parse().map_err(wrong)?),
             "step" => self.step_nanometres = Some(number()?),
+            "direction" => self.direction = Some(value.parse().map_err(wrong)?),
+            "preset" => self.preset = Some(value.parse().map_err(|_| wrong("a whole number"))?),
             _ => return Err(TextError::Name(name.to_owned())),
         }
         Ok(())
@@ -118,6 +156,15 @@ impl Words for Code {
         ("gray-excess", Code::GrayExcess),
         ("bcd", Code::Bcd),
     ];
+}
+
+impl Words for Coded {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("position", Coded::Position), ("padded", Coded::Area), ("errors", Coded::AreaAndErrors)];
+}
+
+impl Words for Direction {
+    const ALL: &'static [(&'static str, Self)] = &[("cw", Direction::Clockwise), ("ccw", Direction::CounterClockwise)];
 }
 
 impl Words for Align {
@@ -156,6 +203,73 @@ macro_rules! in_words {
 
 in_words! {
     Code: "binary, gray, gray-excess or bcd",
+    Coded: "position, padded or errors",
+    Direction: "cw or ccw",
     Align: "left, right24, right25, tree12_13 or tree13_12",
     ErrorPlace: "none, fix or following",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::option::of;
+    use proptest::prelude::*;
+    use proptest::sample::select;
+
+    fn one_of<T: Words + fmt::Debug>() -> impl Strategy<Value = Option<T>> {
+        of(select(T::ALL).prop_map(|(_, value)| value))
+    }
+
+    fn settings() -> impl Strategy<Value = Settings> {
+        let numbers = (of(any::<u8>()), of(any::<u8>()), of(any::<u32>()), of(any::<u32>()), of(any::<u8>()));
+        let fraction = of((any::<u32>(), any::<u32>()));
+        let words = (one_of(), one_of(), one_of(), one_of(), one_of());
+        let more = (any::<bool>(), of(any::<u32>()), of(any::<u64>()));
+        (numbers, fraction, words, more).prop_map(|(numbers, revolutions, words, more)| {
+            let (multiturn, singleturn, steps, turns, clocks) = numbers;
+            let (code, coded, align, errors, direction) = words;
+            let (shift, step_nanometres, preset) = more;
+            let revolutions = revolutions.map(|(numerator, denominator)| Fraction { numerator, denominator });
+            Settings {
+                multiturn,
+                singleturn,
+                steps,
+                turns,
+                revolutions,
+                code,
+                coded,
+                clocks,
+                align,
+                shift,
+                errors,
+                step_nanometres,
+                direction,
+                preset,
+            }
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read(settings in settings()) {
+            let text = settings.emit("ahm36");
+            prop_assert_eq!(Settings::parse(&text), Ok(("ahm36".to_owned(), settings)), "{}", text);
+        }
+    }
+
+    #[test]
+    fn only_what_is_set_is_written() {
+        let set = Settings { code: Some(Code::Gray), singleturn: Some(12), ..Settings::default() };
+        assert_eq!(set.emit("ahm36"), "ahm36,code=gray,st=12");
+        assert_eq!(Settings::default().emit("kh53"), "kh53");
+        for text in [
+            "ahm36,steps=100,revolutions=25/2,direction=ccw,preset=99",
+            "atm60,over=padded,mt=8,st=8,clocks=26,align=tree12_13,shift=1,err=fix",
+            "ahm36,steps=100,revolutions=3",
+            "ttk70,step=500",
+        ] {
+            let (key, settings) = Settings::parse(text).unwrap();
+            assert_eq!(settings.emit(&key), text);
+        }
+    }
 }

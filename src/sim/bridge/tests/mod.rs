@@ -251,9 +251,15 @@ fn a_stream_keeps_its_bus_busy() {
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of the turn's.
 #[test]
-fn ssi_words_in_gray_and_binary() {
+fn ssi_words_in_gray_and_binary_and_with_another_zero() {
     let natural = 0x234 << 13 | 0x1800;
-    for (query, word) in [("ssi=atm60", natural), ("ssi=atm60,code=gray", natural ^ natural >> 1)] {
+    for (query, word) in [
+        ("ssi=atm60", natural),
+        ("ssi=atm60,code=gray", natural ^ natural >> 1),
+        ("ssi=atm60,preset=8192", 0x235 << 13 | 0x1800),
+        ("ssi=atm60,direction=ccw", (1 << 25) - natural),
+        ("ssi=atm60,direction=ccw,preset=1", (1 << 25) - natural + 1),
+    ] {
         let mut host = Host::with(query);
         host.refuses(Request::SsiRead, ErrorCode::BAD_ARGUMENT);
         host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
