@@ -25,6 +25,7 @@ pub struct AdapterState {
     receiver: Receiver,
     next_seq: u8,
     hello: Option<Hello>,
+    has_spoken: bool,
     clocks: Clocks,
 }
 
@@ -148,6 +149,11 @@ impl AdapterState {
         self.hello.as_ref()
     }
 
+    /// Anything at all has come from it, be it damaged.
+    pub(super) const fn has_spoken(&self) -> bool {
+        self.has_spoken
+    }
+
     /// The moment of our clock in which the adapter's stood at `t_us`, with the reply that told so.
     pub(super) fn moment_of(&mut self, t_us: u64, answered: &Answered) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
@@ -247,6 +253,7 @@ impl Adapter<'_, '_> {
                 self.state.damaged += 1;
                 return Ok(None);
             }
+            self.adapter.has_spoken = true;
             self.adapter.receiver.push(&portion);
         }
     }

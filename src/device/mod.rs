@@ -5,5 +5,6 @@ pub mod bridge;
 pub mod check;
 pub mod hiperface;
 mod line;
+pub mod ssi;
 
 pub use line::{Echo, LineState};

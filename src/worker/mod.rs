@@ -16,6 +16,7 @@ mod open;
 mod outbox;
 mod ring;
 mod session;
+pub mod ssi;
 pub mod stream;
 mod thread;
 

@@ -15,6 +15,7 @@ mod polling;
 mod position;
 mod rest;
 mod settings;
+mod ssi;
 mod support;
 mod survey;
 mod threads;

@@ -30,6 +30,8 @@ const PHRASES: &[&str] = &[
     "phrase.byte_order",
     "phrase.clock",
     "phrase.voltage",
+    "phrase.ssi_voltage",
+    "phrase.pause",
     "phrase.periods",
     "phrase.turns",
     "phrase.with_periods",

@@ -1,7 +1,26 @@
-//! SSI in words: what a frame gives cause to say, and what was set that the manual does not speak of.
+//! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
 
+use super::{adapter, link};
 use crate::app::Text;
 use crate::protocol::ssi::{Advice, Finding, Meaning, Warning};
+use crate::worker::ssi::JobError;
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    vec![match error {
+        JobError::Link(error) => link(error),
+        JobError::Adapter(error) => adapter(error),
+        JobError::Cancelled => Text::new("encoder.cancelled"),
+    }]
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match error {
+        JobError::Link(error) => Some(link(error)),
+        JobError::Adapter(_) | JobError::Cancelled => None,
+    }
+}
 
 /// Something that a frame gives cause to say.
 pub fn finding(finding: &Finding) -> Text {
@@ -52,5 +71,41 @@ pub fn timing(warning: &Warning) -> Text {
         Warning::PauseLong { most } => Text::new("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
         Warning::Repeats { update } => Text::new("ssi.repeats").with_number("micros", micros(update), 0),
         Warning::NoSynchronous => Text::new("ssi.no_synchronous"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::device::bridge::AdapterError;
+    use crate::link::{LinkError, LinkErrorKind};
+
+    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
+    #[test]
+    fn every_error_says_what_happened_and_what_to_do() {
+        let name = || "bench adapter".to_owned();
+        let cases = [
+            (JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost)), "COM3"),
+            (JobError::Adapter(AdapterError::Silent), "."),
+            (JobError::Adapter(AdapterError::NoSsi { name: name() }), "bench adapter"),
+            (JobError::Adapter(AdapterError::Version { expected: 1, got: 2 }), "2"),
+        ];
+        for (error, fact) in cases {
+            for language in [English, German] {
+                let words: Vec<String> = job(&error).iter().map(|text| text.words(language)).collect();
+                let words = words.join(" ");
+                assert!(words.contains(fact) && !words.contains('{') && words.ends_with('.'), "{words}");
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+        let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        assert_eq!(loss(&gone).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Adapter(AdapterError::Silent)), None);
+        assert_eq!(job(&JobError::Cancelled)[0].id(), "encoder.cancelled");
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::bus::Bus;
-use super::clocking::{BissSetting, MAX_CLOCK_HZ, actual_clock};
+use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
 use super::config::Config;
 use super::stream::{Analog, Clocked, Kind};
 use super::uart::Uart;
@@ -31,7 +31,7 @@ pub struct Adapter {
     version: u8,
     receiver: Receiver,
     biss: Option<BissSetting>,
-    ssi_clocks: Option<u8>,
+    ssi: Option<SsiSetting>,
     analog: Settings,
     clocked: Option<Clocked>,
     sampled: Option<Analog>,
@@ -74,7 +74,7 @@ impl Adapter {
             version: config.version,
             receiver: Receiver::default(),
             biss: None,
-            ssi_clocks: None,
+            ssi: None,
             analog: Settings { seed: config.encoder.seed(), ..Settings::default() }.with(Quantity::Speed, config.rpm),
             clocked: None,
             sampled: None,
@@ -137,7 +137,7 @@ impl Adapter {
         if let Some(stream) = &mut self.clocked {
             let (bus, kind) = (&mut self.bus, stream.kind);
             let biss_bits = self.biss.map_or(0, |setting| setting.bits);
-            let ssi_bits = self.ssi_clocks.unwrap_or(0);
+            let ssi_bits = self.ssi.map_or(0, |setting| setting.clocks);
             packets.extend(stream.run(self.now, |at| match kind {
                 Kind::Biss => bus.biss(at, biss_bits),
                 Kind::Ssi => (BissStatus::OK, bus.ssi(at, ssi_bits)),
@@ -193,6 +193,7 @@ impl Adapter {
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
         match request.operation() {
+            Operation::SsiRead => self.ssi.map_or(Duration::ZERO, SsiSetting::burst),
             Operation::BissRead => frame,
             Operation::BissRegisterRead | Operation::BissRegisterWrite => frame * Self::CONTROL_CYCLES,
             _ => Duration::ZERO,
@@ -211,18 +212,18 @@ impl Adapter {
         match request {
             Request::Hello => Ok(Reply::Hello(self.hello())),
             Request::Supply { on, millivolt } => self.supply(on, millivolt),
-            Request::SsiConfig { clocks, clock_hz, .. } => {
+            Request::SsiConfig { clocks, clock_hz, pause_us, .. } => {
                 let actual = actual_clock(clock_hz).filter(|_| (1..=64).contains(&clocks)).ok_or(OUT_OF_RANGE)?;
-                self.ssi_clocks = Some(clocks);
+                self.ssi = Some(SsiSetting { clock_hz: actual, clocks, pause_us });
                 Ok(Reply::SsiConfig { clock_hz: actual })
             }
             Request::SsiRead => {
-                let clocks = self.ssi_clocks.ok_or(NOT_CONFIGURED)?;
-                Ok(Reply::SsiRead { t_us, raw: self.bus.ssi(self.now, clocks) })
+                let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
+                Ok(Reply::SsiRead { t_us, raw: self.bus.ssi(self.now, setting.clocks) })
             }
             Request::SsiStream { period_us } => {
-                let clocks = self.ssi_clocks.ok_or(NOT_CONFIGURED)?;
-                let period_us = self.stream(Kind::Ssi, period_us, 20, clocks);
+                let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
+                let period_us = self.stream(Kind::Ssi, period_us, setting.least_period_us(), setting.clocks);
                 Ok(Reply::SsiStream { period_us })
             }
             Request::BissConfig { clock_hz, data_bits, crc_bits, timeout_us } => {

@@ -29,6 +29,28 @@ impl BissSetting {
     }
 }
 
+/// How SSI is clocked.
+#[derive(Clone, Copy)]
+pub(super) struct SsiSetting {
+    pub(super) clock_hz: u32,
+    pub(super) clocks: u8,
+    pub(super) pause_us: u16,
+}
+
+impl SsiSetting {
+    /// The clocks of a word.
+    pub(super) fn burst(self) -> Duration {
+        let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
+        Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
+    }
+
+    /// Word and pause: no word comes sooner after another, in whole microseconds.
+    pub(super) fn least_period_us(self) -> u32 {
+        let microseconds = self.burst().as_nanos().div_ceil(1000);
+        u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
+    }
+}
+
 /// The fastest clock that the adapter has and that is not above the one asked for; `None` below its slowest.
 pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);

@@ -8,6 +8,6 @@ mod jobs;
 mod master;
 mod procedures;
 mod streams;
-mod support;
+pub(crate) mod support;
 mod unknown;
 mod writing;

@@ -1,0 +1,39 @@
+//! What can go wrong with the adapter before an encoder. Of the encoder itself only its words tell.
+
+use crate::device::bridge::{AdapterError, Failure};
+use crate::device::line::LineError;
+use crate::link::LinkError;
+
+/// Why no words come.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// The wire to the adapter.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The adapter.
+    #[error(transparent)]
+    Adapter(#[from] AdapterError),
+    /// The user wished an end.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<Failure> for Error {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Adapter(error) => Error::Adapter(error),
+            Failure::Line(error) => error.into(),
+        }
+    }
+}
+
+impl From<LineError> for Error {
+    fn from(error: LineError) -> Self {
+        match error {
+            LineError::Cancelled => Error::Cancelled,
+            LineError::Link(error) => Error::Link(error),
+            // Packets need no silence between them.
+            LineError::NeverSilent => Error::Adapter(AdapterError::Silent),
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The host's side of the adapter: who it is, how it takes words, and the words. While a stream runs, the adapter has no
+//! time for anything else, so that whatever comes next ends it first.
+//!
+//! Taking a word changes nothing but error bits that a transfer clears, so that it may be repeated: an adapter that has
+//! spoken before is asked five times, within eight seconds; one that never has said anything, as the reference says, twice.
+
+use std::time::Duration;
+
+use super::station::{Identity, Supply};
+use super::{Asking, Error, Station, Words};
+use crate::device::bridge::flow::{Flow, Streamed};
+use crate::device::bridge::{Adapter, AdapterError, Failure};
+use crate::device::line::Line;
+use crate::link::Ctx;
+use crate::protocol::bridge::{Capabilities, Data, REPEAT_AFTER, Reply, Request, SsiFlags};
+use crate::units::Moment;
+
+/// A wish to end is heard so often.
+const SLICE: Duration = Duration::from_millis(20);
+
+/// The host's side of an adapter before an SSI encoder.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+impl<'a> Master<'a> {
+    /// A master on this line, for one job: it has its patience before it.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets how words are taken; what
+    /// is known and set already stays.
+    ///
+    /// # Errors
+    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], what it refuses, or the wire.
+    pub fn hello(&mut self) -> Result<Identity, Error> {
+        self.end_words()?;
+        self.repeated(|master| master.adapter().hello())?;
+        let Some(hello) = self.station.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
+        if !hello.capabilities.has(Capabilities::SSI) {
+            return Err(AdapterError::NoSsi { name: hello.name }.into());
+        }
+        self.switch_on()?;
+        let clock_hz = self.set_clocks(hello.max_clock_hz)?;
+        Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
+    }
+
+    /// Takes words like this from now on.
+    ///
+    /// # Errors
+    /// As [`hello`](Self::hello); then words are taken as before.
+    pub fn set(&mut self, asking: Asking) -> Result<Identity, Error> {
+        let before = std::mem::replace(&mut self.station.asking, asking);
+        if before != asking {
+            self.station.asked = 0;
+        }
+        self.hello().inspect_err(|_| self.station.asking = before)
+    }
+
+    /// Takes one word.
+    ///
+    /// # Errors
+    /// As [`hello`](Self::hello).
+    pub fn word(&mut self) -> Result<Words, Error> {
+        let Identity { asking, clock_hz, .. } = self.hello()?;
+        let taken = self.repeated(Self::word_once);
+        let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
+        Ok(Words::one(self.station.count(), at, word, asking, clock_hz))
+    }
+
+    /// The next words of a stream whose words are so many microseconds apart, or as close as the adapter can; begins it
+    /// where it does not run.
+    ///
+    /// # Errors
+    /// As [`hello`](Self::hello) when it begins; then the adapter's, or the user's wish, with which the stream goes on.
+    pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
+        let streamed = Streamed::Ssi { period_us };
+        if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
+            self.hello()?;
+            self.begin(streamed)?;
+        }
+        let (asking, clock_hz) = self.station.set.unwrap_or((self.station.asking, self.station.asking.clock_hz));
+        loop {
+            let until = self.now() + SLICE;
+            let Station { line: state, adapter, flow, .. } = &mut *self.station;
+            let Some(flow) = flow else { return Err(AdapterError::Mute.into()) };
+            let mut host = Adapter { line: &mut self.line, state, adapter };
+            let portion = match flow.next(&mut host, until) {
+                Ok(portion) => portion,
+                Err(failure) => return Err(self.stream_failed(failure.into())),
+            };
+            if let Some(portion) = portion
+                && let Data::Ssi(data) = &portion.data
+            {
+                return Ok(Words::run(&portion, data, asking, clock_hz, period_us));
+            }
+        }
+    }
+
+    /// Ends the stream that runs, also where an end is wished. Words that are asked for are counted anew.
+    ///
+    /// # Errors
+    /// The adapter's; then it is tried again before whatever comes next.
+    pub fn end_words(&mut self) -> Result<(), Error> {
+        let Some(flow) = self.station.flow.take() else { return Ok(()) };
+        self.station.asked = 0;
+        self.station.streamed_until = flow.last().or(self.station.streamed_until);
+        let shielded = self.line.shield(true);
+        let ended = flow.end(&mut self.adapter());
+        self.line.shield(shielded);
+        match ended {
+            Ok(()) => Ok(()),
+            // It knows of no stream: it was reset, and has to be set again.
+            Err(Failure::Adapter(AdapterError::Refused { .. })) => {
+                self.station.forget_settings();
+                Ok(())
+            }
+            Err(failure) => {
+                self.station.flow = Some(flow);
+                Err(failure.into())
+            }
+        }
+    }
+
+    fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    fn adapter(&mut self) -> Adapter<'_, 'a> {
+        Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
+    }
+
+    fn switch_on(&mut self) -> Result<(), Error> {
+        let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
+        let measured = self.repeated(|master| master.adapter().supply(Supply::voltage(millivolt)))?;
+        self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
+        Ok(self.line.wait(Supply::POWER_UP)?)
+    }
+
+    /// Sets how words are taken, where that is another way than before; gives the clock in hertz as it is in fact.
+    fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
+        let asking = self.station.asking;
+        if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
+            return Ok(clock_hz);
+        }
+        let Asking { clocks, clock_hz, pause_us } = asking;
+        let clock_hz = clock_hz.min(fastest);
+        let request = Request::SsiConfig { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE };
+        self.station.set = None;
+        let answered = self.repeated(|master| master.adapter().ask(&request))?;
+        let Reply::SsiConfig { clock_hz } = answered.reply else {
+            return Err(other(&request, &answered.reply));
+        };
+        self.station.set = Some((asking, clock_hz));
+        Ok(clock_hz)
+    }
+
+    fn word_once(&mut self) -> Result<(u64, Moment), Failure> {
+        let answered = self.adapter().ask(&Request::SsiRead)?;
+        let Reply::SsiRead { t_us, raw } = answered.reply else {
+            let (asked, got) = (Request::SsiRead.operation(), answered.reply.operation());
+            return Err(AdapterError::Other { asked, got }.into());
+        };
+        Ok((raw, self.station.adapter.moment_of(t_us, &answered)))
+    }
+
+    fn begin(&mut self, streamed: Streamed) -> Result<(), Error> {
+        let after = self.station.streamed_until;
+        let mut may_run = false;
+        let flow = self.repeated(|master| {
+            if std::mem::replace(&mut may_run, true) {
+                master.adapter().ask(&Request::SsiStream { period_us: 0 })?;
+            }
+            Flow::begin(&mut master.adapter(), streamed, after)
+        });
+        self.station.flow = Some(flow.map_err(|error| self.may_be_reset(error))?);
+        Ok(())
+    }
+
+    /// Does what may be done twice until it is answered.
+    fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
+        let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let failure = match once(self) {
+                Ok(answer) => {
+                    self.station.line.recovered();
+                    return Ok(answer);
+                }
+                Err(failure) => failure,
+            };
+            let is_silent = matches!(failure, Failure::Adapter(AdapterError::Silent));
+            if is_silent
+                && self.station.adapter.has_spoken()
+                && self.line.may_ask_again(&mut self.station.line, tries, longest)
+            {
+                continue;
+            }
+            return Err(failure.into());
+        }
+    }
+
+    /// An adapter that was reset has to be set again. A wish to end says nothing of it.
+    fn may_be_reset(&mut self, error: Error) -> Error {
+        if error != Error::Cancelled {
+            self.station.forget_settings();
+        }
+        error
+    }
+
+    /// A stream that failed is over, at the adapter too where that can be told.
+    fn stream_failed(&mut self, error: Error) -> Error {
+        if error != Error::Cancelled && self.end_words().is_err() {
+            // Who starts anew says HELLO, which ends all streams.
+            self.station.forget_adapter();
+        }
+        error
+    }
+}
+
+fn other(request: &Request, reply: &Reply) -> Error {
+    AdapterError::Other { asked: request.operation(), got: reply.operation() }.into()
+}

@@ -1,0 +1,206 @@
+//! What a session knows about its adapter and how it takes words, from one job to the next.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::device::bridge::AdapterState;
+use crate::device::bridge::flow::Flow;
+use crate::device::line::{LineState, MARGIN_ALLOWED, read_margin};
+use crate::link::{Query, UrlError};
+use crate::protocol::bridge::Hello;
+use crate::signal::Time;
+use crate::units::SupplyVoltage;
+
+/// Link parameters that describe the line and the encoder's supply.
+pub const PARAMETERS: [&str; 4] = ["margin", "clock", "pause", "voltage"];
+
+/// How words are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asking {
+    /// Bits of a word, 1…64.
+    pub clocks: u8,
+    /// Clock in hertz; the adapter takes the nearest that it has.
+    pub clock_hz: u32,
+    /// Least pause between two words in microseconds; longer than the encoder's monoflop time.
+    pub pause_us: u16,
+}
+
+impl Default for Asking {
+    /// A word of 25 clocks, slow enough for 50 m of cable (SICK SSI description, cable lengths), with a pause behind which
+    /// every family has its next value (reference section 5).
+    fn default() -> Self {
+        Asking { clocks: 25, clock_hz: 400_000, pause_us: 250 }
+    }
+}
+
+/// Who takes the words, and how in fact.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// The adapter.
+    pub hello: Hello,
+    /// How words are taken.
+    pub asking: Asking,
+    /// The clock in hertz, as the adapter has set it.
+    pub clock_hz: u32,
+    /// The encoder's supply, where the adapter switches it.
+    pub supply: Option<Supply>,
+}
+
+/// What a session knows about its adapter and how it takes words.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// Silences and damage: what every line has.
+    pub line: LineState,
+    /// The adapter.
+    pub adapter: AdapterState,
+    /// How words are taken.
+    pub asking: Asking,
+    /// The encoder's supply, where the adapter is to switch it.
+    pub supply: Option<Supply>,
+    /// How the adapter is set, and the clock that it took; `None` before, and when it may have been reset.
+    pub(super) set: Option<(Asking, u32)>,
+    /// The stream that the adapter sends.
+    pub(super) flow: Option<Flow>,
+    /// The last word of the streams before.
+    pub(super) streamed_until: Option<Time>,
+    /// Words that were asked for one by one since they are taken like this.
+    pub(super) asked: u64,
+}
+
+/// The encoder's supply as an adapter gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Supply {
+    /// Millivolts wished.
+    pub millivolt: u16,
+    /// Millivolts and milliamperes measured when it was switched on; `None` before.
+    pub measured: Option<(u16, u16)>,
+}
+
+impl Supply {
+    /// Until words mean something (`U`: the manual does not tell).
+    pub(super) const POWER_UP: Duration = Duration::from_millis(500);
+    /// Millivolts that encoders with SSI are made for: from 5 V less a tenth to 30 V (SICK SSI description, TTK70).
+    const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
+
+    /// Which encoder is there nobody tells: a tenth more than was asked for is too much (AFS60 at 5 V: 4.5 to 5.5 V).
+    pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
+        SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
+    }
+}
+
+impl Station {
+    /// An adapter that nobody has asked.
+    pub fn new(margin: Duration) -> Self {
+        Station {
+            line: LineState::new(margin),
+            adapter: AdapterState::default(),
+            asking: Asking::default(),
+            supply: None,
+            set: None,
+            flow: None,
+            streamed_until: None,
+            asked: 0,
+        }
+    }
+
+    /// As the parameters of its link say.
+    ///
+    /// # Errors
+    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+        let mut station = Station::new(margin);
+        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
+            station.line.margin = margin;
+        }
+        if let Some(clock) = query.read("clock", "hertz from 80000 to 10000000", read_clock)? {
+            station.asking.clock_hz = clock;
+        }
+        if let Some(pause) = query.read("pause", "microseconds from 1 to 65535", read_pause)? {
+            station.asking.pause_us = pause;
+        }
+        let millivolt = query.read("voltage", "volts from 4.5 to 30", read_voltage)?;
+        station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        Ok(station)
+    }
+
+    /// The adapter is asked anew who it is, and set anew.
+    pub(super) fn forget_adapter(&mut self) {
+        (self.adapter, self.flow) = (AdapterState::default(), None);
+        self.forget_settings();
+    }
+
+    /// An adapter that says HELLO, or was reset, is not set, and has the supply switched off.
+    pub(super) fn forget_settings(&mut self) {
+        self.set = None;
+        if let Some(supply) = &mut self.supply {
+            supply.measured = None;
+        }
+    }
+
+    /// The number of the next word that is asked for by itself.
+    pub(super) fn count(&mut self) -> u64 {
+        let number = self.asked;
+        self.asked = number.wrapping_add(1);
+        number
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let clock_hz = self.set.map_or(self.asking.clock_hz, |(_, clock_hz)| clock_hz);
+        write!(f, "SSI of {} clocks at {clock_hz} Hz", self.asking.clocks)
+    }
+}
+
+fn read_clock(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|hz| (80_000..=10_000_000).contains(hz))
+}
+
+fn read_pause(text: &str) -> Option<u16> {
+    text.parse().ok().filter(|us| *us > 0)
+}
+
+/// Volts as millivolts.
+fn read_voltage(text: &str) -> Option<u16> {
+    let volts: f64 = text.parse().ok().filter(|volts: &f64| (0.0..=60.0).contains(volts))?;
+    // At most 60 000.
+    Some((volts * 1000.0).round() as u16).filter(|millivolt| Supply::RANGE.contains(millivolt))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn station(query: &str) -> Result<Station, UrlError> {
+        Station::from_query(&query.parse().unwrap(), Duration::from_millis(100))
+    }
+
+    #[test]
+    fn a_line_is_read_from_its_parameters() {
+        let usual = station("").unwrap();
+        assert_eq!((usual.asking, usual.supply), (Asking { clocks: 25, clock_hz: 400_000, pause_us: 250 }, None));
+        assert_eq!(usual.line.margin, Duration::from_millis(100));
+        let own = station("margin=5&clock=1500000&pause=30&voltage=24").unwrap();
+        assert_eq!(own.asking, Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });
+        assert_eq!(own.supply, Some(Supply { millivolt: 24_000, measured: None }));
+        assert_eq!(
+            (own.line.margin, own.to_string()),
+            (Duration::from_millis(5), "SSI of 25 clocks at 1500000 Hz".into())
+        );
+        assert_eq!(Supply::voltage(5_000), SupplyVoltage { least: 4_500, given: 5_000, greatest: 5_500 });
+    }
+
+    #[test]
+    fn a_value_that_cannot_be_used_names_what_can() {
+        for (query, message) in [
+            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
+            ("clock=79999", "clock=79999: hertz from 80000 to 10000000"),
+            ("pause=0", "pause=0: microseconds from 1 to 65535"),
+            ("pause=65536", "pause=65536: microseconds from 1 to 65535"),
+            ("voltage=48", "voltage=48: volts from 4.5 to 30"),
+            ("voltage=NaN", "voltage=NaN: volts from 4.5 to 30"),
+        ] {
+            assert_eq!(station(query).unwrap_err().to_string(), message);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Words as they came: the bits of one burst of clocks each.
+
+use std::time::Duration;
+
+use super::station::Asking;
+use crate::device::bridge::Portion;
+use crate::protocol::bridge::SsiData;
+use crate::units::Moment;
+
+/// Words that follow each other at equal distances, or one that was asked for by itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// Number of the first since words are taken like this; what is missing counts.
+    pub first: u64,
+    /// When that was taken.
+    pub at: Moment,
+    /// Nanoseconds from one to the next; 0 for a word that was asked for by itself.
+    pub period_ns: i64,
+    /// Words that are missing before the first.
+    pub lost: u64,
+    /// Bits of a word, 1…64.
+    pub clocks: u8,
+    /// The words, one at least: the first bit received is the highest of the `clocks` bits, right-justified.
+    pub words: Vec<u64>,
+    /// The clock in hertz, as the adapter has set it.
+    pub clock_hz: u32,
+    /// They cannot come as close to each other as was wished.
+    pub is_limited: bool,
+}
+
+impl Words {
+    /// A word that was asked for by itself.
+    pub(super) fn one(number: u64, at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
+        Words {
+            first: number,
+            at,
+            period_ns: 0,
+            lost: 0,
+            clocks: asking.clocks,
+            words: vec![word],
+            clock_hz,
+            is_limited: false,
+        }
+    }
+
+    /// What came in a packet, of words that were wished so many microseconds apart.
+    pub(super) fn run(portion: &Portion, data: &SsiData, asking: Asking, clock_hz: u32, wished_us: u32) -> Self {
+        let Portion { first, time, period_ns, lost, .. } = *portion;
+        Words {
+            first,
+            // Not before the stream began.
+            at: Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
+            period_ns,
+            lost,
+            clocks: asking.clocks,
+            words: data.values.clone(),
+            clock_hz,
+            is_limited: period_ns > i64::from(wished_us) * 1000,
+        }
+    }
+
+    /// Nothing came before them since words are taken like this.
+    pub const fn begins(&self) -> bool {
+        self.first == self.lost
+    }
+
+    /// They came without being asked.
+    pub const fn is_streamed(&self) -> bool {
+        self.period_ns > 0
+    }
+
+    /// Each word with the moment in which it was taken.
+    pub fn timed(&self) -> impl Iterator<Item = (Moment, u64)> {
+        let period = Duration::from_nanos(self.period_ns.unsigned_abs());
+        (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::bridge::Data;
+    use crate::signal::Time;
+
+    #[test]
+    fn a_packet_is_a_run_of_words_with_a_moment_each() {
+        let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
+        let time = Time::from_nanoseconds(3_000_000);
+        let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: Data::Ssi(data.clone()) };
+        let asking = Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 25 };
+        let run = Words::run(&portion, &data, asking, 1_500_000, 50);
+        let at = |us| Moment::after_start(Duration::from_micros(us));
+        assert_eq!(run.timed().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
+        assert_eq!((run.begins(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
+        assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
+        let lone = Words::one(0, at(9), 5, asking, 1_000_000);
+        assert_eq!(lone.timed().collect::<Vec<_>>(), [(at(9), 5)]);
+        assert_eq!((lone.begins(), lone.is_streamed()), (true, false));
+    }
+}

@@ -1,0 +1,153 @@
+//! An SSI encoder behind an adapter, at the end of a session, and its jobs. The encoder has no memory: nothing is ever
+//! written into it.
+
+mod open;
+
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+pub use open::{check, open};
+
+use super::{Desk, Device, Session, Tell, Watched};
+use crate::device::ssi::{Asking, Error, Identity, Master, Station, Words};
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::sim::biss::Motor;
+use crate::store::Store;
+
+/// An SSI encoder behind its adapter.
+pub struct Ssi {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    /// What turns a virtual encoder.
+    motor: Option<Motor>,
+    /// Microseconds between the words of a stream, where they are wished closer than one can ask for them.
+    streamed_us: Option<u32>,
+}
+
+/// What can be asked of an adapter before an SSI encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SsiJob {
+    /// Who the adapter is; the encoder's supply switched on where that is wished, and words taken as the station says.
+    Hello,
+    /// Words are taken like this from now on; a stream that is wished goes on with it.
+    Set(Asking),
+    /// One word.
+    Read,
+}
+
+/// What a job gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SsiOutput {
+    /// Who the adapter is.
+    Hello(Box<Identity>),
+    /// How words are taken now.
+    Set(Box<Identity>),
+    /// The word, a run of one.
+    Read(Words),
+}
+
+/// Why a job ended early.
+pub type JobError = Error;
+
+/// Words that are wished as close as this come as a stream.
+const STREAMED: Duration = Duration::from_millis(2);
+
+impl fmt::Debug for Ssi {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Ssi({})", self.station)
+    }
+}
+
+impl Ssi {
+    /// The host's side of the line.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+}
+
+impl Session<Ssi> {
+    /// A session on an open wire. With a motor the encoder lives in this process.
+    pub fn to_adapter(
+        wire: Box<dyn ByteLink>,
+        clock: Arc<dyn Clock>,
+        station: Station,
+        store: Store,
+        motor: Option<Motor>,
+    ) -> Self {
+        let is_virtual = motor.is_some();
+        Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
+    }
+
+    /// What is known about the line and the adapter.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// What turns the shaft, where the encoder lives in this process.
+    pub fn motor(&self) -> Option<Motor> {
+        self.device.motor.clone()
+    }
+}
+
+impl Device for Ssi {
+    type Job = SsiJob;
+    type Output = SsiOutput;
+    type Error = JobError;
+    /// Whatever there is to say stands in the words.
+    type Remark = Infallible;
+    type Sample = Words;
+    /// There is nothing but words.
+    type Watch = Infallible;
+    /// No job has steps.
+    type Doing = Infallible;
+
+    fn run(
+        &mut self,
+        desk: &mut Desk,
+        job: SsiJob,
+        _tell: &mut dyn FnMut(Tell<Infallible, Infallible>),
+    ) -> Result<SsiOutput, JobError> {
+        let mut master = self.master(desk);
+        Ok(match job {
+            SsiJob::Hello => SsiOutput::Hello(Box::new(master.hello()?)),
+            SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
+            SsiJob::Read => SsiOutput::Read(master.word()?),
+        })
+    }
+
+    fn pace(&mut self, desk: &mut Desk, interval: Option<Duration>) {
+        let streamed = interval.filter(|interval| *interval <= STREAMED);
+        let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
+        self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
+        if self.streamed_us.is_none()
+            && let Err(error) = self.master(desk).end_words()
+        {
+            tracing::warn!("the adapter's stream could not be ended: {error}");
+        }
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Words, JobError> {
+        match self.streamed_us {
+            Some(period_us) => self.master(desk).words(period_us),
+            None => self.master(desk).word(),
+        }
+    }
+
+    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Words>, JobError> {
+        match *what {}
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        *error == Error::Cancelled
+    }
+
+    fn take_remark(&mut self) -> Option<Infallible> {
+        None
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}

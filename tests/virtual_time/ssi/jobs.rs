@@ -1,0 +1,109 @@
+//! Who the adapter is, how words are taken, a word.
+
+use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::device::ssi::{Asking, Error, Identity, Supply};
+use encoder_studio::protocol::bridge::{Capabilities, Operation};
+use encoder_studio::worker::ssi::{SsiJob, SsiOutput};
+
+use super::support::{QUICK, Stand};
+
+fn hello(stand: &mut Stand) -> Identity {
+    match stand.session.run_inline(SsiJob::Hello).unwrap() {
+        SsiOutput::Hello(identity) => *identity,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn set(stand: &mut Stand, asking: Asking) -> Result<Identity, Error> {
+    stand.session.run_inline(SsiJob::Set(asking)).map(|output| match output {
+        SsiOutput::Set(identity) => *identity,
+        other => panic!("{other:?}"),
+    })
+}
+
+#[test]
+fn who_the_adapter_is_and_how_words_are_taken() {
+    let mut stand = Stand::new("voltage=24&clock=700000", "supply=switched");
+    let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
+    assert!(matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::Supply, .. })), "{error}");
+    let mut stand = Stand::new("voltage=12&clock=700000", "supply=switched");
+    let identity = hello(&mut stand);
+    assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
+    assert!(identity.hello.capabilities.has(Capabilities::SSI));
+    assert_eq!(identity.asking, Asking { clocks: 25, clock_hz: 700_000, pause_us: 250 });
+    // 60 MHz by 86 is the nearest clock below.
+    assert_eq!(identity.clock_hz, 697_674);
+    // 300 mW at 12 V.
+    assert_eq!(identity.supply, Some(Supply { millivolt: 12_000, measured: Some((12_000, 25)) }));
+    // What is known is not asked again: HELLO would switch the supply off.
+    assert_eq!(hello(&mut stand), identity);
+    let counts = [Operation::Hello, Operation::Supply, Operation::SsiConfig].map(|own| stand.count(own));
+    assert_eq!(counts, [1, 1, 1]);
+}
+
+#[test]
+fn the_supply_stays_off_where_nobody_wishes_it() {
+    let mut stand = Stand::new("", "supply=switched");
+    assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
+}
+
+/// ATM60 as delivered, 12 bits of turns and 13 of steps in Gray; the shaft stands at turn 1234h, 270°: turn 234h of 4096,
+/// step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
+#[test]
+fn a_word_is_taken_as_it_is_asked_for() {
+    let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
+    let words = stand.read();
+    assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
+    assert!(words.begins() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
+    assert_eq!((stand.read().first, stand.read().first), (1, 2));
+    // More clocks than bits: zeros behind; fewer: the first ones.
+    assert_eq!(set(&mut stand, Asking { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
+    let longer = stand.read();
+    assert_eq!((longer.words.as_slice(), longer.clocks, longer.first), (&[0x65_D400 << 2][..], 27, 0));
+    set(&mut stand, Asking { clocks: 13, ..QUICK }).unwrap();
+    assert_eq!(stand.read().words, [0x65_D400 >> 12]);
+    let configured: Vec<u8> = stand.requests(Operation::SsiConfig).iter().map(|packet| packet.body[0]).collect();
+    assert_eq!(configured, [25, 27, 13]);
+}
+
+/// A setting that the adapter refuses leaves everything as it was.
+#[test]
+fn words_go_on_as_before_where_a_setting_is_refused() {
+    let mut stand = Stand::quick("rpm=60");
+    assert_eq!(stand.read().clocks, 25);
+    for asking in [Asking { clocks: 0, ..QUICK }, Asking { clocks: 65, ..QUICK }, Asking { clock_hz: 1000, ..QUICK }] {
+        let error = set(&mut stand, asking).unwrap_err();
+        assert!(
+            matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::SsiConfig, .. })),
+            "{error}"
+        );
+        let words = stand.read();
+        assert_eq!((words.clocks, words.clock_hz), (25, 1_500_000), "{asking:?}");
+    }
+}
+
+#[test]
+fn an_adapter_of_another_version_is_refused_with_both_named() {
+    let mut stand = Stand::new("", "version=2");
+    let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
+    assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
+}
+
+/// Nothing has ever come from it: the request is repeated once, as the reference says.
+#[test]
+fn a_silent_adapter_is_told_after_two_tries() {
+    let mut stand = Stand::new("", "fault=silent-after:0");
+    let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
+    assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
+}
+
+/// One byte in a hundred gets lost, so that a quarter of all exchanges fails; what is read is right all the same.
+#[test]
+fn words_are_asked_for_again_on_a_line_that_loses_bytes() {
+    for seed in 0..20 {
+        let mut stand = Stand::new("", &format!("position=0x24698000&seed={seed}&fault=drop:0.01"));
+        for _ in 0..50 {
+            assert_eq!(stand.read().words, [0x65_D400], "{seed}");
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! An SSI encoder behind an adapter.
+
+mod jobs;
+mod streams;
+mod support;

@@ -1,0 +1,166 @@
+//! Words again and again: asked for where there is time to, else streamed, and the stream ended before anything else.
+
+use std::time::Duration;
+
+use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::device::ssi::{Asking, Error, Words};
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::bridge::Operation;
+use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::worker::ssi::SsiJob;
+
+use super::support::{QUICK, Stand};
+use crate::biss::support::pairs;
+
+const FAST: Duration = Duration::from_micros(50);
+/// Of ATM60: a turn has 8192 steps, so that 50 revolutions a second are 20.48 steps a word of 50 µs.
+const TURNING: &str = "ssi=atm60,code=binary&rpm=3000&position=0";
+
+/// Numbers and times go on, and the position as the shaft turns.
+fn check(runs: &[Words]) {
+    let (mut next, mut before) = (runs[0].first, None);
+    for run in runs {
+        assert_eq!((run.first, run.lost, run.period_ns, run.clocks), (next, 0, 50_000, 25));
+        next = run.first + run.words.len() as u64;
+        for (moment, word) in run.timed() {
+            if let Some((earlier, from)) = before {
+                assert_eq!(moment.since(earlier), FAST);
+                assert!((20..=21).contains(&(word - from)), "{from} to {word}");
+            }
+            before = Some((moment, word));
+        }
+    }
+}
+
+#[test]
+fn slow_polling_asks_word_by_word() {
+    let mut stand = Stand::quick(TURNING);
+    stand.session.pace(Some(Duration::from_millis(5)));
+    let samples: Vec<Words> = (0..5).map(|_| stand.sample()).collect();
+    let firsts: Vec<u64> = samples.iter().map(|words| words.first).collect();
+    assert_eq!(firsts, [0, 1, 2, 3, 4]);
+    assert!(samples.iter().all(|words| words.words.len() == 1 && !words.is_streamed() && words.lost == 0));
+    assert!(samples.iter().zip(&samples[1..]).all(|(one, next)| next.at > one.at));
+    assert_eq!((stand.count(Operation::SsiRead), stand.count(Operation::SsiStream)), (5, 0));
+}
+
+#[test]
+fn what_is_wished_closer_than_one_can_ask_is_streamed() {
+    let mut stand = Stand::quick(TURNING);
+    stand.session.pace(Some(FAST));
+    let runs = stand.samples(Duration::from_secs(3));
+    check(&runs);
+    assert!(runs[0].begins() && runs[1..].iter().all(|run| !run.begins() && run.is_streamed()));
+    // What was taken last may still be on its way.
+    let words: usize = runs.iter().map(|run| run.words.len()).sum();
+    let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
+    assert!(words > 50_000 && (streamed - 200..=streamed + 1).contains(&words), "{words} of {streamed}");
+    assert_eq!((stand.count(Operation::SsiStream), stand.count(Operation::SsiRead)), (1, 0));
+    stand.session.pace(None);
+    assert_eq!(stand.sends_by_itself(), 0);
+}
+
+#[test]
+fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
+    let mut stand = Stand::quick(TURNING);
+    stand.session.pace(Some(FAST));
+    let mut last = None;
+    for round in 0..3 {
+        let runs = stand.samples(Duration::from_millis(200));
+        check(&runs);
+        let begin = runs[0].at;
+        assert!(runs[0].begins() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
+        let read = stand.read();
+        last = Some(read.at);
+        assert!(read.begins());
+    }
+    stand.session.pace(Some(Duration::from_millis(5)));
+    assert!(!stand.sample().is_streamed(), "slow enough to be asked");
+    assert_eq!(stand.sends_by_itself(), 0);
+    stand.session.pace(Some(FAST));
+    stand.sample();
+    stand.session.pace(Some(FAST * 2));
+    assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
+}
+
+/// A stream that is wished goes on, with the new width from its first word on.
+#[test]
+fn words_are_taken_otherwise_while_a_stream_is_wished() {
+    let mut stand = Stand::quick(TURNING);
+    stand.session.pace(Some(FAST));
+    check(&stand.samples(Duration::from_millis(100)));
+    for clocks in [13, 25, 40] {
+        let asking = Asking { clocks, ..QUICK };
+        stand.session.run_inline(SsiJob::Set(asking)).unwrap();
+        let runs = stand.samples(Duration::from_millis(100));
+        assert!(runs[0].begins() && runs.iter().all(|run| run.clocks == clocks && run.lost == 0));
+        let widest = runs.iter().flat_map(|run| &run.words).max().unwrap();
+        assert!(*widest > 0 && widest >> clocks == 0, "{widest:X}");
+    }
+    assert_eq!(stand.count(Operation::Hello), 1);
+}
+
+/// 25 clocks at 500 kHz are 50 µs, and 200 µs of pause.
+#[test]
+fn what_clock_and_pause_do_not_allow_is_told() {
+    let mut slow = Stand::new("clock=500000&pause=200", TURNING);
+    slow.session.pace(Some(FAST));
+    let run = slow.sample();
+    assert_eq!((run.period_ns, run.clock_hz, run.is_limited), (250_000, 500_000, true));
+    let mut quick = Stand::quick(TURNING);
+    quick.session.pace(Some(FAST));
+    assert!(!quick.sample().is_limited);
+}
+
+#[test]
+fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
+    let mut stand = Stand::quick(TURNING);
+    stand.session.pace(Some(FAST));
+    stand.sample();
+    stand.tap.lock().unwrap().mute_from = Some(0);
+    let error = stand.session.sample().unwrap_err();
+    assert_eq!(error, Error::Adapter(AdapterError::Mute));
+    stand.tap.lock().unwrap().mute_from = None;
+    // The stream is told to end with HELLO.
+    assert!(stand.sample().begins());
+    assert_eq!(stand.count(Operation::Hello), 2);
+    stand.tap.lock().unwrap().unplugged = true;
+    assert!(matches!(stand.session.sample(), Err(Error::Link(error)) if error.is_lost()));
+}
+
+/// A reset ends the stream and forgets supply and clock: the next job, or the next sample, finds that out and goes on.
+#[test]
+fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
+    let query = "supply=switched&rpm=60";
+    for by_job in [true, false] {
+        let mut stand = Stand::new("clock=1500000&pause=30&voltage=5", query);
+        stand.session.pace(Some(FAST));
+        stand.samples(Duration::from_millis(100));
+        *stand.adapter.lock().unwrap() = Adapter::new(&Config::from_pairs(&pairs(query)).unwrap());
+        if by_job {
+            stand.read();
+        } else {
+            // What it had sent before still comes.
+            let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
+            assert_eq!(error, Error::Adapter(AdapterError::Mute));
+        }
+        assert!(stand.sample().begins());
+        assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2), "{by_job}");
+    }
+}
+
+/// Packets that are damaged on the way are missing before the next, and no word is a wrong one.
+#[test]
+fn what_gets_lost_on_the_way_is_told() {
+    let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));
+    stand.session.pace(Some(FAST));
+    let runs = stand.samples(Duration::from_secs(2));
+    let lost: u64 = runs.iter().map(|run| run.lost).sum();
+    let came: usize = runs.iter().map(|run| run.words.len()).sum();
+    assert!(lost > 0 && came > 10_000, "{lost} of {came}");
+    let mut next = 0;
+    for run in &runs {
+        assert_eq!(run.first, next + run.lost);
+        next = run.first + run.words.len() as u64;
+    }
+}

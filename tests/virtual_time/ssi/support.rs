@@ -1,0 +1,94 @@
+//! A desk with an adapter before the virtual SSI encoder.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::ssi::{Asking, Station, Words};
+use encoder_studio::link::{Clock, VirtualClock};
+use encoder_studio::protocol::bridge::{Operation, Packet, Receiver};
+use encoder_studio::sim::ByteDevice;
+use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+use encoder_studio::worker::ssi::{Ssi, SsiJob, SsiOutput};
+
+use crate::biss::support::pairs;
+use crate::support::{MARGIN, Tap, TestLink};
+
+/// 25 clocks in 16.67 µs and 30 µs of pause: a word in less than 50 µs.
+pub(crate) const QUICK: Asking = Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 30 };
+
+pub(crate) struct Stand {
+    pub(crate) clock: Arc<VirtualClock>,
+    pub(crate) adapter: Arc<Mutex<Adapter>>,
+    pub(crate) tap: Arc<Mutex<Tap>>,
+    pub(crate) session: Session<Ssi>,
+    _folder: tempfile::TempDir,
+}
+
+impl Stand {
+    /// With what a link to the adapter and the virtual adapter itself say.
+    pub(crate) fn new(link: &str, query: &str) -> Self {
+        let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
+        Self::before(link, adapter)
+    }
+
+    /// An adapter whose words come 20 000 times a second.
+    pub(crate) fn quick(query: &str) -> Self {
+        Self::new("clock=1500000&pause=30", query)
+    }
+
+    fn before(link: &str, adapter: Arc<Mutex<Adapter>>) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let clock = Arc::new(VirtualClock::default());
+        let tap = Arc::<Mutex<Tap>>::default();
+        let wire = Box::new(TestLink::new(adapter.clone(), clock.clone(), tap.clone()));
+        let station = Station::from_query(&link.parse().unwrap(), MARGIN).unwrap();
+        let session = Session::to_adapter(wire, clock.clone(), station, Store::at(folder.path()), None);
+        Stand { clock, adapter, tap, session, _folder: folder }
+    }
+
+    /// The word that is asked for by itself.
+    pub(crate) fn read(&mut self) -> Words {
+        match self.session.run_inline(SsiJob::Read).unwrap() {
+            SsiOutput::Read(words) => words,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn sample(&mut self) -> Words {
+        self.session.sample().unwrap()
+    }
+
+    /// All samples within so much time.
+    pub(crate) fn samples(&mut self, time: Duration) -> Vec<Words> {
+        let end = self.clock.now() + time;
+        let mut samples = Vec::new();
+        while self.clock.now() < end {
+            samples.push(self.sample());
+        }
+        samples
+    }
+
+    /// Bytes that the adapter sends within a second by itself.
+    pub(crate) fn sends_by_itself(&mut self) -> usize {
+        let mut adapter = self.adapter.lock().unwrap();
+        let mut bytes = |milliseconds| {
+            self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
+            adapter.poll(self.clock.now()).len()
+        };
+        bytes(10);
+        (0..1000).map(|_| bytes(1)).sum()
+    }
+
+    /// The requests of an operation.
+    pub(crate) fn requests(&self, operation: Operation) -> Vec<Packet> {
+        let mut receiver = Receiver::default();
+        self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
+        std::iter::from_fn(|| receiver.next_packet()).filter(|packet| packet.op == operation.byte()).collect()
+    }
+
+    pub(crate) fn count(&self, operation: Operation) -> usize {
+        self.requests(operation).len()
+    }
+}
