@@ -2,7 +2,7 @@
 
 use super::{Flags, Layout, Part};
 use crate::protocol::ssi::code::{Code, CodeError, Coding, ones};
-use crate::protocol::ssi::descriptor::{Coded, Descriptor, Meaning, Word};
+use crate::protocol::ssi::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
 use crate::protocol::ssi::range::{Range, RangeError};
 
 /// Why a frame cannot work.
@@ -73,7 +73,7 @@ pub enum LayoutError {
     /// A code over more than the position that is not Gray.
     #[error("only Gray can go over the zeros and error bits")]
     NotGray,
-    /// An error bit among what is coded or shifted as a whole.
+    /// An error or parity bit among what is coded or shifted as a whole.
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
         /// Which bit.
@@ -156,8 +156,22 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
             return Err(LayoutError::Inside { name: bit.name.clone(), clock: bit.clock, area: descriptor.area, done });
         }
     }
-    if let Some(parity) = descriptor.parity {
-        taken.take(parity.clock, "the parity bit")?;
+    let coded_clocks = match descriptor.coded {
+        Coded::Position => 0,
+        Coded::Area => descriptor.area,
+        Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
+    };
+    if let Some(Parity { clock, .. }) = descriptor.parity {
+        let name = "the parity bit";
+        taken.take(clock, name)?;
+        // It is made of what is sent, when all that is done.
+        let inside = |done, area| Err(LayoutError::Inside { name: name.to_owned(), clock, area, done });
+        if clock <= coded_clocks {
+            return inside("coded", coded_clocks);
+        }
+        if descriptor.shift_right && clock <= descriptor.area {
+            return inside("shifted", descriptor.area);
+        }
     }
     let in_word = |clock: u8| 1_u64 << (word - clock);
     let errors: Vec<u64> = descriptor.errors.iter().map(|bit| in_word(bit.clock)).collect();
@@ -167,11 +181,6 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         (bit, ones(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
-    let coded_clocks = match descriptor.coded {
-        Coded::Position => 0,
-        Coded::Area => descriptor.area,
-        Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
-    };
     many("error bits", 8, descriptor.errors.len())?;
     many("patterns", 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {

@@ -108,7 +108,8 @@ fn bit(name: &str, clock: u8) -> ErrorBit {
 
 #[test]
 fn what_cannot_work_is_refused_with_the_reason() {
-    let cases: [(&str, Descriptor, &str); 9] = [
+    let parity = |clock| Some(Parity { clock, even: true });
+    let cases: [(&str, Descriptor, &str); 11] = [
         ("no clocks", Descriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
         ("many clocks", Descriptor { clocks: 65, ..plain() }, "a frame has 1 to 64 clocks, not 65"),
         (
@@ -145,6 +146,16 @@ fn what_cannot_work_is_refused_with_the_reason() {
             "repetition",
             Descriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
             "the frame and its repetition need 51 clocks, and there are 50",
+        ),
+        (
+            "parity bit in the Gray code",
+            Descriptor { clocks: 27, area: 27, code: Code::Gray, coded: Coded::Area, parity: parity(27), ..plain() },
+            "the parity bit on clock 27 is among the 27 clocks that are coded as a whole",
+        ),
+        (
+            "parity bit in what is shifted",
+            Descriptor { clocks: 28, area: 28, shift_right: true, parity: parity(28), ..plain() },
+            "the parity bit on clock 28 is among the 28 clocks that are shifted as a whole",
         ),
     ];
     for (what, descriptor, reason) in cases {
