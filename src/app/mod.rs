@@ -26,6 +26,7 @@ mod services;
 pub mod session;
 mod settings;
 pub mod signals;
+pub mod ssi;
 mod studio;
 mod tab;
 mod tasks;

@@ -1,0 +1,135 @@
+//! The cells, fields and handles of a frame in words.
+
+use super::{Field, Handle, Kind, Strip};
+use crate::app::Text;
+use crate::protocol::ssi::{Coded, Meaning, Role};
+
+/// What a clock carries, in a sentence; the clock is in it.
+pub fn cell(strip: &Strip, clock: u8) -> Text {
+    let index = usize::from(clock).checked_sub(1);
+    let cell = index.and_then(|index| strip.cells().get(index));
+    let text = Text::new("ssi.strip_cell").with("clock", clock);
+    let count = |id, bit: u8, kind: Kind| {
+        let count: u8 = strip.fields().iter().filter(|field| field.kind == kind).map(Field::count).sum();
+        Text::new(id).with("bit", bit).with("count", count)
+    };
+    text.with_text(
+        "what",
+        match cell.map(|cell| cell.role) {
+            Some(Role::Multiturn(bit)) => count("ssi.strip_multiturn_bit", bit, Kind::Turns),
+            Some(Role::Singleturn(bit)) => count("ssi.strip_singleturn_bit", bit, Kind::Steps),
+            Some(Role::Position(bit)) => count("ssi.strip_position_bit", bit, Kind::Position),
+            Some(Role::Error(index)) => error(strip, index),
+            Some(Role::Parity) => parity(strip),
+            Some(Role::Again(clock)) => Text::new("ssi.strip_again_bit").with("clock", clock),
+            Some(Role::Zero) | None => Text::new("ssi.strip_zero_bit"),
+        },
+    )
+}
+
+/// What a field is, with its number of bits.
+pub fn field(strip: &Strip, field: &Field) -> Text {
+    let count = |id| Text::new(id).with("count", field.count());
+    match field.kind {
+        Kind::Before => count("ssi.strip_before"),
+        Kind::Between => count("ssi.strip_between"),
+        Kind::Behind => count("ssi.strip_behind"),
+        Kind::Gap => count("ssi.strip_gap"),
+        Kind::After => count("ssi.strip_after"),
+        Kind::Turns => count("ssi.strip_turns"),
+        Kind::Steps => count("ssi.strip_steps"),
+        Kind::Position => count("ssi.strip_position"),
+        Kind::Error(index) => Text::new("ssi.strip_name").with("name", name(strip, index)),
+        Kind::Parity => Text::new("ssi.strip_parity"),
+        Kind::Again => count("ssi.strip_again"),
+    }
+}
+
+/// The same for narrow places: the short name that exports give it too, with its number of bits.
+pub fn short(strip: &Strip, field: &Field) -> Text {
+    let (id, name) = match field.kind {
+        Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => ("ssi.strip_short", "0".to_owned()),
+        Kind::Turns => ("ssi.strip_short", "MT".to_owned()),
+        Kind::Steps => ("ssi.strip_short", "ST".to_owned()),
+        Kind::Position => ("ssi.strip_short", "P".to_owned()),
+        Kind::Again => ("ssi.strip_short", "=".to_owned()),
+        Kind::Error(index) => ("ssi.strip_name", name(strip, index)),
+        Kind::Parity => ("ssi.strip_name", "PAR".to_owned()),
+    };
+    Text::new(id).with("name", name).with("count", field.count())
+}
+
+/// What a handle is called.
+pub fn handle(strip: &Strip, handle: Handle) -> Text {
+    Text::new(match handle {
+        Handle::LeadEnd => "ssi.strip_lead_end",
+        Handle::Split => "ssi.strip_split",
+        Handle::TurnsEnd => "ssi.strip_turns_end",
+        Handle::BetweenEnd => "ssi.strip_between_end",
+        Handle::StepsEnd => "ssi.strip_steps_end",
+        Handle::AreaEnd if strip.layout().descriptor().coded == Coded::Position => "ssi.strip_shifted_end",
+        Handle::AreaEnd => "ssi.strip_coded_end",
+        Handle::WordEnd => "ssi.strip_word_end",
+        Handle::GapEnd => "ssi.strip_gap_end",
+        Handle::FrameEnd => "ssi.strip_frame_end",
+        Handle::Position => "ssi.strip_whole",
+        Handle::Error(index) => return Text::new("ssi.strip_error_bit").with("name", name(strip, index)),
+        Handle::Parity => "ssi.strip_parity_bit",
+    })
+}
+
+/// Where a handle stands.
+pub fn value(strip: &Strip, handle: Handle) -> Text {
+    let clock = strip.clock(handle).unwrap_or(0);
+    let at = |id| Text::new(id).with("clock", clock);
+    match handle {
+        Handle::Error(index) => at("ssi.strip_bit_at").with_text("what", meaning(strip, index)),
+        Handle::Parity => at("ssi.strip_on_clock"),
+        Handle::Position => at("ssi.strip_from_clock"),
+        _ if clock == 0 => Text::new("ssi.strip_at_beginning"),
+        _ => at("ssi.strip_behind_clock"),
+    }
+}
+
+/// What moving a handle does.
+pub fn hint(handle: Handle) -> Text {
+    Text::new(match handle {
+        Handle::LeadEnd => "ssi.strip_move_lead_end",
+        Handle::Split => "ssi.strip_move_split",
+        Handle::TurnsEnd => "ssi.strip_move_turns_end",
+        Handle::BetweenEnd => "ssi.strip_move_between_end",
+        Handle::StepsEnd => "ssi.strip_move_steps_end",
+        Handle::AreaEnd => "ssi.strip_move_area_end",
+        Handle::WordEnd => "ssi.strip_move_word_end",
+        Handle::GapEnd => "ssi.strip_move_gap_end",
+        Handle::FrameEnd => "ssi.strip_move_frame_end",
+        Handle::Position => "ssi.strip_move_position",
+        Handle::Error(_) | Handle::Parity => "ssi.strip_move_bit",
+    })
+}
+
+fn name(strip: &Strip, index: usize) -> String {
+    strip.layout().role_name(Role::Error(index))
+}
+
+fn meaning(strip: &Strip, index: usize) -> Text {
+    let bit = strip.layout().descriptor().errors.get(index);
+    Text::new(match bit.map(|bit| (bit.meaning, bit.cleared_by_transfer)) {
+        Some((Meaning::Warning, _)) => "ssi.strip_means_warning",
+        Some((Meaning::Invalid, true)) => "ssi.strip_means_was_invalid",
+        Some((Meaning::Invalid, false)) | None => "ssi.strip_means_invalid",
+    })
+}
+
+fn error(strip: &Strip, index: usize) -> Text {
+    let low = strip.layout().descriptor().errors.get(index).is_some_and(|bit| bit.active_low);
+    let id = if low { "ssi.strip_error_low" } else { "ssi.strip_error" };
+    Text::new(id).with("name", name(strip, index)).with_text("what", meaning(strip, index))
+}
+
+fn parity(strip: &Strip) -> Text {
+    let parity = strip.layout().descriptor().parity;
+    let before = parity.map_or(0, |parity| parity.clock.saturating_sub(1));
+    let even = parity.is_some_and(|parity| parity.even);
+    Text::new(if even { "ssi.strip_even" } else { "ssi.strip_odd" }).with("clock", before)
+}
