@@ -49,6 +49,8 @@ const PHRASES: &[&str] = &[
     "phrase.sim_line",
     "phrase.sim_noise",
     "phrase.sim_ssi",
+    "phrase.sim_ssi_error",
+    "phrase.sim_ssi_no_error",
     "phrase.sim_supply",
     "phrase.sim_uart",
     "phrase.sim_version",

@@ -11,6 +11,7 @@ mod family;
 mod find;
 mod layout;
 mod range;
+mod tally;
 mod timing;
 
 /// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
@@ -29,4 +30,5 @@ pub use family::{
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
 pub use layout::{Flags, Layout, LayoutError, Reading};
 pub use range::{Direction, Fraction, Place, Range, RangeError};
+pub use tally::{Noted, Tally};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

@@ -4,6 +4,7 @@
 use fastrand::Rng;
 
 use super::config::{Config, Line};
+use super::trouble::Trouble;
 use crate::protocol::biss::Reading;
 use crate::protocol::bridge::BissStatus;
 use crate::protocol::ssi::{Flags, Resolved};
@@ -17,6 +18,9 @@ pub(super) struct Bus {
     line: Line,
     noise: f64,
     ssi: Option<Resolved>,
+    troubles: Vec<Trouble>,
+    /// The last SSI word.
+    transferred: Option<Moment>,
     rng: Rng,
 }
 
@@ -27,6 +31,8 @@ impl Bus {
             line: config.line,
             noise: config.noise,
             ssi: config.ssi.clone(),
+            troubles: config.troubles.clone(),
+            transferred: None,
             rng: Rng::with_seed(config.encoder.seed()),
         }
     }
@@ -55,7 +61,8 @@ impl Bus {
         match (self.line, self.encoder.reading(at), &self.ssi) {
             (Line::Low, _, _) => 0,
             (Line::Good, Some(reading), Some(ssi)) => {
-                let frame = clocked(self.ssi_frame(ssi, &reading), ssi.layout.clocks(), bits);
+                let frame = clocked(self.ssi_frame(ssi, &reading, at), ssi.layout.clocks(), bits);
+                self.transferred = Some(at);
                 self.damaged(frame, bits)
             }
             _ => ones(bits),
@@ -63,12 +70,17 @@ impl Bus {
     }
 
     /// The frame of an SSI encoder on the same shaft.
-    fn ssi_frame(&self, ssi: &Resolved, reading: &Reading) -> u64 {
+    fn ssi_frame(&self, ssi: &Resolved, reading: &Reading, at: Moment) -> u64 {
+        let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
+        if let Some(word) = happening().find_map(Trouble::word) {
+            return word;
+        }
+        let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
         let singleturn = self.encoder.layout().singleturn_bits();
         let raw = u64::from(reading.multiturn) << singleturn | u64::from(reading.singleturn);
         let range = ssi.layout.descriptor().range;
         let position = range.of_shaft_set(raw, 1 << singleturn, ssi.direction, ssi.preset);
-        ssi.layout.encode(position, Flags::NONE).unwrap_or(0)
+        ssi.layout.encode(position, flags).unwrap_or(0)
     }
 
     /// One bit is inverted in some frames.

@@ -1,6 +1,7 @@
 //! The settings of a virtual adapter, as the query of a `sim:` link gives them: those of the virtual encoder behind it,
 //! and its own.
 
+use super::trouble::Trouble;
 use crate::protocol::bridge::VERSION;
 use crate::protocol::ssi::{Families, Resolved, Settings};
 use crate::sim::setting::Setting;
@@ -16,6 +17,8 @@ pub struct Config {
     pub(super) noise: f64,
     /// The frame of an SSI encoder on the same shaft, with its direction and preset; none: there is no such encoder.
     pub(super) ssi: Option<Resolved>,
+    /// What its frames say of it beside the position.
+    pub(super) troubles: Vec<Trouble>,
     pub(super) switched_supply: bool,
     pub(super) uart: bool,
     pub(super) version: u8,
@@ -41,6 +44,7 @@ impl Default for Config {
             line: Line::Good,
             noise: 0.0,
             ssi: ssi(DELIVERED),
+            troubles: Vec::new(),
             switched_supply: false,
             uart: false,
             version: VERSION,
@@ -50,7 +54,17 @@ impl Default for Config {
 
 impl Config {
     /// The keys that [`from_pairs`](Self::from_pairs) takes, beside those of the encoder.
-    pub const KEYS: [&str; 6] = ["line", "noise", "ssi", "supply", "uart", "version"];
+    ///
+    /// | key | value |
+    /// |---|---|
+    /// | `line` | the wires to the encoder: `good`, `open`, `low` or `high` (stuck) |
+    /// | `noise` | share of frames with a bit inverted, 0…1 |
+    /// | `ssi` | family and settings of the SSI encoder, `atm60,code=gray`; a host that clocks otherwise gets its frame cut off, or zeros behind it |
+    /// | `ssi-error` | error bits of its frame that speak and words that it sends instead (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each with the seconds after which it happens again |
+    /// | `supply` | the encoder's: `external`, or `switched` by the adapter |
+    /// | `uart` | what is at the serial line: `none` or `hiperface` |
+    /// | `version` | of the bridge protocol, as the adapter says |
+    pub const KEYS: [&str; 7] = ["line", "noise", "ssi", "ssi-error", "supply", "uart", "version"];
 
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts.
     ///
@@ -59,16 +73,32 @@ impl Config {
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config = Config::default();
         let mut others = Vec::new();
+        let mut troubles = "";
         for (key, value) in pairs {
             if biss::Config::KEYS.contains(&key.as_str()) {
                 others.push((key.clone(), value.clone()));
+            } else if key == TROUBLES {
+                troubles = value;
             } else {
                 config.set(key, value)?;
             }
         }
         config.encoder = biss::Config::from_pairs(&others)?;
         config.rpm = config.encoder.rpm();
+        config.set_troubles(troubles)?;
         Ok(config)
+    }
+
+    /// Which there are is the SSI encoder's matter.
+    fn set_troubles(&mut self, value: &str) -> Result<(), ConfigError> {
+        let Some(ssi) = &self.ssi else { return Ok(()) };
+        let allowed = || match Trouble::names(&ssi.layout).join(", ") {
+            own if own.is_empty() => "nothing, as this encoder's frame has no error bits".to_owned(),
+            own => format!("{own}, each with :SECONDS where it happens again and again, separated by commas"),
+        };
+        let troubles = Trouble::read(value, &ssi.layout);
+        self.troubles = troubles.ok_or_else(|| Setting { key: TROUBLES, value }.refused(&allowed()))?;
+        Ok(())
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
@@ -98,6 +128,7 @@ impl Config {
     }
 }
 
+const TROUBLES: &str = "ssi-error";
 /// 12 bits of turns, 13 within one.
 const DELIVERED: &str = "atm60,code=gray";
 
@@ -121,7 +152,7 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let config =
-            read("line=low&noise=0.5&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60&seed=3").unwrap();
+            read("line=low&noise=0.5&ssi-error=error:2&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60&seed=3").unwrap();
         let pairs = [("rpm", "60"), ("seed", "3")].map(|(key, value)| (key.to_owned(), value.to_owned()));
         let expected = Config {
             encoder: biss::Config::from_pairs(&pairs).unwrap(),
@@ -129,6 +160,7 @@ mod tests {
             line: Line::Low,
             noise: 0.5,
             ssi: Some(ssi("ahm36,st=12").unwrap()),
+            troubles: Trouble::read("error:2", &ssi("ahm36,st=12").unwrap().layout).unwrap(),
             switched_supply: true,
             uart: true,
             version: 2,
@@ -144,6 +176,11 @@ mod tests {
         let sentence = "`line=bad` cannot be used: allowed is good, open, low or high";
         assert_eq!(read("line=bad").unwrap_err().to_string(), sentence);
         assert!(matches!(read("rpm=NaN"), Err(ConfigError::Value { .. })));
+        let sentence = "`ssi-error=ERRDIG` cannot be used: allowed is ERROR, each with :SECONDS where it happens again and \
+                        again, separated by commas";
+        assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
+        let none = read("ssi-error=ERROR").unwrap_err().to_string();
+        assert!(none.contains("nothing, as this encoder's frame has no error bits"), "{none}");
         for query in ["noise=2", "noise=NaN", "ssi=x", "supply=on", "uart=on", "version=256", "version=-1"] {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
         }

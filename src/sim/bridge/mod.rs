@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `bus` | what one frame of BiSS or SSI carries |
+//! | `trouble` | error bits that speak, and words that stand for a fault |
 //! | `clocking` | clocks and how long a frame takes |
 //! | `stream` | samples at equal distances, in packets |
 //! | `uart` | the serial line |
@@ -18,6 +19,7 @@ mod config;
 mod stream;
 #[cfg(test)]
 mod tests;
+mod trouble;
 mod uart;
 
 pub use adapter::Adapter;
