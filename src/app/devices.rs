@@ -52,15 +52,15 @@ impl AnyDevice {
         }
     }
 
-    /// A profile.
+    /// A profile; `None` of a device that the window does not show.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Self {
-        match &document.body {
+    ) -> Option<Self> {
+        Some(match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -68,7 +68,8 @@ impl AnyDevice {
             Body::Biss(_) => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
-        }
+            Body::Ssi(_) => return None,
+        })
     }
 
     /// Its number in the studio.

@@ -32,9 +32,9 @@ pub(super) struct Arguments {
 
 /// Which commands are for which kinds of device.
 const KINDS: &str = "\
-Kinds of device: hiperface and biss; diff, verify and restore find it in the profile. find is for hiperface alone; do has
-other actions for each (help do). Of SSI encoders ssi explains frames, offline: none is connected. Without hardware:
---link sim:, as in
+Kinds of device: hiperface, biss and ssi; diff, verify and restore find it in the profile. find is for hiperface alone; do
+has other actions for each (help do). Of SSI encoders save and diff keep layouts, and ssi explains frames, offline: none is
+connected. Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -107,6 +107,8 @@ pub(super) enum DeviceKind {
     Hiperface,
     /// POSITAL kit encoder, or another with BiSS C; over UBICOM (serial:, tcp:) or an adapter (bridge:).
     Biss,
+    /// SSI encoder; it sends its position and nothing else: --layout says how its frame is made.
+    Ssi,
 }
 
 #[derive(Args)]
@@ -161,6 +163,9 @@ pub(super) struct Save {
     /// hiperface: fail when a data field cannot be read because its access code is not known.
     #[arg(long)]
     pub(super) complete: bool,
+    /// ssi: the layout to save, a profile or a family with its settings (help ssi decode says which).
+    #[arg(long, value_name = "FILE|SPEC")]
+    pub(super) layout: Option<String>,
 }
 
 #[derive(Args)]

@@ -4,7 +4,7 @@
 use super::args::{Common, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, biss, hiperface};
+use super::{Failure, Result, biss, hiperface, ssi};
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.
@@ -40,6 +40,7 @@ pub(super) fn of(device: DeviceKind) -> &'static Kind {
     match device {
         DeviceKind::Hiperface => &hiperface::COMMANDS,
         DeviceKind::Biss => &biss::COMMANDS,
+        DeviceKind::Ssi => &ssi::COMMANDS,
     }
 }
 
@@ -48,5 +49,6 @@ pub(super) fn of_profile(body: &Body) -> &'static Kind {
     match body {
         Body::Hiperface(_) => &hiperface::COMMANDS,
         Body::Biss(_) => &biss::COMMANDS,
+        Body::Ssi(_) => &ssi::COMMANDS,
     }
 }

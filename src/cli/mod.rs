@@ -23,7 +23,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, Common};
+use args::{Arguments, Command, Common, DeviceKind};
 use output::Output;
 
 use crate::link::LinkUrl;
@@ -140,6 +140,9 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Status(on) => (kind::of(on.device).status)(common, &output),
         Command::Position(position) => (kind::of(position.device).position)(common, &output, &position),
         Command::Read(read) => (kind::of(read.device).read)(common, &output, &read.item),
+        Command::Save(save) if save.layout.is_some() && save.device != DeviceKind::Ssi => {
+            Err(usage("--layout is for ssi devices; others tell themselves what is to be saved"))
+        }
         Command::Save(save) => (kind::of(save.device).save)(common, &output, &save),
         Command::Write(write) => (kind::of(write.device).write)(common, &output, &write),
         Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),

@@ -6,8 +6,10 @@ use ron::error::SpannedError;
 use super::biss::BissProfile;
 use super::hiperface::HiperfaceProfile;
 use super::ron_text::{Entries, Unknown, Writer};
+use super::ssi::SsiProfile;
 use super::unique_names::UniqueNames;
-use crate::protocol::{biss, hiperface};
+use crate::protocol::ssi::LayoutError;
+use crate::protocol::{biss, hiperface, ssi};
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -32,6 +34,8 @@ pub enum Body {
     Hiperface(HiperfaceProfile),
     /// A BiSS encoder.
     Biss(BissProfile),
+    /// An SSI encoder.
+    Ssi(SsiProfile),
 }
 
 /// Why a text is not a profile.
@@ -91,6 +95,14 @@ pub enum ProfileError {
         /// What is wrong, and what is allowed.
         what: String,
     },
+    /// An SSI frame that cannot work.
+    #[error("{path}: {cause}")]
+    Frame {
+        /// Where.
+        path: String,
+        /// Why not.
+        cause: LayoutError,
+    },
 }
 
 impl Document {
@@ -126,6 +138,7 @@ impl Document {
         let body = match device.as_str() {
             hiperface::KIND => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
             biss::KIND => Body::Biss(BissProfile::read(&mut entries)?),
+            ssi::KIND => Body::Ssi(SsiProfile::read(&mut entries)?),
             _ => return Err(ProfileError::Device { found: device }),
         };
         Ok(Document { saved, note, body, unknown: entries.rest() })
@@ -146,6 +159,7 @@ impl Document {
         match &self.body {
             Body::Hiperface(profile) => profile.write(&mut writer),
             Body::Biss(profile) => profile.write(&mut writer),
+            Body::Ssi(profile) => profile.write(&mut writer),
         }
         writer.unknown(&self.unknown);
         writer.close(')');
@@ -160,13 +174,14 @@ impl Document {
 
 impl Body {
     /// Kinds of devices that this program saves, by their words on the command line.
-    pub const KINDS: [&'static str; 2] = [hiperface::KIND, biss::KIND];
+    pub const KINDS: [&'static str; 3] = [hiperface::KIND, biss::KIND, ssi::KIND];
 
     /// The word for the kind of device.
     pub fn kind(&self) -> &'static str {
         match self {
             Body::Hiperface(_) => hiperface::KIND,
             Body::Biss(_) => biss::KIND,
+            Body::Ssi(_) => ssi::KIND,
         }
     }
 
@@ -197,11 +212,22 @@ impl Body {
         }
     }
 
+    /// The profile of an SSI encoder.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_ssi(self) -> Result<SsiProfile, ProfileError> {
+        match self {
+            Body::Ssi(profile) => Ok(profile),
+            other => Err(other.is_not(ssi::KIND)),
+        }
+    }
+
     /// The profile of a HIPERFACE encoder; `None` of another device.
     pub fn hiperface(&self) -> Option<&HiperfaceProfile> {
         match self {
             Body::Hiperface(profile) => Some(profile),
-            Body::Biss(_) => None,
+            Body::Biss(_) | Body::Ssi(_) => None,
         }
     }
 
@@ -209,13 +235,24 @@ impl Body {
     pub fn biss(&self) -> Option<&BissProfile> {
         match self {
             Body::Biss(profile) => Some(profile),
-            Body::Hiperface(_) => None,
+            Body::Hiperface(_) | Body::Ssi(_) => None,
+        }
+    }
+
+    /// The profile of an SSI encoder; `None` of another device.
+    pub fn ssi(&self) -> Option<&SsiProfile> {
+        match self {
+            Body::Ssi(profile) => Some(profile),
+            Body::Hiperface(_) | Body::Biss(_) => None,
         }
     }
 }
 
 fn quoted_kinds() -> String {
-    Body::KINDS.map(|kind| format!("{kind:?}")).join(" and ")
+    let kinds = Body::KINDS.map(|kind| format!("{kind:?}"));
+    let [first, between @ .., last] = &kinds;
+    let between: String = between.iter().map(|kind| format!(", {kind}")).collect();
+    format!("{first}{between} and {last}")
 }
 
 #[cfg(test)]
@@ -300,7 +337,7 @@ mod tests {
             ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
             ("schema: 1,", "", "schema is missing"),
             ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
-            ("\"hiperface\"", "\"ssi\"", "device \"ssi\"; this program knows \"hiperface\" and \"biss\""),
+            ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\" and \"ssi\""),
             ("\"A1\"", "17", "identity.serial_number must be a text"),
             ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
             ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
@@ -337,7 +374,8 @@ mod tests {
                 assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
                 count += 1;
             }
-            assert_eq!(count, 3);
+            // Of SSI, each family as delivered and one more.
+            assert_eq!(count, if kind == ssi::KIND { 12 } else { 3 }, "{kind}");
         }
     }
 }

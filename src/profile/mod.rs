@@ -7,6 +7,7 @@ mod document;
 pub mod hiperface;
 mod plan;
 mod ron_text;
+pub mod ssi;
 mod unique_names;
 
 pub use difference::{Comparison, Difference};

@@ -44,6 +44,11 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries })
     }
 
+    /// Where the structure stands, for messages.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
     /// Where an entry stands, for messages.
     pub(super) fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }

@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::read_file;
 
-/// The texts of a folder's files with this ending, with their paths, by name; and those that cannot be read. A folder
-/// that does not exist has none.
-pub(super) fn read_folder(folder: &Path, ending: &str) -> (Vec<(PathBuf, String)>, Vec<FileError>) {
+/// The texts of a folder's files with this ending, with their paths as errors call them, by name; and those that cannot
+/// be read. A folder that does not exist has none.
+pub(super) fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list(folder, ending) {
         Ok(paths) => {
             for path in paths {
                 match read_file(&path) {
-                    Ok(text) => texts.push((path, text)),
+                    Ok(text) => texts.push((path.display().to_string(), text)),
                     Err(error) => errors.push(error),
                 }
             }

@@ -26,6 +26,7 @@ pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, 
 
 use crate::protocol::biss::{DescriptionError, Descriptions};
 use crate::protocol::hiperface::{EncoderTypes, TypeTableError};
+use crate::protocol::ssi::{Families, FamilyError};
 
 /// Where the program keeps what outlives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +55,9 @@ pub enum StoreError {
     /// A description of a BiSS encoder of the user's own is broken.
     #[error(transparent)]
     Description(#[from] DescriptionError),
+    /// A family of SSI encoders of the user's own is broken.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
 }
 
 impl Store {
@@ -131,12 +135,27 @@ impl Store {
     /// cannot be used.
     pub fn biss_descriptions(&self) -> (Descriptions, Vec<StoreError>) {
         let (files, unread) = descriptions::read_folder(&self.biss_descriptions_path(), "ron");
-        let named: Vec<(String, String)> =
-            files.into_iter().map(|(path, text)| (path.display().to_string(), text)).collect();
-        let (own, broken) = Descriptions::read(named.iter().map(|(name, text)| (name.as_str(), text.as_str())));
-        let errors = unread.into_iter().map(StoreError::from).chain(broken.into_iter().map(StoreError::from)).collect();
-        (Descriptions::built_in().overlaid_with(own), errors)
+        let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
+        (Descriptions::built_in().overlaid_with(own), together(unread, broken))
     }
+
+    /// The folder in which a user may add families of SSI encoders (`*.ron`); it need not exist.
+    pub fn ssi_families_path(&self) -> PathBuf {
+        self.config.join("devices").join("ssi")
+    }
+
+    /// The built-in families of SSI encoders, those of the user's own in the place of those with the same key, and what
+    /// is wrong with those that cannot be used.
+    pub fn ssi_families(&self) -> (Families, Vec<StoreError>) {
+        let (files, unread) = descriptions::read_folder(&self.ssi_families_path(), "ron");
+        let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
+        (Families::built_in().overlaid_with(own), together(unread, broken))
+    }
+}
+
+/// Files that cannot be read, and those that cannot be used.
+fn together<E: Into<StoreError>>(unread: Vec<FileError>, broken: Vec<E>) -> Vec<StoreError> {
+    unread.into_iter().map(StoreError::from).chain(broken.into_iter().map(Into::into)).collect()
 }
 
 #[cfg(test)]

@@ -164,6 +164,9 @@ pub fn document(error: &ProfileError) -> Text {
         ProfileError::Value { path, what } => {
             Text::new("detail.value").with("path", path).with_text("what", phrase(what))
         }
+        ProfileError::Frame { path, cause } => {
+            Text::new("detail.value").with("path", path).with_text("what", phrase(&cause.to_string()))
+        }
         // These have sentences of their own.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }

@@ -99,6 +99,10 @@ pub fn store(error: &StoreError) -> Text {
             let why = syntax(error.line, error.column, &error.what);
             Text::new("store.description").with("path", &error.file).with_text("why", why)
         }
+        StoreError::Family(error) => {
+            let why = syntax(error.line, error.column, &error.what);
+            Text::new("store.ssi_family").with("path", &error.file).with_text("why", why)
+        }
     }
 }
 

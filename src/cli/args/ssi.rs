@@ -27,11 +27,11 @@ pub(in crate::cli) struct SsiDecode {
 pub(in crate::cli) struct SsiEncode {
     #[command(flatten)]
     pub(in crate::cli) layout: SsiLayout,
-    /// Turns and steps as one number.
-    #[arg(long, value_name = "N", required_unless_present = "steps", conflicts_with_all = ["turns", "steps"], allow_negative_numbers = true)]
+    /// Turns and steps as one number; where it is given with them, they have to be the same.
+    #[arg(long, value_name = "N", required_unless_present = "steps", allow_negative_numbers = true)]
     pub(in crate::cli) position: Option<String>,
     /// Whole turns; 0 if left out.
-    #[arg(long, value_name = "T", requires = "steps", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(in crate::cli) turns: Option<String>,
     /// Steps within the turn.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
@@ -48,10 +48,10 @@ pub(in crate::cli) struct SsiExport {
     /// What to write.
     #[arg(long, value_enum)]
     pub(in crate::cli) format: SsiFormat,
-    /// timing: the clock in hertz; 400000 if left out.
+    /// timing: the clock in hertz; as in the profile, else 400000.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
     pub(in crate::cli) clock: Option<u32>,
-    /// timing: the pause behind a burst, in microseconds; 200 if left out.
+    /// timing: the pause behind a burst, in microseconds; as in the profile, else 200.
     #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(in crate::cli) pause: Option<u32>,
     /// timing: the cable in metres.
@@ -67,14 +67,15 @@ pub(in crate::cli) struct SsiExport {
 
 #[derive(Args)]
 pub(in crate::cli) struct SsiLayout {
-    /// A family with its settings, as ahm36,code=gray,st=12. What is left out is as delivered, with the largest resolution.
+    /// A profile of an SSI encoder, or a family with its settings, as ahm36,code=gray,st=12. What is left out is as
+    /// delivered, with the largest resolution.
     ///
     /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
     /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
     /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres),
     /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: with a format string of LinuxCNC
     /// behind it.
-    #[arg(long = "layout", value_name = "SPEC")]
+    #[arg(long = "layout", value_name = "FILE|SPEC")]
     pub(in crate::cli) spec: String,
 }
 
@@ -91,6 +92,8 @@ pub(in crate::cli) enum SsiFormat {
     Csv,
     /// What to set in common SSI modules of controls.
     Sheet,
+    /// A profile: a text that a person can read and change, for --layout and the window.
+    Profile,
     /// A picture of the frame.
     Svg,
     /// A picture of a burst in time, with what does not fit said on stderr.

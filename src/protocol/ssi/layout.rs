@@ -5,6 +5,8 @@ mod check;
 mod tests;
 
 pub use check::LayoutError;
+#[cfg(test)]
+pub(crate) use tests::layouts as any_layouts;
 
 use super::code::{Coding, gray, ones, ungray};
 use super::descriptor::{Coded, Descriptor};

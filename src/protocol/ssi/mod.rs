@@ -28,6 +28,8 @@ pub use family::{
     StepLimits, TextError,
 };
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
+#[cfg(test)]
+pub(crate) use layout::any_layouts;
 pub use layout::{Flags, Layout, LayoutError, Reading};
 pub use range::{Direction, Fraction, Place, Range, RangeError};
 pub use tally::{Noted, Tally};

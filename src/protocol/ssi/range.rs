@@ -1,5 +1,8 @@
 //! Which positions an encoder sends, and what they are: turns and steps, a round axis, a length (reference section 5).
 
+use std::fmt;
+use std::str::FromStr;
+
 use super::code::{bits_of, ones};
 
 /// Positions from 0 to a last one.
@@ -230,6 +233,27 @@ impl Range {
     /// [`RangeError`]: this range cannot be.
     pub fn bits(&self) -> Result<u8, RangeError> {
         self.last().map(bits_of)
+    }
+}
+
+impl fmt::Display for Fraction {
+    /// `25/2`, or a whole number.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.denominator {
+            1 => write!(f, "{}", self.numerator),
+            denominator => write!(f, "{}/{denominator}", self.numerator),
+        }
+    }
+}
+
+impl FromStr for Fraction {
+    type Err = &'static str;
+
+    /// The error says what may stand there.
+    fn from_str(text: &str) -> Result<Self, &'static str> {
+        let (above, below) = text.split_once('/').unwrap_or((text, "1"));
+        let part = |text: &str| text.trim().parse().map_err(|_| "a number or a fraction such as 25/2");
+        Ok(Fraction { numerator: part(above)?, denominator: part(below)? })
     }
 }
 

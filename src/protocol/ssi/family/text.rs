@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use super::{Align, ErrorPlace, Settings};
 use crate::protocol::ssi::code::Code;
-use crate::protocol::ssi::descriptor::Coded;
-use crate::protocol::ssi::range::{Direction, Fraction};
+use crate::protocol::ssi::descriptor::{Coded, Meaning};
+use crate::protocol::ssi::range::Direction;
 
 /// Why a text is no layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -76,10 +76,6 @@ impl Settings {
         fn word<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
         }
-        let revolutions = self.revolutions.map(|turns| match turns.denominator {
-            1 => turns.numerator.to_string(),
-            denominator => format!("{}/{denominator}", turns.numerator),
-        });
         let values = [
             word(self.code),
             word(self.coded),
@@ -87,7 +83,7 @@ impl Settings {
             word(self.singleturn),
             word(self.steps),
             word(self.turns),
-            revolutions,
+            word(self.revolutions),
             word(self.clocks),
             word(self.align),
             word(self.shift.then_some(1)),
@@ -111,11 +107,7 @@ impl Settings {
             "st" => self.singleturn = Some(small()?),
             "steps" => self.steps = Some(number()?),
             "turns" => self.turns = Some(number()?),
-            "revolutions" => {
-                let (above, below) = value.split_once('/').unwrap_or((value, "1"));
-                let part = |text: &str| text.trim().parse().map_err(|_| wrong("a number or a fraction such as 25/2"));
-                self.revolutions = Some(Fraction { numerator: part(above)?, denominator: part(below)? });
-            }
+            "revolutions" => self.revolutions = Some(value.parse().map_err(wrong)?),
             "clocks" => self.clocks = Some(small()?),
             "align" => self.align = Some(value.parse().map_err(wrong)?),
             "shift" => {
@@ -167,6 +159,10 @@ impl Words for Direction {
     const ALL: &'static [(&'static str, Self)] = &[("cw", Direction::Clockwise), ("ccw", Direction::CounterClockwise)];
 }
 
+impl Words for Meaning {
+    const ALL: &'static [(&'static str, Self)] = &[("invalid", Meaning::Invalid), ("warning", Meaning::Warning)];
+}
+
 impl Words for Align {
     const ALL: &'static [(&'static str, Self)] = &[
         ("left", Align::Left),
@@ -205,6 +201,7 @@ in_words! {
     Code: "binary, gray, gray-excess or bcd",
     Coded: "position, padded or errors",
     Direction: "cw or ccw",
+    Meaning: "invalid or warning",
     Align: "left, right24, right25, tree12_13 or tree13_12",
     ErrorPlace: "none, fix or following",
 }
@@ -212,6 +209,7 @@ in_words! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::ssi::range::Fraction;
     use proptest::option::of;
     use proptest::prelude::*;
     use proptest::sample::select;

@@ -6,7 +6,7 @@ use super::*;
 use crate::protocol::ssi::{Code, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
 
 /// Any frame that works, with error bits, zeros, repetition, parity, whatever its code.
-fn layouts() -> impl Strategy<Value = Layout> {
+pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
         (2..100_000_u32, 1..5000_u32).prop_map(|(per_turn, turns)| Range::Steps { per_turn, turns }),

@@ -1,50 +1,17 @@
-//! `ssi`: frames of any layout, without an encoder.
-
-use std::time::Duration;
+//! `ssi decode` and `ssi encode`: what frames say, and how they are made.
 
 use serde_json::{Map, Value as Json, json};
 
-use super::args::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
-use super::number::{out_of_range, parse_number};
-use super::output::{Lines, Output};
-use super::runner::failed;
-use super::{Done, Failure, Result};
+use super::layout::choose;
 use crate::app::explain;
-use crate::protocol::ssi::{
-    Families, Finding, Flags, Layout, Meaning, Place, Range, Reading, Reads, Role, Settings, Times, bit_table, c99,
-    frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg, to_linuxcnc,
-};
-use crate::store::write_atomically;
+use crate::cli::args::{SsiDecode, SsiEncode};
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::{Lines, Output};
+use crate::cli::{Done, Failure, Result};
+use crate::protocol::ssi::{Finding, Flags, Layout, Meaning, Place, Reading, Role};
 
-pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
-    match command {
-        Ssi::Decode(arguments) => decode(output, arguments),
-        Ssi::Encode(arguments) => encode(output, arguments),
-        Ssi::Export(arguments) => export(output, arguments),
-    }
-}
-
-/// The layout that `--layout` names, with the times of its family. What the manual does not speak of is a remark.
-fn layout(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<(Layout, Option<Times>)> {
-    if let Some(format) = spec.strip_prefix("linuxcnc:") {
-        let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
-        return Ok((layout, None));
-    }
-    let families = Families::built_in();
-    let (key, settings) = Settings::parse(spec).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
-    let Some(family) = families.named(&key) else {
-        let known: Vec<&str> = families.iter().map(|family| family.key.as_str()).collect();
-        return Err(Failure::Usage(format!("--layout: there is no family {key:?}; families: {}", known.join(" "))));
-    };
-    let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
-    for advice in &resolved.advice {
-        output.remark(&explain::ssi::advice(advice).terminal());
-    }
-    Ok((resolved.layout, Some(family.times)))
-}
-
-fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
-    let (layout, _) = layout(output, spec)?;
+pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
+    let layout = choose(output, spec)?.layout;
     // All are looked at before any is told.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
@@ -181,8 +148,8 @@ fn name(finding: &Finding) -> String {
     }
 }
 
-fn encode(output: &Output, arguments: &SsiEncode) -> Result {
-    let (layout, _) = layout(output, &arguments.layout)?;
+pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
+    let layout = choose(output, &arguments.layout)?.layout;
     let position = position(&layout, arguments)?;
     let errors = &layout.descriptor().errors;
     let mut flags = Flags::NONE;
@@ -208,69 +175,47 @@ fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     Ok(Done::Well)
 }
 
+/// What `--position`, or `--turns` and `--steps`, name; where both do, they have to be the same.
 fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
     let last = layout.coding().last();
-    let number = |what: &str, text: &String, last: u64| {
-        let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("--{what}: {text:?} is not a number")))?;
-        u64::try_from(number).ok().filter(|number| *number <= last).ok_or_else(|| beyond(what, text, last))
-    };
-    if let Some(text) = &arguments.position {
-        return number("position", text, last);
-    }
     let range = layout.descriptor().range;
-    let Place::Shaft { turns, .. } = range.place(last) else {
-        return Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()));
-    };
-    let turns = arguments.turns.as_ref().map_or(Ok(0), |text| number("turns", text, turns))?;
-    // The last step of this turn: one before the next turn begins, or the last position of all.
-    let begins = range.position(turns, 0).unwrap_or(0);
-    let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
-    let text = arguments.steps.as_ref().ok_or_else(|| Failure::Usage("give --position, or --steps".to_owned()))?;
-    Ok(begins + number("steps", text, next - begins)?)
+    let SsiEncode { position, turns, steps, .. } = arguments;
+    let named = position.as_deref().map(|text| number("position", text, last)).transpose()?;
+    let of_shaft = turns.is_some() || steps.is_some();
+    match (named, range.place(named.unwrap_or(last))) {
+        (_, Place::Length { .. }) if of_shaft => {
+            Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()))
+        }
+        (Some(position), Place::Shaft { turns: own_turns, steps: own_steps, .. }) => {
+            for (what, text, own) in [("turns", turns, own_turns), ("steps", steps, own_steps)] {
+                let Some(text) = text else { continue };
+                if number(what, text, u64::MAX)? != own {
+                    return Err(Failure::Usage(format!(
+                        "--position {position} is turn {own_turns}, step {own_steps}, and not --{what} {text}: give one of them"
+                    )));
+                }
+            }
+            Ok(position)
+        }
+        (Some(position), Place::Length { .. }) => Ok(position),
+        (None, Place::Length { .. }) => Err(Failure::Usage("give --position".to_owned())),
+        (None, Place::Shaft { turns: most, .. }) => {
+            let turns = turns.as_deref().map_or(Ok(0), |text| number("turns", text, most))?;
+            // The last step of this turn: one before the next turn begins, or the last position of all.
+            let begins = range.position(turns, 0).unwrap_or(0);
+            let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
+            let steps = steps.as_deref();
+            let text = steps.ok_or_else(|| Failure::Usage("give --position, or --steps".to_owned()))?;
+            Ok(begins + number("steps", text, next - begins)?)
+        }
+    }
+}
+
+fn number(what: &str, text: &str, last: u64) -> Result<u64> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("--{what}: {text:?} is not a number")))?;
+    u64::try_from(number).ok().filter(|number| *number <= last).ok_or_else(|| beyond(what, text, last))
 }
 
 fn beyond(what: &str, text: &str, last: u64) -> Failure {
     out_of_range(what, text, 0, i64::try_from(last).unwrap_or(i64::MAX))
-}
-
-fn export(output: &Output, arguments: &SsiExport) -> Result {
-    let SsiExport { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
-    let is_timed = clock.is_some() || pause.is_some() || cable.is_some() || *synchronous;
-    if is_timed && *format != SsiFormat::Timing {
-        return Err(Failure::Usage("--clock, --pause, --cable and --synchronous are for --format timing".to_owned()));
-    }
-    let (layout, times) = layout(output, spec)?;
-    let title = &spec.spec;
-    let text = match format {
-        SsiFormat::C => c99(&layout, title),
-        SsiFormat::St => structured_text(&layout, title),
-        SsiFormat::Linuxcnc => to_linuxcnc(&layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
-        SsiFormat::Csv => bit_table(&layout),
-        SsiFormat::Sheet => settings_sheet(&layout, times.as_ref(), title),
-        SsiFormat::Svg => frame_svg(&layout, None, title),
-        SsiFormat::Timing => {
-            let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
-            let times = times.ok_or_else(unknown)?;
-            let reads = Reads {
-                clocks: layout.clocks(),
-                clock_hz: clock.unwrap_or(400_000).into(),
-                pause: Duration::from_micros(pause.unwrap_or(200).into()),
-                cable_metres: cable.map(f64::from),
-                synchronous: *synchronous,
-                any_steps: !matches!(layout.descriptor().range, Range::Bits { .. } | Range::Length { .. }),
-            };
-            for warning in times.reckon(&reads).warnings {
-                output.remark(&explain::ssi::timing(&warning).terminal());
-            }
-            timing_svg(&layout, &times, &reads, title)
-        }
-    };
-    match file {
-        None => output.show(&json!({ "text": text }), &text)?,
-        Some(path) => {
-            write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file(&error)))?;
-            output.show(&json!({ "file": path.display().to_string() }), "")?;
-        }
-    }
-    Ok(Done::Well)
 }

@@ -1,0 +1,9 @@
+//! The profile of an SSI encoder: its frame, which way it counts and from where, and how it is read. The encoder itself has
+//! no memory: a profile is never written into one, so that there is no plan and no backup.
+
+mod compare;
+mod record;
+mod text;
+
+pub use compare::compare;
+pub use record::{Kept, ReadingSettings, SsiProfile};
