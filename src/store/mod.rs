@@ -214,6 +214,25 @@ mod tests {
     }
 
     #[test]
+    fn families_of_the_users_own_stand_before_those_that_ship() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        assert_eq!(store.ssi_families(), (Families::built_in(), Vec::new()));
+        let folder = store.ssi_families_path();
+        fs::create_dir_all(&folder).unwrap();
+        let (_, ahs36) = Families::BUILT_IN[0];
+        fs::write(folder.join("same.ron"), ahs36.replace("\"AHS36 SSI\"", "\"my AHS36\"")).unwrap();
+        fs::write(folder.join("other.ron"), ahs36.replace("\"ahs36\"", "\"mine\"")).unwrap();
+        fs::write(folder.join("broken.ron"), "(\n  key: \"x\",\n  nam: \"x\",\n)").unwrap();
+        let (families, errors) = store.ssi_families();
+        assert_eq!(families.named("ahs36").unwrap().name, "my AHS36");
+        assert!(families.named("mine").is_some() && families.named("kh53").is_some());
+        assert_eq!(families.iter().count(), 12);
+        let [error] = errors.as_slice() else { panic!("{errors:?}") };
+        assert!(error.to_string().contains("broken.ron, line 3, column "), "{error}");
+    }
+
+    #[test]
     fn a_broken_table_is_named_with_its_place() {
         let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = store.encoder_types().unwrap_err();

@@ -27,4 +27,5 @@ mod cli_status;
 mod foreign;
 mod source;
 mod ssi_export;
+mod ssi_profiles;
 mod support;

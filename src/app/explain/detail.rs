@@ -89,6 +89,14 @@ const PHRASES: &[&str] = &[
     "phrase.release",
     "phrase.mounting_item",
     "phrase.four_tenths",
+    "phrase.ssi_codes",
+    "phrase.ssi_over",
+    "phrase.ssi_directions",
+    "phrase.ssi_meanings",
+    "phrase.ssi_word",
+    "phrase.ssi_revolutions_text",
+    "phrase.ssi_which",
+    "phrase.ssi_not_with",
     "phrase.twice",
     "phrase.no_status",
     "phrase.locked_bytes",
@@ -353,6 +361,34 @@ mod tests {
             ("(0x24, 0x43)", "(0x43, 0x24)"),
             ("(0x24, 0x43)", "(0x26, 0x43)"),
             ("data: [", "data: [(banks: (0, 0x24)), "),
+        ];
+        for (from, to) in cases {
+            let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+            check(&document(&error), &error);
+        }
+    }
+
+    #[test]
+    fn a_wrong_ssi_profile_is_told_in_both_languages() {
+        let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
+            singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",
+            word: "ones", meaning: "invalid")]))"#;
+        assert!(Document::parse(good).is_ok());
+        let cases = [
+            ("frame:", "fram:"),
+            ("clocks: 15", "clocks: 256"),
+            ("clocks: 15", "clocks: 15, code: \"grey\""),
+            ("clocks: 15", "clocks: 15, over: \"all\""),
+            ("clocks: 15", "clocks: 15, steps: 3"),
+            ("clocks: 15", "clocks: 15, shift: 1"),
+            ("singleturn: 14", "multiturn: 14"),
+            ("singleturn: 14", "steps: 9, revolutions: 0.5"),
+            ("\"cw\"", "\"left\""),
+            ("preset: 0", "preset: 16384"),
+            ("preset: 0", "preset: -1"),
+            ("clock_hz: 1000", "clock_hz: 999"),
+            ("meaning: \"invalid\"", "meaning: \"bad\""),
+            ("\"ones\"", "\"all\""),
         ];
         for (from, to) in cases {
             let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();

@@ -165,15 +165,25 @@ impl Family {
     /// Reads a family. `file` is what an error is to call it.
     ///
     /// # Errors
-    /// With line and column: text that is not RON, unknown or missing keys; and a family whose frame as delivered
-    /// cannot work.
+    /// With line and column: text that is not RON, unknown or missing keys; a key that cannot stand on the command line,
+    /// and a family whose frame as delivered cannot work.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
         let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, what };
         let family: Family = ron::from_str(text)
             .map_err(|wrong| error(wrong.span.start.line, wrong.span.start.col, wrong.code.to_string()))?;
+        let at = |entry| place(text, entry);
+        let fits = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || matches!(letter, '-' | '_');
+        if family.key.is_empty() || !family.key.chars().all(fits) {
+            let (line, column) = at("key:");
+            let what = format!("the key {:?} must be of small letters, digits, - and _", family.key);
+            return Err(error(line, column, what));
+        }
         match Settings::default().resolve(&family) {
             Ok(_) => Ok(family),
-            Err(wrong) => Err(error(1, 1, wrong.to_string())),
+            Err(wrong) => {
+                let (line, column) = at("frames:");
+                Err(error(line, column, format!("as delivered: {wrong}")))
+            }
         }
     }
 
@@ -181,6 +191,16 @@ impl Family {
     pub fn code(&self) -> Code {
         self.codes.first().copied().unwrap_or(Code::Binary)
     }
+}
+
+/// Line and column of the first line that begins with an entry, counted from 1; the beginning where none does.
+fn place(text: &str, entry: &str) -> (usize, usize) {
+    let lines = text.lines().enumerate();
+    let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
+        let blanks = line.chars().take_while(|letter| letter.is_whitespace()).count();
+        (at + 1, blanks + 1)
+    });
+    found.min().unwrap_or((1, 1))
 }
 
 impl Families {

@@ -24,6 +24,28 @@ fn every_file_that_ships_can_be_read() {
     }
 }
 
+#[test]
+fn a_broken_family_is_told_where() {
+    let (_, good) = Families::BUILT_IN[0];
+    let whole = good.lines().position(|line| line.trim_start().starts_with("frames:")).unwrap() + 1;
+    let key = good.lines().position(|line| line.trim_start().starts_with("key:")).unwrap() + 1;
+    let cases = [
+        ("\"ahs36\"", "\"AHS 36\"", key, "the key \"AHS 36\" must be of small letters, digits, - and _"),
+        ("\"ahs36\"", "\"\"", key, "the key \"\" must be"),
+        ("clock: 15", "clock: 14", whole, "as delivered: clock 14 is asked for by the position and by ERROR"),
+        ("singleturn: (1, 14, 14)", "singleturn: (1, 14)", 6, ""),
+    ];
+    for (old, new, line, what) in cases {
+        assert!(good.contains(old), "{old}");
+        let own = good.replacen(old, new, 1);
+        let (families, errors) = Families::read([("own.ron", own.as_str()), Families::BUILT_IN[1]]);
+        let [error] = errors.as_slice() else { panic!("{new}: {errors:?}") };
+        assert_eq!((error.file.as_str(), error.line), ("own.ron", line), "{new}: {error}");
+        assert!(error.what.starts_with(what), "{error}");
+        assert_eq!(families.iter().map(|family| family.key.as_str()).collect::<Vec<_>>(), ["ahm36"]);
+    }
+}
+
 /// Reference section 8: settings, turns, steps, error bit that speaks, bits in clock order.
 const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ahs36", 0, 0x2A5B, "", "101010010110110"),

@@ -1,0 +1,205 @@
+//! Layouts of SSI encoders in files: kept, compared, used wherever a layout is named; families of the user's own.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use super::support::Bench;
+
+/// A layout as a person would write it down: 4 + 8 bits in Gray, an error bit behind them.
+const LAYOUT: &str = r#"(
+    schema: 1,
+    device: "ssi",
+    name: "feeder",
+    frame: (clocks: 13, multiturn: 4, singleturn: 8, code: "gray", errors: [(name: "LAMP", clock: 13, meaning: "warning")]),
+    reading: (clock_hz: 100000, pause_us: 30),
+)"#;
+
+#[test]
+fn a_layout_is_saved_and_used_like_its_family() {
+    let bench = Bench::new();
+    let file = bench.file("line.ron");
+    let spec = "ahm36,code=gray,st=12,direction=ccw,preset=5";
+    let saved = bench.run(&["save", "ssi", "--layout", spec, "-o", &file, "--json"]);
+    assert_eq!(saved.json(), json!({ "file": file, "clocks": 27 }));
+    let text = bench.read("line.ron");
+    for line in ["    family: \"ahm36\",", "        area: 26,", "    direction: \"ccw\",", "    preset: 5,"] {
+        assert!(text.lines().any(|own| own == line), "{line} is not in\n{text}");
+    }
+    for command in [&["decode", "000110110010011111011101100"][..], &["encode", "--position", "4778587"]] {
+        let run = |layout: &str| {
+            let words = [&["ssi", command[0], "--json", "--layout", layout], &command[1..]].concat();
+            let ran = bench.run(&words);
+            assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "{words:?}");
+            ran.out
+        };
+        assert_eq!(run(&file), run(spec));
+    }
+    // The text on the way and back is the same, and so is that of another layout.
+    let exported = bench.run(&["ssi", "export", "--layout", &file, "--format", "profile"]);
+    assert_eq!(exported.out, text);
+    let again = bench.file("again.ron");
+    bench.run(&["ssi", "export", "--layout", spec, "--format", "profile", "-o", &again]);
+    assert_eq!(bench.read("again.ron"), text);
+    let read = bench.run(&["ssi", "export", "--layout", "linuxcnc:error%1bposition%14ge", "--format", "profile"]).out;
+    assert!(read.contains("        singleturn: 14,\n        code: \"gray\",") && !read.contains("family"), "{read}");
+}
+
+/// The ones of Gray 1011 0110 1101: binary 110110110110, turn 13, step 182 of 256.
+#[test]
+fn a_layout_written_by_hand_is_used_from_anywhere() {
+    let bench = Bench::new();
+    let file = bench.write("feeder.ron", LAYOUT);
+    bench.write("no-ending", LAYOUT);
+    for layout in [file.as_str(), "no-ending", "./no-ending", "feeder.ron"] {
+        let mut program = bench.program(&["ssi", "decode", "--json", "--layout", layout, "1011011011011"]);
+        let output = program.current_dir(bench.path("")).output().unwrap();
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{layout}: {error}"));
+        assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(13), &json!(182), &json!(255.9375)));
+        assert_eq!(told["warnings"], json!(["LAMP"]));
+    }
+    let source = bench.run(&["ssi", "export", "--layout", &file, "--format", "c"]).out;
+    assert!(source.starts_with("/* SSI decoder: feeder\n"), "{source}");
+    // How it is read is the profile's, and its times are its family's.
+    bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]).fails(2, &["times", "family"]);
+    let with_family = LAYOUT.replace("frame:", "family: \"ahm36\", frame:");
+    let file = bench.write("with-family.ron", &with_family);
+    let drawn = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
+    assert!(drawn.out.contains("13 clocks, 130.00 µs"), "{drawn:?}");
+    let faster = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing", "--clock", "1000000"]);
+    assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
+}
+
+#[test]
+fn two_layouts_are_compared() {
+    let bench = Bench::new();
+    let (one, other) = (bench.file("one.ron"), bench.file("other.ron"));
+    bench.run(&["save", "ssi", "--layout", "atm60", "-o", &one]);
+    bench.run(&["save", "ssi", "--layout", "atm60,st=12,code=gray,err=fix", "-o", &other]);
+    let same = bench.run(&["diff", &one, &one, "--json"]);
+    let expected = json!({ "equal": true, "differences": [], "compared": 17, "missing": [] });
+    assert_eq!((same.status, same.json()), (Some(0), expected));
+    let differs = bench.run(&["diff", &one, &other, "--json"]);
+    let item = |item: &str, left: &str, right: &str| json!({ "item": item, "left": left, "right": right });
+    let differences =
+        json!([item("clocks", "25", "26"), item("singleturn", "13", "12"), item("code", "binary", "gray")]);
+    let told: Value = serde_json::from_str(&differs.out).unwrap();
+    assert_eq!(told["differences"], differences);
+    let missing = ["name", "clock", "meaning", "active_low", "cleared_by_transfer"].map(|of| format!("errors[0].{of}"));
+    assert_eq!((differs.status, &told["equal"], &told["missing"]), (Some(3), &json!(false), &json!(missing)));
+    let text = bench.run(&["diff", &one, &other]).out;
+    assert!(text.contains("singleturn") && text.contains("13  →  12"), "{text}");
+}
+
+#[test]
+fn the_profiles_that_ship_are_their_families_as_delivered() {
+    let bench = Bench::new();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/ssi");
+    for key in "ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53".split(' ') {
+        let delivered = bench.file("delivered.ron");
+        bench.run(&["save", "ssi", "--layout", key, "-o", &delivered]);
+        let shipped = format!("{folder}/{key}.ron");
+        assert_eq!(bench.run(&["diff", &shipped, &delivered]).status, Some(0), "{key}");
+    }
+    // 12 bits of turns, 12 within one: 5A5h and 91Ah one after the other, and nothing else.
+    let short = format!("{folder}/atm60-tree-24-bit-controller.ron");
+    let words = ["ssi", "encode", "--json", "--layout", &short, "--turns", "0x5A5", "--steps", "0x91A"];
+    assert_eq!(bench.run(&words).json(), json!({ "bits": "010110100101100100011010", "hex": "5A591A" }));
+}
+
+#[test]
+fn families_of_the_users_own_are_known_and_broken_ones_told() {
+    let bench = Bench::new();
+    let folder = bench.path("config/encoder-studio/devices/ssi");
+    fs::create_dir_all(&folder).unwrap();
+    let family = r#"(
+        key: "feeder", name: "Feeder encoder", source: "its label",
+        singleturn: (8, 10, 12), codes: [gray], align: [left], frames: [(up_to: 12, area: Some(13))],
+        times: (monoflop: (10, 20), most_hz: 1000000),
+    )"#;
+    fs::write(folder.join("feeder.ron"), family).unwrap();
+    let encoded = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1", "--json"]);
+    // 1 in Gray on clock 10 of 13.
+    assert_eq!((encoded.json()["bits"].clone(), encoded.err), (json!("0000000001000"), String::new()));
+    fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
+    let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);
+    assert_eq!(told.status, Some(0));
+    for said in ["broken.ron", "line 3, column ", "grey", "the other families are in use"] {
+        assert!(told.err.contains(said), "{said}: {}", told.err);
+    }
+    bench.run(&["ssi", "decode", "--layout", "feder", "0"]).fails(2, &["no family \"feder\"", "feeder ahs36"]);
+}
+
+#[test]
+fn positions_named_twice_have_to_be_the_same() {
+    let bench = Bench::new();
+    let encode = |words: &[&str]| bench.run(&[&["ssi", "encode", "--json", "--layout"], words].concat());
+    // 123h · 4000h + 2A5Bh.
+    let both = ["ahm36", "--position", "4778587", "--turns", "0x123", "--steps", "0x2A5B"];
+    assert_eq!(encode(&both).json(), encode(&both[..3]).json());
+    assert_eq!(encode(&["ahm36", "--position", "4778587", "--turns", "291"]).json()["hex"], "091D4B6");
+    encode(&["ahm36", "--position", "4778587", "--turns", "290", "--steps", "0x2A5B"])
+        .fails(2, &["--position 4778587 is turn 291, step 10843", "--turns 290"]);
+    encode(&["ahm36", "--position", "4778587", "--steps", "99999"]).fails(2, &["step 10843", "--steps 99999"]);
+    encode(&["ahm36", "--turns", "1"]).fails(2, &["--position"]);
+    encode(&["ttk70", "--position", "1", "--steps", "1"]).fails(2, &["a length has no turns and steps"]);
+}
+
+#[test]
+fn what_is_no_layout_is_refused_with_entry_and_reason() {
+    let bench = Bench::new();
+    let file = bench.file("wrong.ron");
+    let cases = [
+        (LAYOUT.replace("clock: 13", "clock: 12"), "frame: clock 12 is asked for by the position and by LAMP"),
+        (LAYOUT.replace("frame:", "preset: 4096, frame:"), "preset: 4096 is not within 0 to 4095"),
+        (LAYOUT.replace("frame:", "frame"), "line 5, column "),
+        (LAYOUT.replace("clocks: 13, ", ""), "frame.clocks is missing"),
+        (LAYOUT.replace("\"gray\"", "\"grey\""), "frame.code must be binary, gray, gray-excess or bcd"),
+        (LAYOUT.replace("clocks: 13", "clocks: 13, clocks: 14"), "clocks stands twice"),
+    ];
+    for (text, reason) in cases {
+        bench.write("wrong.ron", &text);
+        bench.run(&["ssi", "decode", "--layout", &file, "0"]).fails(1, &["wrong.ron", reason]);
+        bench.run(&["diff", &file, &file]).fails(1, &["wrong.ron", reason]);
+        let kept = bench.file("kept.ron");
+        bench.run(&["save", "ssi", "--layout", &file, "-o", &kept]).fails(1, &[reason]);
+        assert!(!bench.path("kept.ron").exists());
+    }
+    let biss = bench.write("kit.ron", super::biss_profile::PROFILE);
+    bench.write("wrong.ron", LAYOUT);
+    bench.run(&["ssi", "decode", "--layout", &biss, "0"]).fails(1, &["biss", "ssi"]);
+    bench.run(&["diff", &file, &biss]).fails(1, &["kit.ron", "biss", "ssi"]);
+    bench.run(&["ssi", "decode", "--layout", &bench.file("none.ron"), "0"]).fails(1, &["none.ron"]);
+    bench.run(&["ssi", "decode", "--layout", "none", "0"]).fails(2, &["no file and no family \"none\""]);
+    bench.write("unknown.ron", LAYOUT.replace("frame:", "family: \"feeder\", frame:"));
+    let unknown = bench.run(&["ssi", "decode", "--layout", &bench.file("unknown.ron"), "0x0"]);
+    assert!(
+        unknown.status == Some(0) && unknown.err.contains("family \"feeder\", which is not known here"),
+        "{unknown:?}"
+    );
+}
+
+#[test]
+fn what_ssi_encoders_do_not_have_is_said_with_what_there_is() {
+    let bench = Bench::new();
+    let file = bench.write("feeder.ron", LAYOUT);
+    let out = bench.file("out.ron");
+    let sim = "--link=sim:";
+    let cases: [(&[&str], &str); 11] = [
+        (&["identify", "ssi", sim], "type label"),
+        (&["read", "ssi", "0x10", sim], "registers"),
+        (&["write", "ssi", "0x10", "1", "--yes", sim], "its maker's own tool"),
+        (&["do", "ssi", "preset", sim], "its maker's own tool"),
+        (&["restore", &file, "--yes", sim], "its maker's own tool"),
+        (&["verify", &file, sim], "diff FILE FILE"),
+        (&["diff", &file, sim], "diff FILE FILE"),
+        (&["decode", "ssi", "00"], "ssi decode --layout"),
+        (&["save", "ssi", "-o", &out], "--layout FILE|SPEC"),
+        (&["save", "ssi", "--layout", "ahs36", "-o", &out, sim], "no --link"),
+        (&["save", "biss", "--layout", "ahs36", "-o", &out, sim], "--layout is for ssi devices"),
+    ];
+    for (words, said) in cases {
+        bench.run(words).fails(2, &[said]);
+    }
+    assert!(!bench.path("out.ron").exists());
+}
