@@ -7,7 +7,7 @@ mod tests;
 mod words;
 
 pub use moving::moved;
-pub use words::{cell, field, handle, hint, short, value};
+pub use words::{bare, cell, clocks, field, handle, hint, name, short, value};
 
 use crate::protocol::ssi::{Coded, Flags, Layout, Meaning, Range, Role, Word};
 
@@ -231,6 +231,16 @@ impl Field {
     /// How many clocks it has.
     pub const fn count(&self) -> u8 {
         self.last.saturating_sub(self.first) + 1
+    }
+
+    /// It carries nothing.
+    pub const fn is_zeros(&self) -> bool {
+        matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
+    }
+
+    /// It is a bit of its own, however many stand beside it.
+    pub const fn is_single(&self) -> bool {
+        matches!(self.kind, Kind::Error(_) | Kind::Parity)
     }
 }
 

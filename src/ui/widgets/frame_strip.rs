@@ -12,9 +12,10 @@
 mod place;
 
 use egui::accesskit::Role;
-use egui::{Color32, CornerRadius, FontId, Galley, Painter, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
+use egui::{Color32, FontId, Galley, Painter, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2};
 use std::sync::Arc;
 
+use super::bit_cell::BitCell;
 use super::series;
 use crate::signal::quality::Verdict;
 use crate::ui::{Skin, controls};
@@ -150,21 +151,11 @@ fn cells(
     bits: impl Iterator<Item = Option<bool>>,
 ) {
     let ink = field.ink(skin);
-    let size = if cell < 12.0 { skin.sizes.caption } else { skin.sizes.body };
-    let corners = CornerRadius::same(2);
     for (at, bit) in bits.enumerate() {
         let left = rect.left() + piece.offset(at, field.bits, cell);
         let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL));
-        let (strength, colour) = match (field.lit, bit) {
-            (Some(Verdict::Warn | Verdict::Fault), _) => (1.0, Color32::from(skin.palette.on_bad)),
-            (_, Some(true)) => (0.4, skin.palette.text.into()),
-            (_, Some(false)) => (0.14, skin.palette.text.into()),
-            (_, None) => (0.0, skin.palette.muted.into()),
-        };
-        painter.rect_filled(own, corners, skin.palette.sunken);
-        painter.rect_filled(own, corners, ink.gamma_multiply(strength));
-        let digit = bit.map_or("·", |bit| if bit { "1" } else { "0" });
-        painter.text(own.center(), egui::Align2::CENTER_CENTER, digit, FontId::monospace(size), colour);
+        let alarm = matches!(field.lit, Some(Verdict::Warn | Verdict::Fault));
+        BitCell { ink, bit, blank: "·", alarm }.paint(painter, skin, own);
     }
     let end = rect.left() + piece.offset(piece.bits.saturating_sub(1), field.bits, cell) + cell - 1.0;
     let y = rect.top() + CELL + 1.0 + BAR / 2.0;

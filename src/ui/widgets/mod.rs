@@ -1,6 +1,8 @@
 //! Widgets that egui does not have. Each draws what it is given, keeps nothing but its own selection, and says what the
 //! user wants; none knows a device. They share how the keyboard's place and a series' colour look.
 
+mod bit_cell;
+mod bit_strip;
 mod chart;
 mod field_map;
 mod frame_strip;
@@ -15,6 +17,7 @@ use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
 
 use super::Skin;
 
+pub use bit_strip::{BitStrip, StripEvent, bit_strip};
 pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};

@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
+mod bit_strip;
 mod field_map;
 mod frame_strip;
 mod hex_editor;

@@ -39,24 +39,47 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
         Kind::Turns => count("ssi.strip_turns"),
         Kind::Steps => count("ssi.strip_steps"),
         Kind::Position => count("ssi.strip_position"),
-        Kind::Error(index) => Text::new("ssi.strip_name").with("name", name(strip, index)),
+        Kind::Error(index) => Text::new("ssi.strip_name").with("name", error_name(strip, index)),
         Kind::Parity => Text::new("ssi.strip_parity"),
         Kind::Again => count("ssi.strip_again"),
     }
 }
 
-/// The same for narrow places: the short name that exports give it too, with its number of bits.
+/// The same below the field itself, where zeros stand is to be seen.
+pub fn name(strip: &Strip, own: &Field) -> Text {
+    if own.is_zeros() { Text::new("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
+}
+
+/// The same for narrow places: the short name with its number of bits.
 pub fn short(strip: &Strip, field: &Field) -> Text {
-    let (id, name) = match field.kind {
-        Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => ("ssi.strip_short", "0".to_owned()),
-        Kind::Turns => ("ssi.strip_short", "MT".to_owned()),
-        Kind::Steps => ("ssi.strip_short", "ST".to_owned()),
-        Kind::Position => ("ssi.strip_short", "P".to_owned()),
-        Kind::Again => ("ssi.strip_short", "=".to_owned()),
-        Kind::Error(index) => ("ssi.strip_name", name(strip, index)),
-        Kind::Parity => ("ssi.strip_name", "PAR".to_owned()),
+    let id = match field.is_zeros() {
+        true => "ssi.strip_short_zeros",
+        false if field.is_single() => "ssi.strip_name",
+        false => "ssi.strip_short",
     };
-    Text::new(id).with("name", name).with("count", field.count())
+    Text::new(id).with("name", bare(strip, field)).with("count", field.count())
+}
+
+/// The short name of a field, which exports give it too.
+pub fn bare(strip: &Strip, field: &Field) -> String {
+    match field.kind {
+        _ if field.is_zeros() => "0".to_owned(),
+        Kind::Turns => "MT".to_owned(),
+        Kind::Steps => "ST".to_owned(),
+        Kind::Position => "P".to_owned(),
+        Kind::Again => "=".to_owned(),
+        Kind::Error(index) => error_name(strip, index),
+        _ => "PAR".to_owned(),
+    }
+}
+
+/// Where a field stands.
+pub fn clocks(field: &Field) -> Text {
+    if field.first == field.last {
+        Text::new("ssi.strip_on_clock").with("clock", field.first)
+    } else {
+        Text::new("ssi.strip_clocks").with("first", field.first).with("last", field.last)
+    }
 }
 
 /// What a handle is called.
@@ -73,7 +96,7 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
         Handle::GapEnd => "ssi.strip_gap_end",
         Handle::FrameEnd => "ssi.strip_frame_end",
         Handle::Position => "ssi.strip_whole",
-        Handle::Error(index) => return Text::new("ssi.strip_error_bit").with("name", name(strip, index)),
+        Handle::Error(index) => return Text::new("ssi.strip_error_bit").with("name", error_name(strip, index)),
         Handle::Parity => "ssi.strip_parity_bit",
     })
 }
@@ -108,7 +131,7 @@ pub fn hint(handle: Handle) -> Text {
     })
 }
 
-fn name(strip: &Strip, index: usize) -> String {
+fn error_name(strip: &Strip, index: usize) -> String {
     strip.layout().role_name(Role::Error(index))
 }
 
@@ -124,7 +147,7 @@ fn meaning(strip: &Strip, index: usize) -> Text {
 fn error(strip: &Strip, index: usize) -> Text {
     let low = strip.layout().descriptor().errors.get(index).is_some_and(|bit| bit.active_low);
     let id = if low { "ssi.strip_error_low" } else { "ssi.strip_error" };
-    Text::new(id).with("name", name(strip, index)).with_text("what", meaning(strip, index))
+    Text::new(id).with("name", error_name(strip, index)).with_text("what", meaning(strip, index))
 }
 
 fn parity(strip: &Strip) -> Text {

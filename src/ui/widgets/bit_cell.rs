@@ -1,0 +1,37 @@
+//! A bit in its cell, as every strip of bits shows it: in the colour of its field, a one stronger than a zero.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
+
+use crate::ui::Skin;
+
+/// A cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BitCell<'a> {
+    /// The colour of its field.
+    pub(super) ink: Color32,
+    /// The bit; `None`: not known.
+    pub(super) bit: Option<bool>,
+    /// What stands in the place of a bit that is not known.
+    pub(super) blank: &'a str,
+    /// It tells of something wrong: filled with its colour.
+    pub(super) alarm: bool,
+}
+
+impl BitCell<'_> {
+    /// Paints it.
+    pub(super) fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
+        let palette = skin.palette;
+        let corners = CornerRadius::same(2);
+        let (strength, colour) = match (self.alarm, self.bit) {
+            (true, _) => (1.0, Color32::from(palette.on_bad)),
+            (_, Some(true)) => (0.4, palette.text.into()),
+            (_, Some(false)) => (0.14, palette.text.into()),
+            (_, None) => (0.14, palette.muted.into()),
+        };
+        painter.rect_filled(rect, corners, palette.sunken);
+        painter.rect_filled(rect, corners, self.ink.gamma_multiply(strength));
+        let digit = self.bit.map_or(self.blank, |bit| if bit { "1" } else { "0" });
+        let size = if rect.width() < 11.0 || self.bit.is_none() { skin.sizes.caption } else { skin.sizes.body };
+        painter.text(rect.center(), Align2::CENTER_CENTER, digit, FontId::monospace(size), colour);
+    }
+}

@@ -1,0 +1,176 @@
+//! Where the cells of a bit strip are: on one line where there is room, else on lines of 32, 16 or 8.
+
+use egui::{Pos2, Rect, Vec2, pos2};
+
+/// Widths that a cell may have; below the least the strip goes to another line.
+const LEAST: f32 = 17.0;
+const MOST: f32 = 28.0;
+/// Heights of the numbers, of a cell, of the lane with the brackets, and of a line of names.
+const NUMBERS: f32 = 15.0;
+const CELL: f32 = 26.0;
+const LANE: f32 = 16.0;
+pub(super) const NAME: f32 = 15.0;
+/// Room beside the cells, in which the first and the last handle stand.
+const MARGIN: f32 = 10.0;
+const GAP: f32 = 10.0;
+
+/// Cells from left to right and from line to line.
+#[derive(Clone, Debug)]
+pub(super) struct Rows {
+    origin: Pos2,
+    /// Width of a cell with the gap behind it.
+    pub(super) cell: f32,
+    columns: u8,
+    /// The top of each line, with its end behind the last.
+    tops: Vec<f32>,
+}
+
+impl Rows {
+    /// So many clocks in so much room.
+    pub(super) fn new(room: f32, clocks: u8) -> Self {
+        let room = (room - 2.0 * MARGIN).max(0.0);
+        let count = f32::from(clocks.max(1));
+        if count * LEAST <= room {
+            let cell = (room / count).floor().min(MOST);
+            // More clocks have room beside them while the end of the frame is dragged.
+            let columns = (room / cell).floor().min(64.0) as u8;
+            return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
+        }
+        let columns = [32_u8, 16].into_iter().find(|columns| f32::from(*columns) * LEAST <= room).unwrap_or(8);
+        let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
+        Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() }
+    }
+
+    /// Where the first cell of each line begins.
+    pub(super) fn left(&self) -> f32 {
+        self.origin.x
+    }
+
+    /// Lines of so many clocks.
+    pub(super) fn count(&self, clocks: u8) -> usize {
+        usize::from(clocks.max(1).div_ceil(self.columns))
+    }
+
+    /// With its lines where so many lines of names below each leave them, and its upper left corner there.
+    pub(super) fn at(mut self, origin: Pos2, names: &[usize]) -> Self {
+        self.origin = origin + Vec2::new(MARGIN, 0.0);
+        let mut top = 0.0;
+        self.tops = vec![top];
+        for names in names {
+            top += NUMBERS + CELL + LANE + *names as f32 * NAME + GAP;
+            self.tops.push(top);
+        }
+        self
+    }
+
+    /// What all of it takes.
+    pub(super) fn size(&self, clocks: u8) -> Vec2 {
+        let columns = f32::from(clocks.min(self.columns));
+        Vec2::new(columns * self.cell + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
+    }
+
+    /// The line of a clock.
+    pub(super) fn line(&self, clock: u8) -> usize {
+        usize::from(clock.saturating_sub(1) / self.columns)
+    }
+
+    fn top(&self, line: usize) -> f32 {
+        self.origin.y + self.tops.get(line).or(self.tops.last()).copied().unwrap_or(0.0)
+    }
+
+    /// The cell of a clock.
+    pub(super) fn cell(&self, clock: u8) -> Rect {
+        let column = f32::from(clock.saturating_sub(1) % self.columns);
+        let at = pos2(self.origin.x + column * self.cell, self.top(self.line(clock)) + NUMBERS);
+        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL))
+    }
+
+    /// The middle of its number.
+    pub(super) fn number(&self, clock: u8) -> Pos2 {
+        let cell = self.cell(clock);
+        pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
+    }
+
+    /// The cells from one clock to another, one rectangle a line.
+    pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
+        let mut runs: Vec<Rect> = Vec::new();
+        for clock in first..=last {
+            let cell = self.cell(clock);
+            match runs.last_mut().filter(|_| clock > first && self.line(clock) == self.line(clock - 1)) {
+                Some(run) => *run = run.union(cell),
+                None => runs.push(cell),
+            }
+        }
+        runs
+    }
+
+    /// The lane below a run of cells.
+    pub(super) fn lane(run: Rect) -> Rect {
+        Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
+    }
+
+    /// The edge behind a clock: of that clock's own cell, or of the next one's where something begins there.
+    pub(super) fn edge(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
+        let begins = clock == 0 || begins && clock < clocks;
+        let cell = self.cell(if begins { clock + 1 } else { clock });
+        let x = if begins { cell.left() - 0.5 } else { cell.right() + 0.5 };
+        Rect::from_min_max(pos2(x, cell.top()), pos2(x, cell.bottom() + LANE))
+    }
+
+    /// The clock behind which the edge is that is nearest to the pointer.
+    pub(super) fn boundary(&self, pos: Pos2, clocks: u8) -> u8 {
+        let column = ((pos.x - self.origin.x) / self.cell).round().clamp(0.0, f32::from(self.columns));
+        self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8)
+    }
+
+    /// The clock under the pointer, or the one nearest to it in its line.
+    pub(super) fn clock(&self, pos: Pos2, clocks: u8) -> u8 {
+        let column = ((pos.x - self.origin.x) / self.cell).floor().clamp(0.0, f32::from(self.columns) - 1.0);
+        self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8 + 1)
+    }
+
+    fn line_at(&self, pos: Pos2, clocks: u8) -> u8 {
+        let lines = self.count(clocks);
+        (1..lines).rev().find(|line| pos.y >= self.top(*line) - GAP / 2.0).map_or(0, |line| line as u8)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_shrink_to_a_least_width_and_wrap_then() {
+        // 25 · 28 + 20 = 720; 25 · 17 + 20 = 445; 32 · 17 + 20 = 564.
+        for (room, clocks, cell, lines) in [
+            (1000.0, 25, 28.0, 1),
+            (720.0, 25, 28.0, 1),
+            (719.0, 25, 27.0, 1),
+            (445.0, 25, 17.0, 1),
+            (444.0, 25, 26.0, 2),
+        ] {
+            let rows = Rows::new(room, clocks);
+            assert_eq!((rows.cell, rows.count(clocks)), (cell, lines), "{clocks} clocks in {room}");
+        }
+        for (room, columns) in [(1108.0, 64), (1107.0, 32), (564.0, 32), (563.0, 16), (292.0, 16), (291.0, 8)] {
+            let rows = Rows::new(room, 64);
+            assert_eq!(rows.columns, columns, "{room}");
+            let rows = rows.at(Pos2::ZERO, &vec![1; 64 / usize::from(columns)]);
+            assert!(rows.size(64).x <= room);
+        }
+    }
+
+    #[test]
+    fn pointer_and_places_agree() {
+        let rows = Rows::new(600.0, 64).at(pos2(30.0, 40.0), &[1, 3]);
+        for clock in 1..=64 {
+            let cell = rows.cell(clock);
+            assert_eq!(rows.clock(cell.center(), 64), clock);
+            assert_eq!(rows.boundary(rows.edge(clock, false, 64).center(), 64), clock);
+            assert_eq!(rows.boundary(rows.edge(clock - 1, true, 64).center(), 64), clock - 1);
+        }
+        assert_eq!(rows.runs(30, 35).len(), 2);
+        assert_eq!(rows.clock(pos2(-500.0, -500.0), 64), 1);
+        assert_eq!(rows.boundary(pos2(5000.0, 5000.0), 64), 64);
+    }
+}
