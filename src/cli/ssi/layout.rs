@@ -9,7 +9,7 @@ use crate::cli::profiles::load;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::profile::ssi::SsiProfile;
-use crate::protocol::ssi::{Families, Layout, Settings, Times, from_linuxcnc};
+use crate::protocol::ssi::{Families, Family, Layout, Resolved, Settings, Times, from_linuxcnc};
 use crate::store::Store;
 
 /// A layout to work with.
@@ -60,13 +60,33 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let profile = load(path)?.into_ssi().map_err(told)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
-    let family = profile.family.as_deref().map(|key| (key, families.named(key)));
-    if let Some((key, None)) = family {
-        output.remark(&format!("{spec} names the family {key:?}, which is not known here: its times are not known."));
+    let family = profile.family.as_deref().and_then(|key| families.named(key));
+    match (profile.family.as_deref(), family) {
+        (Some(key), None) => {
+            output
+                .remark(&format!("{spec} names the family {key:?}, which is not known here: its times are not known."));
+        }
+        (_, Some(family)) => beside_family(output, family, &profile),
+        (None, None) => {}
     }
-    let times = family.and_then(|(_, family)| family).map(|family| family.times);
+    let times = family.map(|family| family.times);
     let name = if profile.name.is_empty() { spec } else { &profile.name };
     Ok(Chosen { title: name.to_owned(), profile, layout, times })
+}
+
+/// What a frame that was written down has beyond its family.
+fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
+    let settings = family.settings_of(&profile.descriptor);
+    match settings.and_then(|settings| settings.resolve(family).ok()) {
+        Some(resolved) => advise(output, &resolved),
+        None => output.remark(&format!("No setting of {} makes this frame; only its times are used.", family.name)),
+    }
+}
+
+fn advise(output: &Output, resolved: &Resolved) {
+    for advice in &resolved.advice {
+        output.remark(&explain::ssi::advice(advice).terminal());
+    }
 }
 
 fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
@@ -77,9 +97,7 @@ fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen>
         return Err(Failure::Usage(format!("--layout: there is no file and no family {key:?}; families: {known}")));
     };
     let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
-    for advice in &resolved.advice {
-        output.remark(&explain::ssi::advice(advice).terminal());
-    }
+    advise(output, &resolved);
     let profile = SsiProfile::of_family(family, &resolved);
     Ok(Chosen { profile, layout: resolved.layout, times: Some(family.times), title: spec.to_owned() })
 }

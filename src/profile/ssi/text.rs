@@ -28,7 +28,8 @@ const ONES: &str = "ones";
 impl SsiProfile {
     pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let name = entries.optional("name", TEXT)?.unwrap_or_default();
-        let family = entries.optional("family", TEXT)?;
+        // Keys have small letters; a person may write the type's name.
+        let family = entries.optional("family", TEXT)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = Kept::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;

@@ -32,6 +32,8 @@ fn a_profile_written_by_hand_is_read() {
     assert_eq!(short.descriptor, of_family("ahm36").descriptor, "what is left out is as usual");
     assert_eq!((short.name.as_str(), &short.family), ("", &None));
     assert_eq!((short.direction, short.preset, short.reading), Default::default());
+    let named = profile(&SHORT.replace("frame:", "family: \"AHM36\", frame:"));
+    assert_eq!(named, of_family("ahm36"));
 }
 
 /// Everything that a frame can have, at once.
