@@ -33,8 +33,8 @@ pub(super) struct Arguments {
 /// Which commands are for which kinds of device.
 const KINDS: &str = "\
 Kinds of device: hiperface, biss and ssi; diff, verify and restore find it in the profile. find is for hiperface alone; do
-has other actions for each (help do). Of SSI encoders save and diff keep layouts, and ssi explains frames, offline: none is
-connected. Without hardware: --link sim:, as in
+has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its frame is
+made, and ssi explains frames offline. Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -67,7 +67,7 @@ pub(super) enum Command {
     /// Who is there.
     Identify(Device),
     /// Errors and warnings, decoded; of hiperface the whole error queue.
-    Status(Device),
+    Status(Status),
     /// The position.
     Position(Position),
     /// One value: a data field, a register, a setting.
@@ -125,9 +125,21 @@ pub(super) struct Find {
 }
 
 #[derive(Args)]
+pub(super) struct Status {
+    /// The kind of device.
+    pub(super) device: DeviceKind,
+    /// ssi: how its frame is made, a profile or a family with its settings (help ssi decode says which).
+    #[arg(long, value_name = "FILE|SPEC")]
+    pub(super) layout: Option<String>,
+}
+
+#[derive(Args)]
 pub(super) struct Position {
     /// The kind of device.
     pub(super) device: DeviceKind,
+    /// ssi: how its frame is made, a profile or a family with its settings (help ssi decode says which).
+    #[arg(long, value_name = "FILE|SPEC")]
+    pub(super) layout: Option<String>,
     /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) count: Option<u64>,
@@ -346,6 +358,10 @@ pub(super) struct Simulate {
     /// biss: be an adapter in front of the encoder, which speaks the bridge protocol, instead of its UBICOM line.
     #[arg(long)]
     pub(super) bridge: bool,
+    /// ssi: the encoder behind the adapter, a profile or a family with its settings (help ssi decode says which); without
+    /// it atm60,code=gray.
+    #[arg(long, value_name = "FILE|SPEC")]
+    pub(super) layout: Option<String>,
     /// Seed of the faults.
     #[arg(long)]
     pub(super) seed: Option<u64>,

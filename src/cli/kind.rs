@@ -1,7 +1,7 @@
 //! What the command line does with a kind of device, one function a command. What a kind does not have is refused as
 //! wrong usage.
 
-use super::args::{Common, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Write};
+use super::args::{Common, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result, biss, hiperface, ssi};
@@ -13,7 +13,7 @@ pub(super) struct Kind {
     pub(super) name: &'static str,
     pub(super) find: fn(&Common, &Output, &Find) -> Result,
     pub(super) identify: fn(&Common, &Output) -> Result,
-    pub(super) status: fn(&Common, &Output) -> Result,
+    pub(super) status: fn(&Common, &Output, &Status) -> Result,
     pub(super) position: fn(&Common, &Output, &Position) -> Result,
     pub(super) read: fn(&Common, &Output, &str) -> Result,
     pub(super) save: fn(&Common, &Output, &Save) -> Result,

@@ -137,21 +137,38 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Ports => ports::ports(&output),
         Command::Find(find) => (kind::of(find.device).find)(common, &output, &find),
         Command::Identify(on) => (kind::of(on.device).identify)(common, &output),
-        Command::Status(on) => (kind::of(on.device).status)(common, &output),
-        Command::Position(position) => (kind::of(position.device).position)(common, &output, &position),
-        Command::Read(read) => (kind::of(read.device).read)(common, &output, &read.item),
-        Command::Save(save) if save.layout.is_some() && save.device != DeviceKind::Ssi => {
-            Err(usage("--layout is for ssi devices; others tell themselves what is to be saved"))
+        Command::Status(status) => {
+            no_layout(status.layout.as_ref(), status.device)?;
+            (kind::of(status.device).status)(common, &output, &status)
         }
-        Command::Save(save) => (kind::of(save.device).save)(common, &output, &save),
+        Command::Position(position) => {
+            no_layout(position.layout.as_ref(), position.device)?;
+            (kind::of(position.device).position)(common, &output, &position)
+        }
+        Command::Read(read) => (kind::of(read.device).read)(common, &output, &read.item),
+        Command::Save(save) => {
+            no_layout(save.layout.as_ref(), save.device)?;
+            (kind::of(save.device).save)(common, &output, &save)
+        }
         Command::Write(write) => (kind::of(write.device).write)(common, &output, &write),
         Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),
         Command::Decode(decode) => (kind::of(decode.protocol).decode)(&output, &decode.hex),
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
         Command::Ssi(command) => ssi::ssi(&output, &command),
-        Command::Simulate(simulate) => simulate::simulate(&simulate),
+        Command::Simulate(simulate) => {
+            no_layout(simulate.layout.as_ref(), simulate.device)?;
+            simulate::simulate(&simulate)
+        }
         Command::Diff(diff) => profiles::diff(common, &output, &diff),
         Command::Verify(verify) => profiles::verify(common, &output, &verify.file),
         Command::Restore(restore) => profiles::restore(common, &output, &restore),
+    }
+}
+
+/// Other devices tell themselves how what they send is made.
+fn no_layout(layout: Option<&String>, device: DeviceKind) -> Result<()> {
+    match layout {
+        Some(_) if device != DeviceKind::Ssi => Err(usage("--layout is for ssi devices; others tell that themselves")),
+        _ => Ok(()),
     }
 }

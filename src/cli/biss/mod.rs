@@ -29,7 +29,7 @@ pub(super) const COMMANDS: Kind = Kind {
     name: KIND,
     find: |_, _, _| lacking("find", KIND),
     identify: inspect::identify,
-    status: inspect::status,
+    status: |common, output, _| inspect::status(common, output),
     position: inspect::position,
     read: inspect::read,
     save: profiles::save,

@@ -22,7 +22,7 @@ pub(super) const COMMANDS: Kind = Kind {
     name: KIND,
     find: inspect::find,
     identify: inspect::identify,
-    status: inspect::status,
+    status: |common, output, _| inspect::status(common, output),
     position: inspect::position,
     read: inspect::read,
     save: profiles::save,

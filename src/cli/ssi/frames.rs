@@ -15,7 +15,7 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     // All are looked at before any is told.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
-        let told = Told { layout: &layout, frame, reading: layout.decode(frame) };
+        let told = Told::new(&layout, frame);
         output.show(&told.json(), &told.text())?;
     }
     Ok(Done::Well)
@@ -50,15 +50,23 @@ fn frame(layout: &Layout, text: &str) -> Result<u64> {
 }
 
 /// A frame with what it says.
-struct Told<'a> {
-    layout: &'a Layout,
-    frame: u64,
-    reading: Reading,
+pub(super) struct Told<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) frame: u64,
+    pub(super) reading: Reading,
 }
 
-impl Told<'_> {
+impl<'a> Told<'a> {
+    pub(super) fn new(layout: &'a Layout, frame: u64) -> Self {
+        Told { layout, frame, reading: layout.decode(frame) }
+    }
+
+    pub(super) fn is_valid(&self) -> bool {
+        self.layout.is_valid(self.reading)
+    }
+
     /// The position, if the bits are one, and what it is.
-    fn place(&self) -> Option<(u64, Place)> {
+    pub(super) fn place(&self) -> Option<(u64, Place)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.has(Flags::CODE);
         (!is_none).then(|| (self.reading.position, range.place(self.reading.position)))
@@ -68,7 +76,7 @@ impl Told<'_> {
         format!("{:0width$b}", self.frame, width = usize::from(self.layout.clocks()))
     }
 
-    fn names(&self, meaning: Meaning) -> Vec<String> {
+    pub(super) fn names(&self, meaning: Meaning) -> Vec<String> {
         let findings = self.layout.findings(self.reading);
         findings.iter().filter(|finding| finding.meaning() == meaning).map(name).collect()
     }
@@ -86,7 +94,7 @@ impl Told<'_> {
         if let Some((_, Place::Length { millimetres })) = place {
             json.insert("millimetres".to_owned(), json!(millimetres));
         }
-        json.insert("valid".to_owned(), json!(self.layout.is_valid(self.reading)));
+        json.insert("valid".to_owned(), json!(self.is_valid()));
         json.insert("errors".to_owned(), json!(self.names(Meaning::Invalid)));
         json.insert("warnings".to_owned(), json!(self.names(Meaning::Warning)));
         Json::Object(json)
@@ -136,7 +144,7 @@ fn fields(layout: &Layout, frame: u64) -> String {
 }
 
 /// What a script calls a finding.
-fn name(finding: &Finding) -> String {
+pub(super) fn name(finding: &Finding) -> String {
     match finding {
         Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
         Finding::StuckHigh { .. } => "line stuck high".to_owned(),

@@ -3,28 +3,32 @@
 mod export;
 mod frames;
 mod layout;
+mod live;
 mod profiles;
+mod run;
 
-use super::args::Ssi;
+use super::args::{Simulate, Ssi, SsiLayout};
 use super::kind::Kind;
 use super::output::Output;
+use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
 use crate::protocol::ssi::KIND;
+use crate::sim::bridge::{Adapter, Config, SsiEncoder};
 
 /// What can be done with SSI encoders. They send their position and have no memory.
 pub(super) const COMMANDS: Kind = Kind {
     name: KIND,
     find: |_, _, _| lacking("find", "connect it to an adapter of its own"),
     identify: |_, _| lacking("identify", "its type label says who it is"),
-    status: |_, _| lacking("status", "its error bits come with its frames; ssi decode explains them"),
-    position: |_, _, _| lacking("position", "ssi decode explains its frames"),
+    status: live::status,
+    position: live::position,
     read: |_, _, _| lacking("read", "there are no registers in it"),
     save: profiles::save,
     write: |_, _, _| lacking("write", SET),
     act: |_, _, _| lacking("do", SET),
     decode: |_, _| lacking("decode", "use ssi decode --layout FILE|SPEC FRAME"),
     restore: |_, _, _, _| lacking("restore", SET),
-    simulated: |_| refuse("simulate", "use simulate biss --bridge --set ssi=SPEC: such an encoder is behind it"),
+    simulated,
     present: |_, _| refuse("reading a profile from a link", "compare two files with diff FILE FILE"),
     compare: profiles::compare,
     other_device: |_, _| None,
@@ -39,6 +43,24 @@ pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
         Ssi::Encode(arguments) => frames::encode(output, arguments),
         Ssi::Export(arguments) => export::export(output, arguments),
     }
+}
+
+/// The adapter before a virtual encoder that sends the frames of `--layout`.
+fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    let settings = settings(arguments)?;
+    let encoder = match &arguments.layout {
+        Some(_) if settings.iter().any(|(name, _)| name == "ssi") => {
+            return Err(Failure::Usage("--layout and --set ssi= say the same: give one of them".to_owned()));
+        }
+        Some(spec) => {
+            let chosen = layout::choose(&Output::new(false), &SsiLayout { spec: spec.clone() })?;
+            let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
+            Some(SsiEncoder { layout: chosen.layout, direction, preset })
+        }
+        None => None,
+    };
+    let config = Config::with_encoder(&settings, encoder).map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok(Box::new(Adapter::new(&config)))
 }
 
 /// A command that SSI encoders do not have, and what there is instead.

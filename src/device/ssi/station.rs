@@ -26,10 +26,10 @@ pub struct Asking {
 }
 
 impl Default for Asking {
-    /// A word of 25 clocks, slow enough for 50 m of cable (SICK SSI description, cable lengths), with a pause behind which
-    /// every family has its next value (reference section 5).
+    /// A word of 25 clocks, slow enough for 50 m of cable (SICK SSI description 2.7), with a pause behind which every family
+    /// is ready.
     fn default() -> Self {
-        Asking { clocks: 25, clock_hz: 400_000, pause_us: 250 }
+        Asking { clocks: 25, clock_hz: 400_000, pause_us: 200 }
     }
 }
 
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn a_line_is_read_from_its_parameters() {
         let usual = station("").unwrap();
-        assert_eq!((usual.asking, usual.supply), (Asking { clocks: 25, clock_hz: 400_000, pause_us: 250 }, None));
+        assert_eq!((usual.asking, usual.supply), (Asking { clocks: 25, clock_hz: 400_000, pause_us: 200 }, None));
         assert_eq!(usual.line.margin, Duration::from_millis(100));
         let own = station("margin=5&clock=1500000&pause=30&voltage=24").unwrap();
         assert_eq!(own.asking, Asking { clocks: 25, clock_hz: 1_500_000, pause_us: 30 });

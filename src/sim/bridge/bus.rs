@@ -3,11 +3,11 @@
 
 use fastrand::Rng;
 
-use super::config::{Config, Line};
+use super::config::{Config, Line, SsiEncoder};
 use super::trouble::Trouble;
 use crate::protocol::biss::Reading;
 use crate::protocol::bridge::BissStatus;
-use crate::protocol::ssi::{Flags, Resolved};
+use crate::protocol::ssi::Flags;
 use crate::sim::biss::Encoder;
 use crate::units::Moment;
 
@@ -17,7 +17,7 @@ pub(super) struct Bus {
     pub(super) encoder: Encoder,
     line: Line,
     noise: f64,
-    ssi: Option<Resolved>,
+    ssi: Option<SsiEncoder>,
     troubles: Vec<Trouble>,
     /// The last SSI word.
     transferred: Option<Moment>,
@@ -70,7 +70,7 @@ impl Bus {
     }
 
     /// The frame of an SSI encoder on the same shaft.
-    fn ssi_frame(&self, ssi: &Resolved, reading: &Reading, at: Moment) -> u64 {
+    fn ssi_frame(&self, ssi: &SsiEncoder, reading: &Reading, at: Moment) -> u64 {
         let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
         if let Some(word) = happening().find_map(Trouble::word) {
             return word;

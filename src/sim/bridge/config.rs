@@ -3,7 +3,7 @@
 
 use super::trouble::Trouble;
 use crate::protocol::bridge::VERSION;
-use crate::protocol::ssi::{Families, Resolved, Settings};
+use crate::protocol::ssi::{Direction, Families, Layout, Settings};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, biss};
 
@@ -15,13 +15,24 @@ pub struct Config {
     pub(super) rpm: f64,
     pub(super) line: Line,
     pub(super) noise: f64,
-    /// The frame of an SSI encoder on the same shaft, with its direction and preset; none: there is no such encoder.
-    pub(super) ssi: Option<Resolved>,
+    /// An SSI encoder on the same shaft; none: there is no such encoder.
+    pub(super) ssi: Option<SsiEncoder>,
     /// What its frames say of it beside the position.
     pub(super) troubles: Vec<Trouble>,
     pub(super) switched_supply: bool,
     pub(super) uart: bool,
     pub(super) version: u8,
+}
+
+/// A virtual SSI encoder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SsiEncoder {
+    /// Its frame.
+    pub layout: Layout,
+    /// Which way it counts.
+    pub direction: Direction,
+    /// Its position at the shaft's zero, within the frame's range.
+    pub preset: u64,
 }
 
 /// The wires between adapter and encoder.
@@ -71,7 +82,16 @@ impl Config {
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        Self::with_encoder(pairs, None)
+    }
+
+    /// The same, with this SSI encoder where `pairs` name none.
+    ///
+    /// # Errors
+    /// As [`from_pairs`](Self::from_pairs).
+    pub fn with_encoder(pairs: &[(String, String)], encoder: Option<SsiEncoder>) -> Result<Self, ConfigError> {
         let mut config = Config::default();
+        config.ssi = encoder.or(config.ssi);
         let mut others = Vec::new();
         let mut troubles = "";
         for (key, value) in pairs {
@@ -132,10 +152,11 @@ const TROUBLES: &str = "ssi-error";
 /// 12 bits of turns, 13 within one.
 const DELIVERED: &str = "atm60,code=gray";
 
-fn ssi(text: &str) -> Option<Resolved> {
+fn ssi(text: &str) -> Option<SsiEncoder> {
     let (key, settings) = Settings::parse(text).ok()?;
     let families = Families::built_in();
-    settings.resolve(families.named(&key)?).ok()
+    let resolved = settings.resolve(families.named(&key)?).ok()?;
+    Some(SsiEncoder { layout: resolved.layout, direction: resolved.direction, preset: resolved.preset })
 }
 
 #[cfg(test)]

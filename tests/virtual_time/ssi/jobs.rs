@@ -30,7 +30,7 @@ fn who_the_adapter_is_and_how_words_are_taken() {
     let identity = hello(&mut stand);
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.has(Capabilities::SSI));
-    assert_eq!(identity.asking, Asking { clocks: 25, clock_hz: 700_000, pause_us: 250 });
+    assert_eq!(identity.asking, Asking { clocks: 25, clock_hz: 700_000, pause_us: 200 });
     // 60 MHz by 86 is the nearest clock below.
     assert_eq!(identity.clock_hz, 697_674);
     // 300 mW at 12 V.
