@@ -27,5 +27,7 @@ mod cli_status;
 mod foreign;
 mod source;
 mod ssi_export;
+mod ssi_live;
 mod ssi_profiles;
+mod ssi_simulate;
 mod support;

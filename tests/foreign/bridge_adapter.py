@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""An adapter that speaks the bridge protocol on a TCP port or a pseudo terminal, with the kit encoder behind it, for tests
-against a process that is not our program.
+"""An adapter that speaks the bridge protocol on a TCP port or a pseudo terminal, with the kit encoder and an SSI encoder on
+its shaft behind it, for tests against a process that is not our program.
 
-Written from protocol/bridge.md and biss.md alone, with the Python standard library alone; what the encoder does is in
-kit.py. It prints one line "ready ADDRESS" and serves one client after the other until SIGTERM (or the end of stdin,
+Written from protocol/bridge.md, biss.md and ssi.md alone, with the Python standard library alone; what the encoder does is in
+kit.py, what an SSI word is in ssi.py. It prints one line "ready ADDRESS" and serves one client after the other until SIGTERM (or the end of stdin,
 --stdin-eof).
 """
 
@@ -18,6 +18,7 @@ sys.dont_write_bytecode = True  # the tests leave nothing behind
 
 import bridge  # noqa: E402
 import kit  # noqa: E402
+import ssi  # noqa: E402
 from terminal import END, Terminal  # noqa: E402
 
 
@@ -33,8 +34,9 @@ class Adapter:
         self.began = time.monotonic()
         self.heard = b""
         self.bits = None
-        self.stream = None  # period in microseconds, start, frames sent
-        self.pushed = self.frames = 0
+        self.clocks = self.burst_us = None
+        self.stream = None  # period in microseconds, start, frames sent, whether they are SSI words
+        self.pushed = self.frames = self.words = 0
 
     def hear(self, data):
         self.heard += data
@@ -64,13 +66,15 @@ class Adapter:
             clock = min(int.from_bytes(body[0:4], "little"), self.options.max_clock)
             self.bits = body[4] + body[5]
             return clock.to_bytes(4, "little")
+        if op in (bridge.SSI_CONFIG, bridge.SSI_READ, bridge.SSI_STREAM) and self.options.capabilities & 1:
+            return self.of_ssi(op, body)
         if op not in (bridge.BISS_READ, bridge.REG_READ, bridge.REG_WRITE, bridge.BISS_STREAM):
             raise Refused(bridge.NOT_SUPPORTED, "not supported")
         if self.bits is None:
             raise Refused(bridge.BAD_ARGUMENT, "not configured")
         if op == bridge.BISS_STREAM:
             period = int.from_bytes(body, "little")
-            self.stream = (period, time.monotonic(), 0) if period else None
+            self.stream = (period, time.monotonic(), 0, False) if period else None
             return body
         if self.stream:
             raise Refused(bridge.BUSY, "a stream is running")
@@ -91,6 +95,40 @@ class Adapter:
         if value is None:
             raise Refused(bridge.NO_ANSWER, "no answer")
         return bytes([value])
+
+    def of_ssi(self, op, body):
+        if op == bridge.SSI_CONFIG:
+            clock, pause = int.from_bytes(body[1:5], "little"), int.from_bytes(body[5:7], "little")
+            if not 1 <= body[0] <= 64 or clock < 1000 or body[7] != 1:
+                raise Refused(bridge.BAD_ARGUMENT, "no such clocks")
+            clock = min(clock, self.options.max_clock)
+            self.clocks, self.burst_us = body[0], -(-body[0] * 1_000_000 // clock) + pause
+            return clock.to_bytes(4, "little")
+        if self.clocks is None:
+            raise Refused(bridge.BAD_ARGUMENT, "not configured")
+        if op == bridge.SSI_STREAM:
+            period = int.from_bytes(body, "little")
+            period = max(period, self.burst_us) if period else 0
+            self.stream = (period, time.monotonic(), 0, True) if period else None
+            return period.to_bytes(4, "little")
+        if self.stream:
+            raise Refused(bridge.BUSY, "a stream is running")
+        moment = time.monotonic()
+        return self.clock(moment) + self.word().to_bytes(8, "little")
+
+    def word(self):
+        """The bits of an SSI burst: those of the frame, and zeros behind them."""
+        position = self.encoder.position()
+        if self.options.line in ("open", "high") or position is None:
+            return (1 << self.clocks) - 1
+        if self.options.line == "low":
+            return 0
+        form = self.options.ssi
+        self.words += 1
+        # The last of the error bits is one that a transfer clears.
+        error = self.options.ssi_error and self.words % self.options.ssi_error == 0
+        frame = form.frame(position[0], position[1], 17, int(error))
+        return frame << self.clocks - form.bits if self.clocks >= form.bits else frame >> form.bits - self.clocks
 
     def clock(self, moment):
         return int((moment - self.began) * 1e6).to_bytes(8, "little")
@@ -114,17 +152,22 @@ class Adapter:
     def push(self):
         """Frames that are due, at most as many as fit into a packet."""
         while self.stream:
-            period, start, sent = self.stream
+            period, start, sent, is_ssi = self.stream
             count = min(int((time.monotonic() - start) * 1e6 / period) - sent, 60)
             if count <= 0:
                 return
-            values = b"".join(bytes([status]) + raw.to_bytes(6, "little")
-                              for status, raw in (self.frame() for _ in range(count)))
+            if is_ssi:
+                op, width = bridge.SSI_DATA, (self.clocks + 7) // 8
+                values = b"".join(self.word().to_bytes(width, "little") for _ in range(count))
+            else:
+                op, width = bridge.BISS_DATA, 6
+                values = b"".join(bytes([status]) + raw.to_bytes(6, "little")
+                                  for status, raw in (self.frame() for _ in range(count)))
             body = (sent.to_bytes(4, "little") + self.clock(start + sent * period / 1e6) + period.to_bytes(4, "little")
-                    + bytes(2) + bytes([6, count]) + values)
-            self.send(bridge.emit(self.pushed, bridge.BISS_DATA, body))
+                    + bytes(2) + bytes([width, count]) + values)
+            self.send(bridge.emit(self.pushed, op, body))
             self.pushed = (self.pushed + 1) % 256
-            self.stream = (period, start, sent + count)
+            self.stream = (period, start, sent + count, is_ssi)
 
 
 def serve_terminal(options):
@@ -183,6 +226,8 @@ def main():
     add("--capabilities", type=int, default=0b000110)
     add("--max-clock", type=int, default=5_000_000)
     add("--line", choices=["good", "open", "low", "high"], default="good")
+    add("--ssi", type=ssi.Format, default="12,13,gray,0", help="the SSI encoder: bits of turns, of steps, code, error bits")
+    add("--ssi-error", type=int, default=0, help="the last error bit speaks in every Nth word")
     add("--damage", type=int, help="one bit of every Nth frame is flipped")
     add("--silent", action="store_true", help="never answer")
     kit.add_options(add)

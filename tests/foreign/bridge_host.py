@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A host of the bridge protocol: carries out what its arguments say and prints a line of JSON for each.
 
-Written from protocol/bridge.md and biss.md alone, with the Python standard library alone, so that it can examine our own
+Written from protocol/bridge.md, biss.md and ssi.md alone, with the Python standard library alone, so that it can examine our own
 simulated adapter.
 
   bridge_host.py tcp:127.0.0.1:4000 hello config:2000000:35:6:18 frame reg:66 reg:40=02 reg:05 stream:50:1.0
@@ -9,8 +9,11 @@ simulated adapter.
   hello                       config:CLOCK_HZ:DATA_BITS:CRC_BITS:TIMEOUT_US      frame     one position frame
   reg:HEX[=HEX]               read or write a register                          wait:S    waits
   stream:PERIOD_US:SECONDS    counts frames, gaps, wrong CRCs                   raw:HEX   bytes as they are
+  ssi:CLOCKS:CLOCK_HZ:PAUSE_US                                                  word      one SSI word
+  words:PERIOD_US:SECONDS:FORMAT    counts words and gaps, and how far the position moves from one to the next; FORMAT is
+                                    that of ssi.py: bits of turns, of steps, code, error bits
 
-Every argument but stream and raw waits for one reply, at most half a second.
+Every argument but stream, words and raw waits for one reply, at most half a second.
 """
 
 import argparse
@@ -21,6 +24,7 @@ import time
 sys.dont_write_bytecode = True  # the tests leave nothing behind
 
 import bridge  # noqa: E402
+import ssi  # noqa: E402
 from wire import Wire  # noqa: E402
 
 
@@ -28,6 +32,7 @@ class Host:
     def __init__(self, path):
         self.wire = Wire(path, 115200, "none")
         self.seq, self.heard, self.stream = 0, b"", []
+        self.clocks = 0
         self.wire.send(b"\x00")  # what stood before is nobody's
 
     def ask(self, op, body=b""):
@@ -37,7 +42,7 @@ class Host:
         deadline, answer = time.monotonic() + 0.5, None
         while answer is None and time.monotonic() < deadline:
             for packet in self.receive(deadline - time.monotonic()):
-                if packet is None or packet[1] == bridge.BISS_DATA:
+                if packet is None or packet[1] in (bridge.SSI_DATA, bridge.BISS_DATA):
                     self.stream.append(packet)
                 elif packet[0] == self.seq:
                     answer = packet[1:]
@@ -78,17 +83,29 @@ class Host:
             body, told = self.reply(op, bytes([0]) + bytes.fromhex(address) + bytes.fromhex(value))
             return told or {"value": body[0]}
         if what == "stream":
-            return self.count(int(numbers[0]), float(numbers[1]))
+            return self.count(bridge.BISS_STREAM, int(numbers[0]), float(numbers[1]), examine)
+        if what == "ssi":
+            self.clocks, clock, pause = (int(number) for number in numbers)
+            request = bytes([self.clocks]) + clock.to_bytes(4, "little") + pause.to_bytes(2, "little") + b"\x01"
+            body, told = self.reply(bridge.SSI_CONFIG, request)
+            return told or {"clock_hz": int.from_bytes(body, "little")}
+        if what == "word":
+            body, told = self.reply(bridge.SSI_READ)
+            return told or {"t_us": int.from_bytes(body[:8], "little"), "raw": f"{int.from_bytes(body[8:], 'little'):X}"}
+        if what == "words":
+            form = ssi.Format(numbers[2])
+            return self.count(bridge.SSI_STREAM, int(numbers[0]), float(numbers[1]),
+                              lambda packets, period: examine_words(packets, period, form, self.clocks))
         if what == "raw":
             self.wire.send(bytes.fromhex(numbers[0]))
             return {}
         time.sleep(float(numbers[0]))
         return {}
 
-    def count(self, period, seconds):
+    def count(self, op, period, seconds, examine):
         """Starts a stream, takes what comes, ends it; everything is looked at afterwards."""
         self.stream = []
-        body, told = self.reply(bridge.BISS_STREAM, period.to_bytes(4, "little"))
+        body, told = self.reply(op, period.to_bytes(4, "little"))
         if told:
             return told
         actual = int.from_bytes(body, "little")
@@ -100,7 +117,7 @@ class Host:
         *packets, self.heard = self.heard.split(b"\x00")
         packets = self.stream + [bridge.parse(packet) for packet in packets if packet]
         self.stream = []
-        ended = self.ask(bridge.BISS_STREAM, bytes(4)) is not None
+        ended = self.ask(op, bytes(4)) is not None
         packets += self.stream
         silent = self.wire.receive(0.3) in (b"", None)
         return {"period_us": actual, "ended": ended and silent, **examine(packets, actual)}
@@ -114,6 +131,35 @@ def hello(body):
     numbers = [int.from_bytes(body[at:at + 4], "little") for at in (1, 5, 9)]
     return {"version": body[0], "capabilities": numbers[0], "max_clock_hz": numbers[1], "max_sample_hz": numbers[2],
             "name": words[0], "serial": words[1], "firmware": words[2]}
+
+
+def examine_words(packets, period, form, clocks):
+    broken = gaps = lost = late = 0
+    number, seq, start = 0, None, None
+    words = []
+    for packet in packets:
+        if packet is None:
+            broken += 1
+            continue
+        own, op, body = packet
+        if op != bridge.SSI_DATA:
+            continue
+        gaps += seq is not None and own != (seq + 1) % 256
+        seq = own
+        first, t0 = int.from_bytes(body[0:4], "little"), int.from_bytes(body[4:12], "little")
+        missing, width, count = int.from_bytes(body[16:18], "little"), body[18], body[19]
+        gaps += first != number or len(body) != 20 + count * width
+        number = first + count
+        start = t0 if start is None else start
+        late += t0 != start + first * period
+        lost += missing
+        words += [int.from_bytes(body[at:at + width], "little") for at in range(20, 20 + count * width, width)]
+    told = [form.read(word, clocks) for word in words]
+    positions = 1 << form.multiturn + form.singleturn
+    moves = [(after[0] - before[0]) % positions for before, after in zip(told, told[1:])]
+    return {"words": len(words), "broken": broken, "gaps": gaps, "lost": lost, "off_time": late,
+            "with_errors": sum(errors != 0 for _, errors in told),
+            "least_move": min(moves, default=None), "greatest_move": max(moves, default=None)}
 
 
 def examine(packets, period):

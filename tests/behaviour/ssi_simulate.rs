@@ -1,0 +1,136 @@
+//! `simulate ssi`, examined by a host that is not our program, and by ours.
+
+use serde_json::{Value, json};
+
+use super::support::{Bench, Simulated, foreign_host, python};
+
+fn told(path: &str, actions: &[&str]) -> Vec<Value> {
+    let lines = foreign_host("bridge_host.py", path, actions);
+    lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+/// Bridge reference 2 to 4; the shaft stands at turn 1234h, 270°: turn 234h of 4096, step 1800h of 8192, in Gray.
+fn examine(path: &str) {
+    let actions =
+        ["word", "hello", "ssi:25:1500000:30", "word", "ssi:27:400000:200", "word", "ssi:12:400000:200", "word"];
+    let said = told(path, &[&actions[..], &["ssi:0:400000:200", "ssi:65:400000:200", "word"]].concat());
+    assert_eq!((&said[0]["error"], &said[0]["op"]), (&json!(2), &json!(0x11)), "not configured");
+    assert_eq!((&said[1]["version"], said[1]["capabilities"].as_u64().unwrap() & 1), (&json!(1), 1));
+    assert_eq!((&said[2], &said[3]["raw"]), (&json!({"clock_hz": 1_500_000}), &json!("65D400")));
+    // Zeros behind the frame; its first bits alone.
+    assert_eq!((&said[5]["raw"], &said[7]["raw"]), (&json!("1975000"), &json!("32E")));
+    assert_eq!((&said[8]["error"], &said[9]["error"]), (&json!(2), &json!(2)));
+    assert_eq!(said[10]["raw"], json!("32E"), "a setting that is refused changes nothing");
+}
+
+#[test]
+fn words_come_on_a_terminal_and_on_a_port() {
+    let bench = Bench::new();
+    if python("bridge_host.py").is_none() {
+        return;
+    }
+    let layout = ["--layout", "atm60,code=gray"];
+    let port = Simulated::start(&bench, &[&["ssi", "--listen", "127.0.0.1:0"], &layout[..]].concat());
+    examine(&format!("tcp:{}", port.place));
+    port.end("INT");
+    let terminal = Simulated::start(&bench, &[&["ssi", "--pty", &bench.file("adapter")], &layout[..]].concat());
+    assert!(bench.path("adapter").is_symlink());
+    examine(&terminal.place);
+    terminal.end("TERM");
+    assert!(!bench.path("adapter").is_symlink());
+}
+
+/// 20 000 words a second: none is missing, each has its time, and its place on a shaft that turns ten times a second: 81 920
+/// steps a second are 4.096 a word.
+#[test]
+fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
+    let bench = Bench::new();
+    if python("bridge_host.py").is_none() {
+        return;
+    }
+    let arguments = ["ssi", "--listen", "127.0.0.1:0", "--layout", "atm60,code=gray", "--set", "rpm=600"];
+    let port = Simulated::start(&bench, &arguments);
+    let path = format!("tcp:{}", port.place);
+    let said = told(&path, &["hello", "ssi:25:1500000:30", "words:50:2.0:12,13,gray,0", "word"]);
+    let stream = &said[2];
+    for key in ["broken", "gaps", "lost", "off_time"] {
+        assert_eq!(stream[key], json!(0), "{key}: {stream}");
+    }
+    assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
+    assert_eq!((&stream["least_move"], &stream["greatest_move"]), (&json!(4), &json!(5)), "{stream}");
+    // On a busy machine the host may start to count late; what it counts is without a gap all the same.
+    assert!(stream["words"].as_u64() > Some(30_000), "{stream}");
+    assert!(said[3]["raw"].is_string(), "single words again when the stream has ended");
+    // 25 clocks at 400 kHz are 62.5 µs, and 200 µs of pause: whole microseconds.
+    let slower = told(&path, &["hello", "ssi:25:400000:200", "words:50:0.2:12,13,gray,0"]);
+    assert_eq!((&slower[2]["period_us"], &slower[2]["gaps"]), (&json!(263), &json!(0)), "{}", slower[2]);
+}
+
+/// Another family, its error bits, and a profile as the layout.
+#[test]
+fn the_encoder_is_as_its_layout_says() {
+    let bench = Bench::new();
+    if python("bridge_host.py").is_none() {
+        return;
+    }
+    let with = |arguments: &[&str], actions: &[&str]| {
+        let port = Simulated::start(&bench, &[&["ssi", "--listen", "127.0.0.1:0"], arguments].concat());
+        told(&format!("tcp:{}", port.place), actions)
+    };
+    // AFS60: 18 bits of step 30000h, ERRSI on clock 20 for good, ERRSYNC on 21 in the first transfer alone.
+    let actions = ["ssi:21:1000000:30", "word", "word"];
+    let said = with(&["--layout", "afs60", "--set", "ssi-error=ERRSI,ERRSYNC"], &actions);
+    assert_eq!((&said[1]["raw"], &said[2]["raw"]), (&json!("180003"), &json!("180002")));
+    let said = with(&["--layout", "afs60s", "--set", "ssi-error=safety-fault"], &actions);
+    assert_eq!(said[1]["raw"], json!("1FFFFF"));
+    let said = with(&["--layout", "kh53", "--set", "ssi-error=overspeed-or-gap"], &["ssi:24:1000000:30", "word"]);
+    assert_eq!(said[1]["raw"], json!("FFFFFE"));
+    for (line, raw) in [("low", "0"), ("high", "1FFFFF"), ("open", "1FFFFF")] {
+        let said = with(&["--layout", "afs60", "--set", &format!("line={line}")], &actions);
+        assert_eq!(said[1]["raw"], json!(raw), "{line}");
+    }
+    let profile = bench.file("counting.ron");
+    bench.run(&["save", "ssi", "--layout", "ahs36,err=none,preset=5,direction=ccw", "-o", &profile]);
+    // A quarter of 16384 steps backwards, and 5.
+    let said = with(&["--layout", &profile], &["ssi:14:1000000:30", "word"]);
+    assert_eq!(said[1]["raw"], json!("1005"));
+    let silent = with(&["--fault", "silent-after:2", "--seed", "3"], &["hello", "ssi:25:1000000:30", "word"]);
+    assert_eq!((&silent[1]["clock_hz"], &silent[2]["error"]), (&json!(1_000_000), &json!("no answer")));
+}
+
+/// Our own host over both ways.
+#[test]
+fn our_own_host_reads_it() {
+    let bench = Bench::new();
+    let port = Simulated::start(&bench, &["ssi", "--listen", "127.0.0.1:0", "--layout", "ahm36"]);
+    let terminal = Simulated::start(&bench, &["ssi", "--pty", &bench.file("adapter"), "--layout", "ahm36"]);
+    for link in [format!("bridge:tcp:{}", port.place), format!("bridge:{}", terminal.place)] {
+        let told = bench.run(&["position", "ssi", "--layout", "ahm36", "--link", &link, "--json"]).json();
+        let place = (&told["turns"], &told["steps"], &told["degrees"], &told["valid"]);
+        assert_eq!(place, (&json!(564), &json!(12_288), &json!(270.0), &json!(true)), "{link}");
+        let status = bench.run(&["status", "ssi", "--layout", "ahm36", "--link", &link, "--json"]).json();
+        assert_eq!(status, json!({"ok": true, "errors": [], "warnings": []}));
+    }
+    port.end("INT");
+    terminal.end("TERM");
+}
+
+#[test]
+fn what_cannot_be_simulated_is_told() {
+    let bench = Bench::new();
+    bench.run(&["simulate", "ssi"]).fails(2, &["--listen"]);
+    let cases: [(&[&str], i32, &[&str]); 8] = [
+        (&["ssi", "--layout", "atm61"], 2, &["atm61", "atm60"]),
+        (&["ssi", "--layout", "ahs36,clocks=14"], 1, &["14"]),
+        (&["ssi", "--layout", "atm60", "--set", "ssi=atm60"], 2, &["--layout", "ssi="]),
+        (&["ssi", "--layout", "afs60", "--set", "ssi-error=ERRX"], 2, &["ERRX", "ERRDIG, ERRSI, ERRSYNC"]),
+        (&["ssi", "--set", "line=bad"], 2, &["good, open, low or high"]),
+        (&["ssi", "--set", "colour=red"], 2, &["colour", "ssi-error"]),
+        (&["ssi", "--fault", "lose:1"], 2, &["lose:1"]),
+        (&["biss", "--layout", "atm60"], 2, &["--layout", "ssi"]),
+    ];
+    for (arguments, status, words) in cases {
+        let listen = ["--listen", "127.0.0.1:0"];
+        bench.run(&[&["simulate"], arguments, &listen].concat()).fails(status, words);
+    }
+}
