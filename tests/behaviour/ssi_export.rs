@@ -68,7 +68,7 @@ fn layouts() -> Vec<(String, Layout)> {
         "ttk70,clocks=31",
     ];
     let mut all: Vec<(String, Layout)> = texts.iter().map(|text| ((*text).to_owned(), family(text))).collect();
-    all.push(("unusual".to_owned(), unusual()));
+    all.push(("unusual */ /* ??/".to_owned(), unusual()));
     all
 }
 

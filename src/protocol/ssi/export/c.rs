@@ -79,7 +79,8 @@ impl Dialect for C {
 /// A function `ssi_decode` for this layout, with the flags that it may raise.
 pub fn c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
-    let title = title.replace("*/", "* /");
+    // Nothing in it ends the comment, begins another or is a trigraph.
+    let title = title.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?");
     let clocks = layout.clocks();
     // Writing into a String does not fail.
     let _ = write!(

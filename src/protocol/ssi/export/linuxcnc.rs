@@ -65,12 +65,25 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
             _ => fields.push((field, 1)),
         }
     }
+    let mut taken = vec!["position".to_owned()];
     let words = fields.into_iter().map(|(field, bits)| match field {
         Field::Padding => format!("%{bits}p"),
         Field::Position => format!("position%{bits}{modifier}e"),
-        Field::Bit(name) => format!("{}%1b", name.to_ascii_lowercase().replace([' ', '%'], "-")),
+        Field::Bit(name) => format!("{}%1b", pin(&name, &mut taken)),
     });
     Ok(words.collect())
+}
+
+/// A name that a pin can have and no other has yet.
+fn pin(name: &str, taken: &mut Vec<String>) -> String {
+    let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
+    let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });
+    let own: String = letters.collect();
+    let own = if own.is_empty() { "bit".to_owned() } else { own };
+    let further = (2..).map(|number| format!("{own}-{number}"));
+    let free = std::iter::once(own.clone()).chain(further).find(|name| !taken.contains(name)).unwrap_or(own);
+    taken.push(free.clone());
+    free
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]

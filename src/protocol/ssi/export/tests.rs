@@ -1,7 +1,7 @@
 //! Format strings and tables; what is compiled is tested beside the program (`tests/behaviour/ssi_export.rs`).
 
 use super::*;
-use crate::protocol::ssi::{Descriptor, Families, Layout, Parity, Settings};
+use crate::protocol::ssi::{Descriptor, ErrorBit, Families, Layout, Parity, Settings};
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
@@ -29,6 +29,21 @@ fn format_strings_of_linuxcnc() {
         }
     }
     assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clocks(), 25);
+}
+
+/// A layout written by hand may call its bits anything; LinuxCNC makes a pin of each.
+#[test]
+fn each_bit_has_a_pin_of_its_own() {
+    let mut frame = layout("ahs36").descriptor().clone();
+    let names = ["LAMP", "lamp", "", "50 % \n load", "position"];
+    let [error] = frame.errors.as_slice() else { panic!("{frame:?}") };
+    let named = |(name, clock): (&&str, u8)| ErrorBit { name: (*name).to_owned(), clock, ..error.clone() };
+    frame.errors = names.iter().zip(15..).map(named).collect();
+    frame.clocks = 19;
+    let layout = Layout::new(frame).unwrap();
+    let format = to_linuxcnc(&layout).unwrap();
+    assert_eq!(format, "position-2%1b50-----load%1bbit%1blamp%1blamp-2%1bposition%14e");
+    assert_eq!(to_linuxcnc(&from_linuxcnc(&format).unwrap()), Ok(format));
 }
 
 #[test]
