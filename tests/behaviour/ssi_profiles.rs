@@ -75,6 +75,30 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }
 
+/// Whoever writes a layout by hand finds its entries in the help: each of those that stand there is understood.
+#[test]
+fn the_help_names_entries_that_can_be_written() {
+    let bench = Bench::new();
+    let help = bench.run(&["ssi", "export", "--help"]).out;
+    let entry = |name: &str| {
+        let at = help.find(&format!("{name}: ")).unwrap_or_else(|| panic!("{name} is not in\n{help}"));
+        let value = &help[at..];
+        // Up to two blanks, behind which the entry is explained, or the end of its line.
+        let end = value.find("  ").into_iter().chain(value.find('\n')).min().unwrap();
+        value[..end].to_owned()
+    };
+    let frame = ["clocks", "multiturn", "code", "area", "errors", "repeat", "patterns"].map(entry).join(", ");
+    let frame = frame.replace("clocks: 27", "clocks: 55").replace("repeat: (word: 25", "repeat: (word: 27");
+    let text = format!("(schema: 1, device: \"ssi\", frame: ({frame}), {}, {})", entry("reading"), entry("direction"));
+    let text = text.replace(", preset: 100, and", ", preset: 100");
+    let file = bench.write("of-help.ron", text);
+    let read = bench.run(&["ssi", "export", "--layout", &file, "--format", "profile"]);
+    assert_eq!(read.status, Some(0), "{read:?}");
+    for line in ["        repeat: (word: 27, gap: 1),", "    preset: 100,", "        cable_metres: 20,"] {
+        assert!(read.out.lines().any(|own| own == line), "{line} is not in\n{}", read.out);
+    }
+}
+
 #[test]
 fn two_layouts_are_compared() {
     let bench = Bench::new();

@@ -10,9 +10,35 @@ pub(in crate::cli) enum Ssi {
     Decode(SsiDecode),
     /// The frame of a position.
     Encode(SsiEncode),
-    /// A decoder or table for other programs.
+    /// A decoder or table for other programs, or a profile.
+    #[command(after_long_help = PROFILE)]
     Export(SsiExport),
 }
+
+/// What can stand in a profile; those who write one by hand have no other place to look.
+const PROFILE: &str = "\
+What a profile's frame can have (as usual where it is left out):
+  clocks: 27                       bits of a burst, 1 to 64
+  multiturn: 12, singleturn: 14    bits of turns and within one
+    steps: 3600, turns: 4096       instead: any number of steps in a turn
+    steps: 100, revolutions: \"25/2\"
+                                   instead: steps over a number of turns (round axis)
+    bits: 24, step_nanometres: 1000
+                                   instead: a length
+  code: \"gray\"                     binary, gray, gray-excess or bcd
+  over: \"padded\"                   what Gray goes over: position, padded (zeros too) or errors (error bits too)
+  area: 26                         clocks of the position with zeros behind it
+  lead: 1, between: 2              zeros before the position, and between turns and steps
+  shift: true                      the area comes one clock later, its last bit is lost
+  inverted: true                   the data wires are exchanged
+  errors: [(name: \"ERROR\", clock: 27, meaning: \"invalid\")]
+                                   or warning; active_low: true, cleared_by_transfer: true
+  parity: (clock: 28, even: true)  a bit over all before it
+  repeat: (word: 25, gap: 1)       the frame twice in a burst
+  patterns: [(name: \"fault\", word: \"ones\", meaning: \"invalid\")]
+                                   frames that are no position; a word is ones or 0x…
+Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 100, and
+  reading: (clock_hz: 400000, pause_us: 200, cable_metres: 20, synchronous: true)";
 
 #[derive(Args)]
 pub(in crate::cli) struct SsiDecode {
