@@ -121,6 +121,9 @@ impl Device for Ssi {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
+        if interval.is_none() {
+            self.station.count_anew();
+        }
         if self.streamed_us.is_none()
             && let Err(error) = self.master(desk).end_words()
         {
@@ -131,7 +134,7 @@ impl Device for Ssi {
     fn sample(&mut self, desk: &mut Desk) -> Result<Words, JobError> {
         match self.streamed_us {
             Some(period_us) => self.master(desk).words(period_us),
-            None => self.master(desk).word(),
+            None => self.master(desk).next_word(),
         }
     }
 

@@ -60,7 +60,7 @@ impl<'a> Master<'a> {
         self.hello().inspect_err(|_| self.station.asking = before)
     }
 
-    /// Takes one word.
+    /// Takes one word, by itself.
     ///
     /// # Errors
     /// As [`hello`](Self::hello).
@@ -68,7 +68,16 @@ impl<'a> Master<'a> {
         let Identity { asking, clock_hz, .. } = self.hello()?;
         let taken = self.repeated(Self::word_once);
         let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
-        Ok(Words::one(self.station.count(), at, word, asking, clock_hz))
+        Ok(Words::one(at, word, asking, clock_hz))
+    }
+
+    /// Takes the next of many words that are asked for one by one.
+    ///
+    /// # Errors
+    /// As [`hello`](Self::hello).
+    pub fn next_word(&mut self) -> Result<Words, Error> {
+        let word = self.word()?;
+        Ok(Words { first: self.station.count(), ..word })
     }
 
     /// The next words of a stream whose words are so many microseconds apart, or as close as the adapter can; begins it

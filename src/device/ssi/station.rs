@@ -63,7 +63,7 @@ pub struct Station {
     pub(super) flow: Option<Flow>,
     /// The last word of the streams before.
     pub(super) streamed_until: Option<Time>,
-    /// Words that were asked for one by one since they are taken like this.
+    /// Of many words that are asked for one by one, those since they are taken like this.
     pub(super) asked: u64,
 }
 
@@ -137,7 +137,12 @@ impl Station {
         }
     }
 
-    /// The number of the next word that is asked for by itself.
+    /// The next word that is asked for is the first of many.
+    pub(crate) fn count_anew(&mut self) {
+        self.asked = 0;
+    }
+
+    /// The number of the next of many words that are asked for.
     pub(super) fn count(&mut self) -> u64 {
         let number = self.asked;
         self.asked = number.wrapping_add(1);

@@ -30,9 +30,9 @@ pub struct Words {
 
 impl Words {
     /// A word that was asked for by itself.
-    pub(super) fn one(number: u64, at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
+    pub(super) fn one(at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
         Words {
-            first: number,
+            first: 0,
             at,
             period_ns: 0,
             lost: 0,
@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(run.timed().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
         assert_eq!((run.begins(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
         assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
-        let lone = Words::one(0, at(9), 5, asking, 1_000_000);
+        let lone = Words::one(at(9), 5, asking, 1_000_000);
         assert_eq!(lone.timed().collect::<Vec<_>>(), [(at(9), 5)]);
         assert_eq!((lone.begins(), lone.is_streamed()), (true, false));
     }

@@ -36,12 +36,17 @@ fn check(runs: &[Words]) {
 fn slow_polling_asks_word_by_word() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(Duration::from_millis(5)));
-    let samples: Vec<Words> = (0..5).map(|_| stand.sample()).collect();
+    let mut samples: Vec<Words> = (0..4).map(|_| stand.sample()).collect();
+    assert!(stand.read().begins(), "a word by itself is none of them");
+    samples.push(stand.sample());
     let firsts: Vec<u64> = samples.iter().map(|words| words.first).collect();
     assert_eq!(firsts, [0, 1, 2, 3, 4]);
     assert!(samples.iter().all(|words| words.words.len() == 1 && !words.is_streamed() && words.lost == 0));
     assert!(samples.iter().zip(&samples[1..]).all(|(one, next)| next.at > one.at));
-    assert_eq!((stand.count(Operation::SsiRead), stand.count(Operation::SsiStream)), (5, 0));
+    assert_eq!((stand.count(Operation::SsiRead), stand.count(Operation::SsiStream)), (6, 0));
+    stand.session.pace(None);
+    stand.session.pace(Some(Duration::from_millis(5)));
+    assert!(stand.sample().begins());
 }
 
 #[test]
