@@ -167,6 +167,40 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Whatever numbers a person types: a frame that works and is the same when it is read again, or a reason.
+    #[test]
+    fn any_numbers_are_read_or_refused(
+        clocks in 0..=70_u8,
+        (multiturn, singleturn) in (0..=40_u8, 0..=40_u8),
+        (area, lead, between) in (any::<Option<u8>>(), 0..=8_u8, 0..=8_u8),
+        error in 0..=70_u8,
+        parity in any::<u8>(),
+        (word, gap) in (0..=40_u8, any::<u8>()),
+        rest in 0..32_u8,
+        pattern in any::<u64>(),
+        code in prop::sample::select(&["binary", "gray", "gray-excess", "bcd"]),
+        over in prop::sample::select(&["position", "padded", "errors"]),
+    ) {
+        let has = |bit: u8| rest >> bit & 1 == 1;
+        let entry = |is_there: bool, text: String| if is_there { text } else { String::new() };
+        let frame = [
+            format!("clocks: {clocks}, multiturn: {multiturn}, singleturn: {singleturn}, lead: {lead}, between: {between},"),
+            format!("code: \"{code}\", over: \"{over}\", shift: {},", has(0)),
+            area.map(|area| format!("area: {area},")).unwrap_or_default(),
+            entry(has(1), format!("errors: [(name: \"E\", clock: {error}, meaning: \"warning\")],")),
+            entry(has(2), format!("parity: (clock: {parity}, even: true),")),
+            entry(has(3), format!("repeat: (word: {word}, gap: {gap}),")),
+            entry(has(4), format!("patterns: [(name: \"P\", word: {pattern}, meaning: \"invalid\")],")),
+        ];
+        let text = format!("(schema: 1, device: \"ssi\", frame: ({}))", frame.concat());
+        match Document::parse(&text) {
+            Ok(document) => prop_assert_eq!(Document::parse(&document.emit()), Ok(document)),
+            Err(error) => prop_assert!(error.to_string().starts_with("frame: "), "{}", error),
+        }
+    }
+}
+
 #[test]
 fn what_is_not_known_is_kept() {
     let text = FULL
