@@ -8,7 +8,9 @@ use crate::cli::args::{SsiDecode, SsiEncode};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};
-use crate::protocol::ssi::{Finding, Flags, Layout, Meaning, Place, Reading, Role};
+use crate::protocol::ssi::{
+    Finding, Flags, FrameTextError, Layout, Meaning, Place, Reading, Role, frame_bits, parse_frame,
+};
 
 pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
     let layout = choose(output, spec)?.layout;
@@ -23,30 +25,10 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
 
 /// The bits of a frame, right-justified.
 fn frame(layout: &Layout, text: &str) -> Result<u64> {
-    let clocks = layout.clocks();
-    let hex = text.strip_prefix("0x").or(text.strip_prefix("0X"));
-    let bits = text.strip_prefix("0b").or(text.strip_prefix("0B")).unwrap_or(text).replace('_', "");
-    let (frame, count) = match hex {
-        Some(digits) => {
-            let frame = u64::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));
-            (frame, frame.map(|frame| u64::BITS - frame.leading_zeros()))
-        }
-        None if bits.len() > 64 && bits.chars().all(|bit| matches!(bit, '0' | '1')) => {
-            (Some(0), u32::try_from(bits.len()).ok())
-        }
-        None => (u64::from_str_radix(&bits, 2).ok().filter(|_| !bits.starts_with('+')), u32::try_from(bits.len()).ok()),
-    };
-    let (Some(frame), Some(count)) = (frame, count) else {
-        let form =
-            format!("{text:?} is not a frame: bits in the order of the clocks (0b1010 or 1010), or 0x and hex digits");
-        return Err(Failure::Usage(form));
-    };
-    let clocks = u32::from(clocks);
-    if count > clocks || (hex.is_none() && count != clocks) {
-        let has = if hex.is_some() { "needs" } else { "has" };
-        return Err(Failure::Failed(vec![format!("{text} {has} {count} bits; the layout has {clocks} clocks.")]));
-    }
-    Ok(frame)
+    parse_frame(text, layout.clocks()).map_err(|error| match error {
+        FrameTextError::Form(_) => Failure::Usage(error.to_string()),
+        FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
+    })
 }
 
 /// A frame with what it says.
@@ -73,7 +55,7 @@ impl<'a> Told<'a> {
     }
 
     fn bits(&self) -> String {
-        format!("{:0width$b}", self.frame, width = usize::from(self.layout.clocks()))
+        frame_bits(self.frame, self.layout.clocks())
     }
 
     pub(super) fn names(&self, meaning: Meaning) -> Vec<String> {
