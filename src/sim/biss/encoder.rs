@@ -17,7 +17,7 @@ use super::config::Config;
 use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
 use super::flash::Flash;
 use super::motor::{Drive, Motor};
-use super::shaft::Shaft;
+use super::shaft::{FINE, Shaft};
 use super::wiegand::{Pulses, Wiegand};
 use crate::protocol::biss::{
     CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress,
@@ -190,6 +190,12 @@ impl Encoder {
         let reading = self.shaft.reading(now);
         let error = self.errors != ErrorRegister::default() || self.calibration.is_running();
         (self.power == Power::On).then_some(Reading { error, warning: self.hot, ..reading })
+    }
+
+    /// The place of its shaft at `now`, whatever it says of it itself: steps, and how many a revolution has.
+    pub fn shaft_place(&mut self, now: Moment) -> (u64, u64) {
+        self.settle(now);
+        (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }
 
     /// The bank of the registers 00h…3Fh that is selected.

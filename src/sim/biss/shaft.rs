@@ -3,6 +3,9 @@
 use crate::protocol::biss::{Layout, Reading};
 use crate::units::Moment;
 
+/// Bits of the parts of a step.
+pub(super) const FINE: u8 = 8;
+
 /// A shaft turning at constant speed, seen through an encoder of 16 and 17 bits.
 #[derive(Clone, Debug)]
 pub(super) struct Shaft {
@@ -42,6 +45,14 @@ impl Shaft {
         // Fields have at most 32 bits.
         let [singleturn, multiturn] = [singleturn, multiturn].map(|field| u32::try_from(field).unwrap_or(u32::MAX));
         Reading { multiturn, singleturn, error: false, warning: false }
+    }
+
+    /// The position at a moment in parts of a step, [`FINE`] bits behind it: what another encoder on this shaft sees.
+    pub(super) fn fine(&self, at: Moment) -> u64 {
+        let whole = (self.whole_steps(at) + self.offset) % self.range();
+        // Not negative, below 1.
+        let parts = (self.place(at).fract() * f64::from(1_u32 << FINE)) as u64;
+        whole << FINE | parts
     }
 
     /// From `at` on the shaft's place has this singleturn or this multiturn, or both; what is `None` stays.
@@ -96,6 +107,13 @@ mod tests {
         shaft.set_rpm(at(1_750), -60.0);
         assert_eq!(place(&shaft, 2_750), (0, 0x18000));
         assert_eq!(place(&shaft, 3_750), (0xFFFF, 0x18000), "below zero it is at the end of the range");
+    }
+
+    #[test]
+    fn parts_of_a_step_are_seen_too() {
+        // 60 rpm: 2^17 steps a second, 131.072 in a millisecond; 0.072 of 256 parts are 18.4.
+        let shaft = Shaft::new(Layout::default(), 5, 60.0);
+        assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
     }
 
     #[test]

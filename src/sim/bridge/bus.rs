@@ -5,7 +5,6 @@ use fastrand::Rng;
 
 use super::config::{Config, Line, SsiEncoder};
 use super::trouble::Trouble;
-use crate::protocol::biss::Reading;
 use crate::protocol::bridge::BissStatus;
 use crate::protocol::ssi::Flags;
 use crate::sim::biss::Encoder;
@@ -58,10 +57,12 @@ impl Bus {
 
     /// The first `bits` bits of an SSI word taken at a moment.
     pub(super) fn ssi(&mut self, at: Moment, bits: u8) -> u64 {
-        match (self.line, self.encoder.reading(at), &self.ssi) {
+        // Without power neither encoder sends.
+        let place = self.encoder.reading(at).map(|_| self.encoder.shaft_place(at));
+        match (self.line, place, &self.ssi) {
             (Line::Low, _, _) => 0,
-            (Line::Good, Some(reading), Some(ssi)) => {
-                let frame = clocked(self.ssi_frame(ssi, &reading, at), ssi.layout.clocks(), bits);
+            (Line::Good, Some(place), Some(ssi)) => {
+                let frame = clocked(self.ssi_frame(ssi, place, at), ssi.layout.clocks(), bits);
                 self.transferred = Some(at);
                 self.damaged(frame, bits)
             }
@@ -70,16 +71,14 @@ impl Bus {
     }
 
     /// The frame of an SSI encoder on the same shaft.
-    fn ssi_frame(&self, ssi: &SsiEncoder, reading: &Reading, at: Moment) -> u64 {
+    fn ssi_frame(&self, ssi: &SsiEncoder, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
         let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
         if let Some(word) = happening().find_map(Trouble::word) {
             return word;
         }
         let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
-        let singleturn = self.encoder.layout().singleturn_bits();
-        let raw = u64::from(reading.multiturn) << singleturn | u64::from(reading.singleturn);
         let range = ssi.layout.descriptor().range;
-        let position = range.of_shaft_set(raw, 1 << singleturn, ssi.direction, ssi.preset);
+        let position = range.of_shaft_set(raw, per_turn, ssi.direction, ssi.preset);
         ssi.layout.encode(position, flags).unwrap_or(0)
     }
 
