@@ -1,6 +1,7 @@
 //! What a person, a view or a finished task asks of the studio.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::biss;
 use super::connect;
@@ -10,6 +11,7 @@ use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::session::{DraftDone, Kind, Listed};
 use super::signals;
+use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{Language, Picture, Text, Theme};
@@ -17,9 +19,11 @@ use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
 use crate::protocol::biss::Descriptions;
 use crate::protocol::hiperface::EncoderTypes;
+use crate::protocol::ssi::Families;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
+use crate::worker::ssi::Ssi;
 use crate::worker::{OpenError, Worker};
 
 /// Something to be done.
@@ -84,6 +88,10 @@ pub enum Action {
     Hiperface(SessionId, hiperface::Action),
     /// Something in the BiSS tab, about one session.
     Biss(SessionId, biss::Action),
+    /// Something in the SSI tab, about one session.
+    Ssi(SessionId, ssi::Action),
+    /// A layout of an SSI encoder that is in no file yet.
+    NewLayout,
     /// Something in the Signals tab.
     Signals(signals::Action),
     /// A task has come back.
@@ -120,6 +128,10 @@ pub enum Done {
     OpenedHiperface(Attempt<Hiperface>),
     /// A link to a BiSS encoder was opened, or not.
     OpenedBiss(Attempt<Biss>),
+    /// A link to an SSI encoder was opened, or not.
+    OpenedSsi(Attempt<Ssi>),
+    /// The families of SSI encoders were read, with what is wrong with those of the user's own.
+    Families(Arc<Families>, Vec<StoreError>),
     /// A link was opened for a search.
     OpenedForSearch {
         /// For which.
@@ -182,6 +194,8 @@ pub enum Done {
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
     },
+    /// In the SSI tab, for one session.
+    Ssi(SessionId, ssi::Done),
     /// In the Signals tab.
     Signals(signals::Done),
 }
@@ -278,6 +292,27 @@ pub enum FileQuestion {
         /// A name to begin with.
         suggested: PathBuf,
     },
+    /// Which file of SSI frames to look into.
+    OpenFrames {
+        /// For whom.
+        session: SessionId,
+    },
+    /// Where to write a layout for other programs.
+    Export {
+        /// Whose layout it is.
+        session: SessionId,
+        /// As what.
+        format: ssi::Format,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+    /// Where to write the frames that were read.
+    Frames {
+        /// Whose they are.
+        session: SessionId,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
     /// Where to write a table of samples.
     Table {
         /// Whose they are.
@@ -305,14 +340,22 @@ impl FileQuestion {
             FileQuestion::Recording => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
             FileQuestion::Picture { .. } => &["png"],
+            FileQuestion::OpenFrames { .. } => &["txt", "csv"],
+            FileQuestion::Frames { .. } => &["txt"],
+            FileQuestion::Export { format, .. } => format.endings(),
         }
     }
 
     /// A name to begin with, where a file is to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
-            FileQuestion::Open | FileQuestion::OpenCapture | FileQuestion::Recording => None,
+            FileQuestion::Open
+            | FileQuestion::OpenCapture
+            | FileQuestion::Recording
+            | FileQuestion::OpenFrames { .. } => None,
             FileQuestion::Save { suggested, .. }
+            | FileQuestion::Export { suggested, .. }
+            | FileQuestion::Frames { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),
         }

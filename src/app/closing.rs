@@ -33,7 +33,7 @@ impl Studio {
                 (_, true) => "question.session_lost",
                 _ if device.is_busy() => "question.session_busy",
                 (Source::Link(_), false) => "question.session_edits",
-                (Source::File { .. }, false) => "question.profile_edits",
+                (Source::File { .. } | Source::New { .. }, false) => "question.profile_edits",
             };
             let text = Text::new(text).with("name", device.name());
             let confirm = Text::new("question.close_session");

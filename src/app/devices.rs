@@ -17,6 +17,7 @@ use super::recorder::Recorder;
 use super::review::Sheet;
 use super::services::{JobEnd, Services};
 use super::session::{DraftDone, Drafted, Listed, Opening, Phase, Source};
+use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
@@ -30,6 +31,8 @@ pub enum AnyDevice {
     Hiperface(Box<hiperface::Encoder>),
     /// A BiSS encoder.
     Biss(Box<biss::Encoder>),
+    /// An SSI encoder.
+    Ssi(Box<ssi::Encoder>),
 }
 
 /// The same for every kind.
@@ -38,29 +41,42 @@ macro_rules! each {
         match $device {
             AnyDevice::Hiperface($own) => $do,
             AnyDevice::Biss($own) => $do,
+            AnyDevice::Ssi($own) => $do,
+        }
+    };
+}
+
+/// The same for every kind that has a memory; what it is for one that has none.
+macro_rules! each_with_memory {
+    ($device:expr, $own:ident => $do:expr, $none:expr) => {
+        match $device {
+            AnyDevice::Hiperface($own) => $do,
+            AnyDevice::Biss($own) => $do,
+            AnyDevice::Ssi(_) => $none,
         }
     };
 }
 
 impl AnyDevice {
     /// At a link that is being opened; `None` for a tab that shows no device.
-    pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl) -> Option<Self> {
+    pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl, services: &Services) -> Option<Self> {
         match tab {
             Tab::Hiperface => Some(AnyDevice::Hiperface(Box::new(hiperface::Encoder::at_link(id, url)))),
             Tab::Biss => Some(AnyDevice::Biss(Box::new(biss::Encoder::at_link(id, url)))),
+            Tab::Ssi => Some(AnyDevice::Ssi(Box::new(ssi::Encoder::at_link(id, url, services)))),
             Tab::Signals => None,
         }
     }
 
-    /// A profile; `None` of a device that the window does not show.
+    /// A profile.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Option<Self> {
-        Some(match &document.body {
+    ) -> Self {
+        match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -68,8 +84,8 @@ impl AnyDevice {
             Body::Biss(_) => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
-            Body::Ssi(_) => return None,
-        })
+            Body::Ssi(_) => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
+        }
     }
 
     /// Its number in the studio.
@@ -82,6 +98,7 @@ impl AnyDevice {
         match self {
             AnyDevice::Hiperface(_) => Tab::Hiperface,
             AnyDevice::Biss(_) => Tab::Biss,
+            AnyDevice::Ssi(_) => Tab::Ssi,
         }
     }
 
@@ -167,6 +184,8 @@ impl AnyDevice {
         match self {
             AnyDevice::Hiperface(_) => false,
             AnyDevice::Biss(own) => own.streams(),
+            // There is always an adapter.
+            AnyDevice::Ssi(_) => true,
         }
     }
 
@@ -187,7 +206,11 @@ impl AnyDevice {
 
     /// A profile of it can be saved now.
     pub fn is_savable(&self) -> bool {
-        each!(self, own => own.session.is_savable())
+        match self {
+            // A layout can be saved at any time.
+            AnyDevice::Ssi(_) => true,
+            _ => each!(self, own => own.session.is_savable()),
+        }
     }
 
     /// The job that runs.
@@ -237,25 +260,25 @@ impl AnyDevice {
 
     /// A review of a write is open.
     pub fn is_reviewing(&self) -> bool {
-        each!(self, own => own.review.is_some())
+        each_with_memory!(self, own => own.review.is_some(), false)
     }
 
     /// The review of a write, where one is on its way.
     pub fn sheet(&self) -> Option<Sheet> {
-        each!(self, own => {
+        each_with_memory!(self, own => {
             let running = own.session.line().and_then(|line| line.running());
             let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
             own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
-        })
+        }, None)
     }
 
     pub(super) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
-        each!(self, own => match action {
+        each_with_memory!(self, own => match action {
             ReviewAction::Write(plan) => own.write(plan, services),
             ReviewAction::Toggle(permit) => own.plan_with(permit, services),
             ReviewAction::ForceWear(force) => own.force_wear(force),
             ReviewAction::Close => own.close_review(),
-        })
+        }, ())
     }
 
     /// What was recorded of it.
@@ -277,7 +300,7 @@ impl AnyDevice {
     }
 
     pub(super) fn close_review(&mut self) {
-        each!(self, own => own.close_review())
+        each_with_memory!(self, own => own.close_review(), ())
     }
 
     pub(super) fn pump(&mut self, services: &mut Services) {
@@ -327,11 +350,11 @@ impl AnyDevice {
 
     /// Backups and writes were listed; those of another device than the one that is connected by now are dropped.
     pub(super) fn listed(&mut self, of: &DeviceKey, listed: Listed) {
-        each!(self, own => {
+        each_with_memory!(self, own => {
             if own.key().as_ref() == Some(of) {
                 own.session.take_backups(listed);
             }
-        })
+        }, ())
     }
 
     /// A backup was read, or not; one for another device than the one that is connected by now is dropped.
@@ -342,11 +365,11 @@ impl AnyDevice {
         result: Result<Box<Document>, ReadError>,
         services: &mut Services,
     ) {
-        each!(self, own => {
+        each_with_memory!(self, own => {
             if own.key().as_ref() == Some(of) {
                 own.take_backup(path, result, services);
             }
-        })
+        }, ())
     }
 
     /// As a HIPERFACE encoder.
@@ -365,5 +388,14 @@ impl AnyDevice {
 
     pub(super) fn biss_mut(&mut self) -> Option<&mut biss::Encoder> {
         if let AnyDevice::Biss(own) = self { Some(own) } else { None }
+    }
+
+    /// As an SSI encoder.
+    pub fn ssi(&self) -> Option<&ssi::Encoder> {
+        if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
+    }
+
+    pub(super) fn ssi_mut(&mut self) -> Option<&mut ssi::Encoder> {
+        if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
     }
 }

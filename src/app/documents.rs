@@ -26,14 +26,8 @@ impl Studio {
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(path, key, *document));
                 } else {
-                    let file = (path.clone(), key);
-                    match AnyDevice::in_file(id, file, *document, known, &mut self.services) {
-                        Some(device) => self.devices.push(device),
-                        None => {
-                            let why = Text::new("profile.not_in_window").with("path", path.display());
-                            self.services.tell(Severity::Error, vec![why], None);
-                        }
-                    }
+                    let device = AnyDevice::in_file(id, (path, key), *document, known, &mut self.services);
+                    self.devices.push(device);
                 }
                 if let Some(tab) = self.device(id).map(AnyDevice::tab) {
                     self.show(tab, id);

@@ -7,6 +7,7 @@ use super::closing::MUCH;
 use super::connect;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
+use super::ssi;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Picture, Severity, Text, explain};
 use crate::store::FileError;
@@ -30,6 +31,11 @@ impl Studio {
             FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
             FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
+            FileQuestion::OpenFrames { session } => self.act(Action::Ssi(session, ssi::Action::FindIn(path))),
+            FileQuestion::Frames { session, .. } => self.act(Action::Ssi(session, ssi::Action::SaveFrames(path))),
+            FileQuestion::Export { session, format, .. } => {
+                self.act(Action::Ssi(session, ssi::Action::Export(format, path)));
+            }
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
                 let result = picture.save(&path);

@@ -13,6 +13,7 @@ use super::{AnyDevice, Severity, Text, explain};
 use crate::link::{LinkUrl, TraceEntry};
 use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
+use crate::worker::ssi::Ssi;
 use crate::worker::{Ring, Session, Worker};
 
 /// Frames that wait for the window, at most.
@@ -46,7 +47,7 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let Some(device) = AnyDevice::at_link(tab, id, url.clone()) else { return };
+                let Some(device) = AnyDevice::at_link(tab, id, url.clone(), &self.services) else { return };
                 self.devices.push(device);
                 id
             }
@@ -103,6 +104,7 @@ impl Studio {
                 self.open_task(url, earlier, prepare, opened(id, attempt))
             }
             Tab::Biss => self.open_task(url, earlier, |_: &mut Session<Biss>| (), opened(id, attempt)),
+            Tab::Ssi => self.open_task(url, earlier, |_: &mut Session<Ssi>| (), opened(id, attempt)),
             // No device is shown there.
             Tab::Signals => return,
         };

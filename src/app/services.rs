@@ -13,9 +13,11 @@ use super::tasks::{Tasks, Wake};
 use super::{Text, explain};
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
+use crate::protocol::ssi::Families;
 use crate::store::{Store, StoreError};
 use crate::worker::biss::{self, Biss};
 use crate::worker::hiperface::{self, Hiperface};
+use crate::worker::ssi::{self, Ssi};
 use crate::worker::{JobId, OpenError, Session};
 
 /// Opens links to a kind of device.
@@ -30,6 +32,8 @@ pub struct World {
     pub open_hiperface: Opener<Hiperface>,
     /// Opens links to BiSS encoders.
     pub open_biss: Opener<Biss>,
+    /// Opens links to SSI encoders.
+    pub open_ssi: Opener<Ssi>,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -47,6 +51,7 @@ impl World {
             store,
             open_hiperface: Arc::new(hiperface::open),
             open_biss: Arc::new(biss::open),
+            open_ssi: Arc::new(ssi::open),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),
@@ -102,16 +107,34 @@ pub struct Services {
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
     pub(super) drafts_on_their_way: usize,
+    /// Families of SSI encoders: the built-in ones, until the user's own were read.
+    pub(super) families: Arc<Families>,
 }
 
 impl Services {
     const JOBS: usize = 500;
 
+    /// Families of SSI encoders.
+    pub(in crate::app) fn ssi_families(&self) -> Arc<Families> {
+        self.families.clone()
+    }
+
     pub(super) fn new(world: World, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
         let (tasks, leaving) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();
-        Services { world, tasks, log, jobs, file_question: None, leaving, opening_files, drafts_on_their_way: 0 }
+        let families = Arc::new(Families::built_in());
+        Services {
+            world,
+            tasks,
+            log,
+            jobs,
+            file_question: None,
+            leaving,
+            opening_files,
+            drafts_on_their_way: 0,
+            families,
+        }
     }
 
     /// The time of day.

@@ -48,7 +48,7 @@ impl Studio {
     pub fn new(world: World, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let (settings, keeper) = Keeper::load(&mut services);
-        Studio {
+        let studio = Studio {
             signals: Signals::at(settings.links(Tab::Signals)),
             settings,
             connect: None,
@@ -61,7 +61,9 @@ impl Studio {
             closing: false,
             waited: None,
             path_question: None,
-        }
+        };
+        studio.read_families();
+        studio
     }
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.
@@ -69,7 +71,8 @@ impl Studio {
         // A link that only one kind can open is for that one; any other for the kind that was shown.
         let shown = if self.settings.tab == Tab::Signals { Tab::Hiperface } else { self.settings.tab };
         let tab = match &link {
-            Some(link) if link.scheme == Scheme::Bridge => Tab::Biss,
+            // Both of these are reached over an adapter.
+            Some(link) if link.scheme == Scheme::Bridge && shown != Tab::Ssi => Tab::Biss,
             Some(link) if shown.check(link).is_err() => {
                 Tab::DEVICES.into_iter().find(|tab| tab.check(link).is_ok()).unwrap_or(shown)
             }
@@ -87,7 +90,8 @@ impl Studio {
     /// Does what is asked.
     pub fn act(&mut self, action: Action) {
         match action {
-            Action::ShowTab(tab) => self.settings.tab = tab,
+            Action::ShowTab(tab) => self.show_tab(tab),
+            Action::NewLayout => self.new_layout(),
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
@@ -111,7 +115,7 @@ impl Studio {
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
                     Tab::Signals => FileQuestion::OpenCapture,
-                    Tab::Hiperface | Tab::Biss => FileQuestion::Open,
+                    Tab::Hiperface | Tab::Biss | Tab::Ssi => FileQuestion::Open,
                 });
             }
             Action::Open(path) if is_capture(&path) => {
@@ -134,6 +138,7 @@ impl Studio {
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Biss(id, action) => self.act_biss(id, action),
+            Action::Ssi(id, action) => self.act_ssi(id, action),
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -314,6 +319,11 @@ impl Studio {
             Done::OpenedBiss(attempt) => self.opened(attempt, |studio, id, opened| {
                 studio.with_biss(id, |encoder, services| encoder.connect(opened, services));
             }),
+            Done::OpenedSsi(attempt) => self.opened(attempt, |studio, id, opened| {
+                studio.with_ssi(id, |encoder, services| encoder.connect(opened, services));
+            }),
+            Done::Families(families, broken) => self.take_families(families, &broken),
+            Done::Ssi(id, done) => self.with_ssi(id, |encoder, services| encoder.done(done, services)),
             Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {
                 studio.with_hiperface(id, |encoder, services| encoder.connect(opened, services));
             }),

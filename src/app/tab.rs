@@ -1,8 +1,8 @@
 //! The tabs of the window.
 
-use super::connect::BissForm;
+use super::connect::{BissForm, SsiForm};
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, biss, hiperface};
+use crate::worker::{OpenError, biss, hiperface, ssi};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -12,19 +12,22 @@ pub enum Tab {
     Hiperface,
     /// BiSS C encoders.
     Biss,
+    /// SSI encoders and their frames.
+    Ssi,
     /// Captures of sine and cosine, whatever encoder they are from.
     Signals,
 }
 
 impl Tab {
     /// The tabs that show devices.
-    pub const DEVICES: [Tab; 2] = [Tab::Hiperface, Tab::Biss];
+    pub const DEVICES: [Tab; 3] = [Tab::Hiperface, Tab::Biss, Tab::Ssi];
 
     /// The name of its bus, the same in every language; `None` for a tab that shows no device.
     pub fn bus(self) -> Option<&'static str> {
         match self {
             Tab::Hiperface => Some("HIPERFACE"),
             Tab::Biss => Some("BiSS"),
+            Tab::Ssi => Some("SSI"),
             Tab::Signals => None,
         }
     }
@@ -35,6 +38,7 @@ impl Tab {
     pub(super) fn check(self, url: &LinkUrl) -> Result<(), OpenError> {
         match self {
             Tab::Biss => biss::check(url),
+            Tab::Ssi => ssi::check(url),
             Tab::Hiperface | Tab::Signals => hiperface::check(url),
         }
     }
@@ -43,6 +47,7 @@ impl Tab {
     pub(super) fn virtual_link(self) -> LinkUrl {
         match self {
             Tab::Biss => BissForm::usual(),
+            Tab::Ssi => SsiForm::usual(),
             Tab::Hiperface | Tab::Signals => LinkUrl::sim(),
         }
     }

@@ -148,9 +148,9 @@ impl Meaning {
         Meaning { range, scales, is_linear: false }
     }
 
-    /// Of a shaft with so many steps in a revolution.
-    pub(super) fn of_turns(range: Option<i64>, steps_per_turn: u64) -> Self {
-        let turns = 1.0 / steps_per_turn.max(1) as f64;
+    /// Of a shaft with so many steps in a revolution, at least a part of one.
+    pub(super) fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
+        let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
             vec![
                 Scale::new("unit.turns", turns, 5),
@@ -362,6 +362,13 @@ impl<W: Watchable> Track<W> {
         let (began, watched) = (self.began.take(), self.watched());
         *self = Track { began, ..Track::default() };
         self.watch(&watched);
+    }
+
+    /// Everything that was recorded is read anew: the clocks stay as they are.
+    pub(super) fn begin_again(&mut self) {
+        let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.span());
+        *self = Track { began, shift, apart, ..Track::default() };
+        self.recorder.act(recorder::Action::SetSpan(span));
     }
 
     /// Positions mean this from now on. What was recorded with another meaning cannot be seen in the same units.

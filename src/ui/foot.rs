@@ -40,8 +40,8 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
                 let text = Text::new(match (device.source(), count) {
                     (Source::Link(_), 1) => "memory.edited_one",
                     (Source::Link(_), _) => "memory.edited",
-                    (Source::File { .. }, 1) => "memory.unsaved_one",
-                    (Source::File { .. }, _) => "memory.unsaved",
+                    (Source::File { .. } | Source::New { .. }, 1) => "memory.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _) => "memory.unsaved",
                 })
                 .with("count", count);
                 let words = RichText::new(skin.words(&text)).color(skin.palette.staged);

@@ -17,6 +17,7 @@ mod review;
 mod run;
 mod signals;
 mod skin;
+mod ssi;
 pub mod widgets;
 mod window;
 mod workspace;
@@ -30,6 +31,7 @@ pub fn pages(tab: crate::app::Tab) -> Vec<&'static str> {
     match tab {
         crate::app::Tab::Hiperface => hiperface::Page::ALL.into_iter().map(hiperface::Page::word).collect(),
         crate::app::Tab::Biss => biss::Page::ALL.into_iter().map(biss::Page::word).collect(),
+        crate::app::Tab::Ssi => ssi::Page::ALL.into_iter().map(ssi::Page::word).collect(),
         crate::app::Tab::Signals => signals::Page::ALL.into_iter().map(signals::Page::word).collect(),
     }
 }

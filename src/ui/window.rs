@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::hiperface::{self, Page};
-use super::{Skin, biss, header, icons, review, signals};
+use super::{Skin, biss, header, icons, review, signals, ssi};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -20,6 +20,8 @@ pub struct Views {
     hiperface: BTreeMap<SessionId, hiperface::View>,
     /// The BiSS tab, for each session.
     biss: BTreeMap<SessionId, biss::View>,
+    /// The SSI tab, for each session.
+    ssi: BTreeMap<SessionId, ssi::View>,
     pub(super) signals: signals::View,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
@@ -46,6 +48,11 @@ impl Views {
         let view = self.biss.entry(encoder.session.id).or_default();
         view.follow(encoder);
         view
+    }
+
+    /// The SSI tab of a session.
+    pub(super) fn ssi(&mut self, encoder: &crate::app::ssi::Encoder) -> &mut ssi::View {
+        self.ssi.entry(encoder.session.id).or_default()
     }
 }
 
@@ -165,6 +172,10 @@ impl Window {
                 let page = self.studio.biss().map(|encoder| self.views.biss(encoder).page).unwrap_or_default();
                 (page.word(), page.help())
             }
+            Tab::Ssi => {
+                let page = self.studio.ssi().map(|encoder| self.views.ssi(encoder).page).unwrap_or_default();
+                (page.word(), page.help())
+            }
             Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
         };
         if self.views.help && dialogs::help_ui(ctx, skin, page) {
@@ -221,12 +232,19 @@ impl Window {
             (Modifiers::COMMAND, Key::O, Action::AskOpen),
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
             (Modifiers::COMMAND, Key::Num2, Action::ShowTab(Tab::Biss)),
+            (Modifiers::COMMAND, Key::Num3, Action::ShowTab(Tab::Ssi)),
             (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
             keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
             keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
+            // A text that is typed has steps of its own, and so has the hex editor.
+            if device.tab() == Tab::Ssi && !ctx.egui_wants_keyboard_input() {
+                keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
+                keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
+                keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));
+            }
         }
         for (modifiers, key, action) in keys {
             if pressed(modifiers, key) {
@@ -314,6 +332,7 @@ fn navigation(
             _ if tab != studio.settings.tab => {}
             Tab::Hiperface => hiperface_pages(ui, skin, studio, views),
             Tab::Biss => biss_pages(ui, skin, studio, views),
+            Tab::Ssi => ssi_pages(ui, skin, studio, views),
             Tab::Signals => signals_pages(ui, skin, views),
         }
     }
@@ -355,6 +374,22 @@ fn biss_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
         if entry(ui, shown == page, text, &word).clicked() {
             views.plot.make_small();
             views.biss(encoder).page = page;
+        }
+    }
+}
+
+fn ssi_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
+    let Some(encoder) = studio.ssi() else { return };
+    let shown = views.ssi(encoder).page;
+    for page in ssi::Page::ALL {
+        let word = skin.say(page.word());
+        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
+        if page == ssi::Page::Frame && encoder.is_dirty() {
+            text = text.color(skin.palette.staged);
+        }
+        if entry(ui, shown == page, text, &word).clicked() {
+            views.plot.make_small();
+            views.ssi(encoder).page = page;
         }
     }
 }

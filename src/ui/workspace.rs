@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::panels::plot_ui;
-use super::{Skin, Views, biss, hiperface, icons, signals};
+use super::{Skin, Views, biss, hiperface, icons, signals, ssi};
 use crate::app::connect;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
@@ -21,6 +21,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
     match studio.settings.tab {
         Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
         Tab::Biss => biss_ui(ui, skin, studio, views, actions),
+        Tab::Ssi => ssi_ui(ui, skin, studio, views, actions),
         Tab::Signals => {
             signals::page_ui(ui, skin, &studio.signals, studio.hiperface(), &mut views.signals, actions);
         }
@@ -29,7 +30,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
 
 fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let (Some(encoder), Some(device)) = (studio.hiperface(), studio.shown()) else {
-        return nothing(ui, skin, actions);
+        return nothing(ui, skin, studio, actions);
     };
     running(ui, skin, device, None, actions);
     lost(ui, skin, device, actions);
@@ -38,7 +39,7 @@ fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, ac
 
 fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let (Some(encoder), Some(device)) = (studio.biss(), studio.shown()) else {
-        return nothing(ui, skin, actions);
+        return nothing(ui, skin, studio, actions);
     };
     let view = views.biss(encoder);
     let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && view.page == biss::Page::Procedures;
@@ -49,8 +50,16 @@ fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions
     biss::page_ui(ui, skin, (studio, device), encoder, view, actions);
 }
 
+fn ssi_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    let (Some(encoder), Some(device)) = (studio.ssi(), studio.shown()) else {
+        return nothing(ui, skin, studio, actions);
+    };
+    lost(ui, skin, device, actions);
+    ssi::page_ui(ui, skin, (studio, device), encoder, views.ssi(encoder), actions);
+}
+
 /// No device is on the desk: the ways to one.
-fn nothing(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+fn nothing(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
         actions.push(Action::Connect(connect::Action::Open));
     }
@@ -60,6 +69,10 @@ fn nothing(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
         }
         if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
             actions.push(Action::AskOpen);
+        }
+        // A layout needs no device.
+        if studio.settings.tab == Tab::Ssi && button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
+            actions.push(Action::NewLayout);
         }
     });
 }

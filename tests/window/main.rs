@@ -27,6 +27,7 @@ mod signals_beside;
 mod signals_calculators;
 mod signals_live;
 mod signals_widgets;
+mod ssi;
 mod state;
 mod support;
 mod texts;

@@ -167,7 +167,7 @@ impl Encoder {
     /// A connected encoder is read again for it; a profile is written as it is edited.
     pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
         match &self.session.source {
-            Source::Link(_) => {
+            Source::Link(_) | Source::New { .. } => {
                 if self.try_submit(BissJob::Save, services) {
                     self.session.save_to = Some(path);
                 }

@@ -2,10 +2,10 @@
 //! was selected.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::{plain, traced as adapter};
 use crate::link::{Direction, TraceEntry};
 use crate::protocol::biss::{ByteOrder, RegisterAddress};
-use crate::protocol::bridge::{self, Message, Packet};
+use crate::protocol::bridge;
 use crate::protocol::ubicom::{Frame, Reply, Request, SYNC, Written};
 
 /// Reads frames in the order in which they went over the line.
@@ -54,21 +54,11 @@ impl Meaning {
     }
 
     fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
-        let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
-        let packet = Packet::parse(stuffed).ok()?;
-        if let Ok(request) = bridge::Request::parse(&packet) {
-            return Some(self.asked_of_adapter(&request));
+        let packet = adapter::packet(bytes)?;
+        match bridge::Request::parse(&packet) {
+            Ok(request) => Some(self.asked_of_adapter(&request)),
+            Err(_) => adapter::said(&packet),
         }
-        Some(match Message::parse(&packet).ok()? {
-            Message::Reply(bridge::Reply::BissRead { raw, .. }) => plain(format!("0x{raw:X}")),
-            Message::Reply(bridge::Reply::BissRegisterRead { value } | bridge::Reply::BissRegisterWrite { value }) => {
-                plain(format!("0x{value:02X}"))
-            }
-            Message::Reply(bridge::Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
-            Message::Reply(_) => Text::new("trace.taken"),
-            Message::Error { text, .. } => Text::new("trace.adapter_refuses").with("why", text),
-            Message::Data(_) => Text::new("trace.stream"),
-        })
     }
 
     fn asked_of_adapter(&mut self, request: &bridge::Request) -> Text {
@@ -91,9 +81,7 @@ impl Meaning {
                 }
                 said
             }
-            bridge::Request::BissRead => Text::new("trace.position"),
-            bridge::Request::Hello => Text::new("trace.hello"),
-            _ => Text::new("trace.set_up"),
+            ref other => adapter::asked(other),
         }
     }
 }

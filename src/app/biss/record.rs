@@ -228,7 +228,7 @@ fn sighting(reading: &PositionReading) -> Sighting {
 /// What positions of such widths are, multiturn and singleturn.
 fn meaning((multiturn, singleturn): (u8, u8)) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
-    Meaning::of_turns(range, 1 << singleturn.min(63))
+    Meaning::of_turns(range, f64::from(singleturn).exp2())
 }
 
 fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {

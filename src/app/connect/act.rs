@@ -38,11 +38,13 @@ impl Studio {
             }
             Action::Edit(form) => self.edit(|connect| (connect.form, connect.typed) = (*form, None)),
             Action::EditBiss(form) => self.edit(|connect| (connect.biss, connect.typed) = (*form, None)),
+            Action::EditSsi(form) => self.edit(|connect| (connect.ssi, connect.typed) = (*form, None)),
             Action::Use(link) => self.edit(|connect| connect.take(link)),
             Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
             Action::Recording(path) => self.edit(|connect| {
                 let path = path.display().to_string();
-                (connect.form.file, connect.biss.file, connect.typed) = (path.clone(), path, None);
+                (connect.form.file, connect.biss.file) = (path.clone(), path.clone());
+                (connect.ssi.file, connect.typed) = (path, None);
             }),
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };

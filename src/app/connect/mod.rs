@@ -5,11 +5,13 @@ mod act;
 mod biss_form;
 mod form;
 mod ports;
+mod ssi_form;
 mod target;
 
 pub use biss_form::{BissForm, BissWay};
 pub use form::{LinkForm, LinkKind};
 pub use ports::{Offer, offered_ports};
+pub use ssi_form::{SsiForm, SsiWay};
 pub use target::is_missing;
 
 use std::path::PathBuf;
@@ -38,6 +40,8 @@ pub enum Action {
     Edit(Box<LinkForm>),
     /// The form for a BiSS encoder was edited.
     EditBiss(Box<BissForm>),
+    /// The form for an SSI encoder was edited.
+    EditSsi(Box<SsiForm>),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
     /// Ask for a recording.
@@ -62,6 +66,8 @@ pub struct Connect {
     pub form: LinkForm,
     /// The link to a BiSS encoder as a form.
     pub biss: BissForm,
+    /// The link to an SSI encoder as a form.
+    pub ssi: SsiForm,
     /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
     pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
@@ -93,7 +99,8 @@ impl Connect {
     pub(super) fn new(device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let form = LinkForm::from_url(&last(Tab::Hiperface).unwrap_or_else(LinkUrl::sim));
         let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
-        Connect { device, form, biss, typed: None, ports: None, problem: None, search: None }
+        let ssi = SsiForm::from_url(&last(Tab::Ssi).unwrap_or_else(SsiForm::usual));
+        Connect { device, form, biss, ssi, typed: None, ports: None, problem: None, search: None }
     }
 
     /// The link that was typed, else the one that the form stands for.
@@ -103,8 +110,11 @@ impl Connect {
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
-            None if self.device == Tab::Biss => self.biss.url(),
-            None => self.form.url(),
+            None => match self.device {
+                Tab::Biss => self.biss.url(),
+                Tab::Ssi => self.ssi.url(),
+                Tab::Hiperface | Tab::Signals => self.form.url(),
+            },
         }
     }
 
@@ -120,6 +130,7 @@ impl Connect {
         if let Ok(url) = self.read(&link) {
             match self.device {
                 Tab::Biss => self.biss = BissForm::from_url(&url),
+                Tab::Ssi => self.ssi = SsiForm::from_url(&url),
                 Tab::Hiperface | Tab::Signals => self.form = LinkForm::from_url(&url),
             }
         }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::app::{biss, hiperface};
+use crate::app::{biss, hiperface, ssi};
 
 /// What can be wished of every device.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,6 +60,7 @@ impl AnyDevice {
         match self {
             AnyDevice::Hiperface(device) => Action::Hiperface(device.session.id, own!(hiperface, wish)),
             AnyDevice::Biss(device) => Action::Biss(device.session.id, own!(biss, wish)),
+            AnyDevice::Ssi(device) => Action::Ssi(device.session.id, own!(ssi, wish)),
         }
     }
 }

@@ -131,7 +131,8 @@ const PHRASES: &[&str] = &[
 
 /// A phrase of a lower floor, which speaks English: recognised by its words.
 pub fn phrase(words: &str) -> Text {
-    PHRASES.iter().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
+    let all = PHRASES.iter().chain(super::ssi::PHRASES);
+    all.copied().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
 }
 
 /// A text that is no link, or a parameter that it does not take.

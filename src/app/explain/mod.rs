@@ -7,6 +7,7 @@ mod detail;
 pub mod hiperface;
 pub mod signal;
 pub mod ssi;
+pub mod traced;
 
 use std::path::Path;
 

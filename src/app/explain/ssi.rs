@@ -1,9 +1,14 @@
 //! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
 
+mod refused;
+
 use super::{adapter, link};
 use crate::app::Text;
-use crate::protocol::ssi::{Advice, Finding, Meaning, Warning};
+use crate::protocol::ssi::{Advice, Code, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning};
 use crate::worker::ssi::JobError;
+
+pub(super) use refused::PHRASES;
+pub use refused::{format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
@@ -72,6 +77,74 @@ pub fn timing(warning: &Warning) -> Text {
         Warning::Repeats { update } => Text::new("ssi.repeats").with_number("micros", micros(update), 0),
         Warning::NoSynchronous => Text::new("ssi.no_synchronous"),
     }
+}
+
+/// A frame in a line: its clocks, its positions, its code, its error bits.
+pub fn frame(layout: &Layout) -> Text {
+    let descriptor = layout.descriptor();
+    let range = match descriptor.range {
+        Range::Bits { multiturn: 0, singleturn } => Text::new("ssi_range.single").with("singleturn", singleturn),
+        Range::Bits { multiturn, singleturn } => {
+            Text::new("ssi_range.multi").with("multiturn", multiturn).with("singleturn", singleturn)
+        }
+        Range::Steps { per_turn, turns } => Text::new("ssi_range.steps").with("steps", per_turn).with("turns", turns),
+        Range::RoundAxis { steps, revolutions } => Text::new("ssi_range.round")
+            .with("steps", steps)
+            .with("above", revolutions.numerator)
+            .with("below", revolutions.denominator),
+        Range::Length { bits, step_nanometres } => {
+            Text::new("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
+        }
+    };
+    let errors = descriptor.errors.iter().map(|bit| format!("{} {}", bit.name, bit.clock)).collect::<Vec<_>>();
+    let errors = if errors.is_empty() { "–".to_owned() } else { errors.join(", ") };
+    Text::new("ssi.frame_line")
+        .with("clocks", layout.clocks())
+        .with_text("range", range)
+        .with_text("code", code(descriptor.code))
+        .with("lead", descriptor.lead)
+        .with("errors", errors)
+}
+
+/// A code by its name.
+pub fn code(code: Code) -> Text {
+    Text::new(match code {
+        Code::Binary => "ssi_form.binary",
+        Code::Gray => "ssi_form.gray",
+        Code::GrayExcess => "ssi_form.gray_excess",
+        Code::Bcd => "ssi_form.bcd",
+    })
+}
+
+/// What would tell layouts apart.
+pub fn open(open: Open) -> Text {
+    Text::new(match open {
+        Open::TurnOnce => "ssi_find.turn_once",
+        Open::TurnFarther => "ssi_find.turn_farther",
+        Open::SeeAnError => "ssi_find.see_an_error",
+        Open::TypeLabel => "ssi_find.type_label",
+    })
+}
+
+/// What speaks for a layout.
+pub fn evidence(evidence: &Evidence) -> Text {
+    Text::new("ssi_find.evidence")
+        .with("steps", evidence.steps_a_frame)
+        .with("jumps", evidence.jumps)
+        .with("misfits", evidence.misfits)
+        .with("errors", evidence.errors)
+        .with("bits", evidence.bits_seen)
+}
+
+/// How often and when there was something to say.
+pub fn noted(noted: &Noted) -> Text {
+    let seconds = |time: crate::signal::Time| time.nanoseconds() as f64 / 1e9;
+    let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
+    Text::new(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
+        "last",
+        seconds(noted.last),
+        3,
+    )
 }
 
 #[cfg(test)]

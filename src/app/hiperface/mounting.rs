@@ -19,7 +19,7 @@ impl Encoder {
         };
         match &self.session.source {
             Source::File { document, .. } => document.body.hiperface().map(own).unwrap_or_default(),
-            Source::Link(_) => {
+            Source::Link(_) | Source::New { .. } => {
                 let Some(identity) = &self.identity else { return Vec::new() };
                 own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))
             }

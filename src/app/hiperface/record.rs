@@ -110,7 +110,7 @@ fn meaning(geometry: Option<Geometry>) -> Meaning {
         }
         Some(rotary @ Geometry::Rotary { .. }) => {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
-            Meaning::of_turns(range, rotary.steps_per_turn().unwrap_or(1))
+            Meaning::of_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
         // The whole word, which goes round at its end.
         None => Meaning::of_steps(Some(1 << 32)),

@@ -43,10 +43,14 @@ pub(in crate::app) trait Drafted {
     /// A profile was read again from its file; edits stay.
     fn take_document(&mut self, path: PathBuf, key: String, document: Document);
 
+    /// A profile of a connected device was written.
+    fn written_beside(&mut self, _document: Document) {}
+
     /// Whose draft it is; `None` for a device that does not say who it is.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::of_file(Self::KIND, key)),
+            Source::New { .. } => Some(DraftKey::of_file(Self::KIND, "new")),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
                 let name = || format!("{device_type}-{serial}");
@@ -103,10 +107,13 @@ pub(in crate::app) trait Drafted {
         services: &mut Services,
     ) {
         let is_well = self.session_mut().tell_of_profile(&path, remarks, result, services);
-        if !is_well || self.session().phase != Phase::Offline {
+        if !is_well {
             return;
         }
-        let moves = matches!(&self.session().source, Source::File { key: own, .. } if *own != key);
+        if self.session().phase != Phase::Offline {
+            return self.written_beside(document);
+        }
+        let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == key);
         if moves {
             let before = self.draft_key();
             self.drafting_mut().forget(before, services);

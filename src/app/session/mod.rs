@@ -38,6 +38,11 @@ pub enum Source {
         /// What is in it, without the edits.
         document: Box<Document>,
     },
+    /// Made here, and in no file yet.
+    New {
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
 }
 
 /// How it stands with the connection.
@@ -113,6 +118,11 @@ impl<D: Kind> Session<D> {
         Session::new(id, Source::File { path, key, document: Box::new(document) }, Phase::Offline)
     }
 
+    /// With what is in no file yet.
+    pub(in crate::app) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
+        Session::new(id, Source::New { suggested }, Phase::Offline)
+    }
+
     fn new(id: SessionId, source: Source, phase: Phase) -> Self {
         Session {
             id,
@@ -185,6 +195,7 @@ impl<D: Kind> Session<D> {
         match &self.source {
             Source::Link(url) => without_codes(url),
             Source::File { path, .. } => path.display().to_string(),
+            Source::New { .. } => String::new(),
         }
     }
 
@@ -194,14 +205,15 @@ impl<D: Kind> Session<D> {
             (Source::File { path, .. }, _) => {
                 path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
             }
-            (Source::Link(_), Some(title)) => title.clone(),
+            (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
+            (Source::New { suggested }, None) => suggested.display().to_string(),
             (Source::Link(url), None) => without_codes(url),
         }
     }
 
     /// A name for a profile of it.
     pub(in crate::app) fn suggested_file(&self) -> PathBuf {
-        if let Source::File { path, .. } = &self.source {
+        if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
             return path.clone();
         }
         let words = self.title.as_ref().map(|title| {

@@ -36,7 +36,7 @@ fn samples(track: &Track<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
 
 #[test]
 fn a_stream_is_recorded_as_it_comes() {
-    let meaning = Meaning::of_turns(Some(1000), 1000);
+    let meaning = Meaning::of_turns(Some(1000), 1000.0);
     let mut track = Track::<Nothing>::default();
     // In portions that are no multiples of anything.
     let all = stream(0, 40_000);
@@ -54,7 +54,7 @@ fn a_stream_is_recorded_as_it_comes() {
 
 #[test]
 fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
-    let meaning = Meaning::of_turns(Some(1000), 1000);
+    let meaning = Meaning::of_turns(Some(1000), 1000.0);
     let mut track = Track::<Nothing>::default();
     let mut own = stream(0, 6);
     own[2].position = None;

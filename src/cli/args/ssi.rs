@@ -77,7 +77,7 @@ pub(in crate::cli) struct SsiExport {
     /// timing: the clock in hertz; as in the profile, else 400000.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
     pub(in crate::cli) clock: Option<u32>,
-    /// timing: the pause behind a burst, in microseconds; as in the profile, else 200.
+    /// timing: the pause behind a burst, in microseconds; as in the profile, else 250.
     #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(in crate::cli) pause: Option<u32>,
     /// timing: the cable in metres.

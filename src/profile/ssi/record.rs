@@ -51,9 +51,10 @@ pub struct Kept {
 }
 
 impl Default for ReadingSettings {
-    /// A clock for 50 m of cable (SICK SSI description 2.7), and a pause behind which every family is ready.
+    /// A clock for 50 m of cable (SICK SSI description 2.7), and a pause behind which every family is ready, also an ATM60
+    /// with any number of steps (more than 200 µs, reference section 5).
     fn default() -> Self {
-        ReadingSettings { clock_hz: 400_000, pause_us: 200, cable_metres: None, synchronous: false }
+        ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }
     }
 }
 

@@ -108,6 +108,26 @@ impl Flags {
     }
 }
 
+impl Default for Layout {
+    /// The least frame: one bit.
+    fn default() -> Self {
+        Layout {
+            descriptor: Descriptor::plain(0, 1),
+            coding: Coding::BIT,
+            parts: [Part::default(), Part { in_word: 0, in_code: 0, mask: 1 }],
+            lost: false,
+            behind_area: 0,
+            gray: (0, 1),
+            zeros: 0,
+            errors: Vec::new(),
+            low: 0,
+            parity: (0, 0),
+            patterns: Vec::new(),
+            invalid: Flags::CODE.with(Flags::PARITY).with(Flags::REPEAT),
+        }
+    }
+}
+
 impl Layout {
     /// Checks a frame.
     ///

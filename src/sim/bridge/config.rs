@@ -149,8 +149,8 @@ impl Config {
 }
 
 const TROUBLES: &str = "ssi-error";
-/// 12 bits of turns, 13 within one.
-const DELIVERED: &str = "atm60,code=gray";
+/// The SSI frame of an encoder that nothing else is said of: 12 bits of turns, 13 within one.
+pub const DELIVERED: &str = "atm60,code=gray";
 
 fn ssi(text: &str) -> Option<SsiEncoder> {
     let (key, settings) = Settings::parse(text).ok()?;

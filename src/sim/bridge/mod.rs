@@ -23,4 +23,4 @@ mod trouble;
 mod uart;
 
 pub use adapter::Adapter;
-pub use config::{Config, SsiEncoder};
+pub use config::{Config, DELIVERED, SsiEncoder};

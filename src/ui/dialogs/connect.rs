@@ -2,6 +2,7 @@
 //! settings nobody remembers.
 
 mod biss;
+mod ssi;
 
 use std::time::Duration;
 
@@ -47,7 +48,7 @@ pub(in crate::ui) fn connect_ui(
 ) {
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
-    let (mut form, mut biss) = (dialog.form.clone(), dialog.biss.clone());
+    let (mut form, mut biss, mut ssi) = (dialog.form.clone(), dialog.biss.clone(), dialog.ssi.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
             ui.label(skin.heading(skin.say("connect.title")));
@@ -60,6 +61,7 @@ pub(in crate::ui) fn connect_ui(
             used_before(ui, skin, studio.settings.links(dialog.device), actions);
             match dialog.device {
                 Tab::Biss => biss::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
+                Tab::Ssi => ssi::form_ui(ui, skin, dialog, &mut ssi, &mut view.more, actions),
                 Tab::Hiperface | Tab::Signals => hiperface(ui, skin, dialog, &mut form, view, actions),
             }
         });
@@ -85,6 +87,9 @@ pub(in crate::ui) fn connect_ui(
     }
     if biss != dialog.biss {
         actions.insert(0, Action::Connect(Connect::EditBiss(Box::new(biss))));
+    }
+    if ssi != dialog.ssi {
+        actions.insert(0, Action::Connect(Connect::EditSsi(Box::new(ssi))));
     }
 }
 
@@ -381,4 +386,17 @@ fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
     if let Some(end) = &search.end {
         paragraph(ui, skin.words(end));
     }
+}
+
+/// One of a few, side by side.
+fn segments<T: PartialEq + Copy, const N: usize>(ui: &mut Ui, skin: &Skin, own: &mut T, all: [(T, &'static str); N]) {
+    ui.horizontal(|ui| {
+        for (one, id) in all {
+            let word = skin.say(id);
+            let response = ui.add(egui::Button::selectable(*own == one, &word));
+            if name(response, true, &word).clicked() {
+                *own = one;
+            }
+        }
+    });
 }

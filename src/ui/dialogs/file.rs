@@ -69,6 +69,8 @@ fn kind(question: &FileQuestion) -> &'static str {
         FileQuestion::Open | FileQuestion::Save { .. } => "file.profiles",
         FileQuestion::OpenCapture => "file.captures",
         FileQuestion::Recording => "file.recordings",
+        FileQuestion::OpenFrames { .. } | FileQuestion::Frames { .. } => "file.frames",
+        FileQuestion::Export { format, .. } => format.word(),
         FileQuestion::Table { .. } => "file.tables",
         FileQuestion::Picture { .. } => "file.pictures",
     }
@@ -92,6 +94,9 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         FileQuestion::OpenCapture => ("file.capture_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::Recording => ("file.recording_title", "file.choose", icons::FOLDER_OPEN),
         FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::OpenFrames { .. } => ("file.open_frames_title", "file.open", icons::FOLDER_OPEN),
+        FileQuestion::Frames { .. } => ("file.frames_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::Export { .. } => ("file.export_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),
     };

@@ -195,3 +195,8 @@ fn gray_over_the_position_and_over_the_zeros() {
     assert!(position.decode(0b1_0101_1110).flags.has(Flags::PADDING));
     assert_eq!(area.decode(0b1_0101_1110).position, 101);
 }
+
+#[test]
+fn the_least_frame_is_checked_like_any_other() {
+    assert_eq!(Ok(Layout::default()), Layout::new(Descriptor::plain(0, 1)));
+}

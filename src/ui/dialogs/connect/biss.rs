@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
-use super::{Dialog, echo, margin, network, parity, recording, serial, unfolded};
+use super::{Dialog, echo, margin, network, parity, recording, segments, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{BissForm, BissWay};
 use crate::protocol::biss::ByteOrder;
 use crate::ui::Skin;
-use crate::ui::controls::{choice, entry, name, paragraph, text_entry};
+use crate::ui::controls::{choice, entry, paragraph, text_entry};
 
 /// Draws the form.
 pub(super) fn form_ui(
@@ -90,18 +90,5 @@ fn simulated(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
     entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
     entry(ui, skin, &skin.say("connect.fault"), |ui| {
         text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
-    });
-}
-
-/// One of a few, side by side.
-fn segments<T: PartialEq + Copy, const N: usize>(ui: &mut Ui, skin: &Skin, own: &mut T, all: [(T, &'static str); N]) {
-    ui.horizontal(|ui| {
-        for (one, id) in all {
-            let word = skin.say(id);
-            let response = ui.add(egui::Button::selectable(*own == one, &word));
-            if name(response, true, &word).clicked() {
-                *own = one;
-            }
-        }
     });
 }

@@ -1,0 +1,199 @@
+//! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
+
+use super::target::{assemble, entered, filled, host_and_port, refused};
+use crate::app::Text;
+use crate::device::ssi::PARAMETERS;
+use crate::link::{LinkUrl, Scheme};
+use crate::sim::{biss, bridge};
+use crate::worker::ssi::check;
+
+/// How the encoder is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SsiWay {
+    /// The virtual encoder in this program, behind a virtual adapter.
+    #[default]
+    Virtual,
+    /// An adapter at a serial port or in the network.
+    Adapter,
+    /// A recorded trace.
+    Replay,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SsiForm {
+    /// How the encoder is reached.
+    pub way: SsiWay,
+    /// Over a network, and not a serial port of this machine.
+    pub network: bool,
+    /// Serial port of the adapter.
+    pub port: String,
+    /// Its name or address.
+    pub host: String,
+    /// Its TCP port.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Volts that the adapter supplies the encoder with; empty: none.
+    pub voltage: String,
+    /// Milliseconds that a reply may come later than usual.
+    pub margin: String,
+    /// The frame that the virtual encoder sends: a family with its settings.
+    pub layout: String,
+    /// The virtual encoder's speed in revolutions a minute.
+    pub rpm: String,
+    /// What goes wrong with it on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+/// Begins the target of a link to an adapter in the network.
+const TCP: &str = "tcp:";
+
+impl SsiForm {
+    /// The virtual encoder as the window begins with it: slow enough for the bits to be seen.
+    pub fn usual() -> LinkUrl {
+        let mut url = LinkUrl::sim();
+        url.query.set("rpm", "6");
+        url
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let mut form = SsiForm::default();
+        let target = url.target.as_str();
+        form.way = match url.scheme {
+            Scheme::Sim => SsiWay::Virtual,
+            Scheme::Replay => SsiWay::Replay,
+            Scheme::Bridge | Scheme::Serial | Scheme::Tcp => SsiWay::Adapter,
+        };
+        if let Some(network) = target.strip_prefix(TCP).filter(|_| url.scheme == Scheme::Bridge) {
+            let (host, port) = network.rsplit_once(':').unwrap_or((network, ""));
+            (form.network, form.host, form.tcp_port) = (true, host.to_owned(), port.to_owned());
+        } else if form.way == SsiWay::Replay {
+            form.file = target.to_owned();
+        } else {
+            form.port = target.to_owned();
+        }
+        for (name, value) in url.query.pairs() {
+            match form.entry(name) {
+                Some(entry) => value.clone_into(entry),
+                None => form.rest.push((name.clone(), value.clone())),
+            }
+        }
+        form
+    }
+
+    /// The entry of a parameter; `None` where there is none.
+    fn entry(&mut self, name: &str) -> Option<&mut String> {
+        let is_virtual = self.way == SsiWay::Virtual;
+        match name {
+            "margin" => Some(&mut self.margin),
+            "voltage" => Some(&mut self.voltage),
+            "ssi" if is_virtual => Some(&mut self.layout),
+            "rpm" if is_virtual => Some(&mut self.rpm),
+            "fault" if is_virtual => Some(&mut self.fault),
+            _ => None,
+        }
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        let (scheme, target) = self.target()?;
+        let url = assemble(scheme, &target, &self.parameters())?;
+        check(&url).map_err(|error| refused(&url, &error))?;
+        Ok(url)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        Ok(match self.way {
+            SsiWay::Virtual => (Scheme::Sim, String::new()),
+            SsiWay::Adapter if self.network => {
+                (Scheme::Bridge, format!("{TCP}{}", host_and_port(&self.host, &self.tcp_port)?))
+            }
+            SsiWay::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
+            SsiWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Vec<(String, String)> {
+        let is_virtual = self.way == SsiWay::Virtual;
+        let mut parameters = Vec::new();
+        let mut add = |name: &str, value: &str| {
+            parameters.extend(filled(value).map(|value| (name.to_owned(), value)));
+        };
+        if is_virtual {
+            add("ssi", &self.layout);
+            // A German keyboard has a comma where the point should be.
+            add("rpm", &self.rpm.replace(',', "."));
+            add("fault", &self.fault);
+        }
+        add("voltage", &self.voltage.replace(',', "."));
+        add("margin", &self.margin);
+        // What only a virtual encoder has is not taken along.
+        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
+        parameters.extend(self.rest.iter().filter(|(name, _)| belongs(name)).cloned());
+        parameters
+    }
+}
+
+/// A setting of the virtual encoder or of the virtual adapter before it.
+fn is_of_the_virtual(name: &str) -> bool {
+    biss::Config::KEYS.contains(&name) || bridge::Config::KEYS.contains(&name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        for link in [
+            "sim:",
+            "sim:?rpm=6",
+            "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
+            "bridge:/dev/ttyACM0",
+            "bridge:/dev/ttyACM0?voltage=24&margin=200",
+            "bridge:tcp:adapter:5000?clock=1500000&pause=30",
+            "replay:monday.trace",
+        ] {
+            let url: LinkUrl = link.parse().unwrap();
+            let mut expected: Vec<_> = url.query.pairs().to_vec();
+            let back = SsiForm::from_url(&url).url().unwrap();
+            let mut found: Vec<_> = back.query.pairs().to_vec();
+            expected.sort();
+            found.sort();
+            assert_eq!((back.scheme, &back.target, found), (url.scheme, &url.target, expected), "{link}");
+        }
+        assert_eq!(SsiForm::usual().to_string(), "sim:?rpm=6");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut SsiForm)| {
+            let mut form = SsiForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = SsiWay::Adapter), "form.port_missing");
+        assert_eq!(refused(|form| (form.way, form.network) = (SsiWay::Adapter, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.way = SsiWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
+        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
+        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
+        assert_eq!(refused(|form| form.layout = "atm61".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.voltage = "48".to_owned()), "form.parameter");
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
+        (form.way, form.port) = (SsiWay::Adapter, "COM3".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
+    }
+}

@@ -1,0 +1,34 @@
+//! What passes over the line to an adapter, in words, whatever bus is behind it.
+
+use super::plain;
+use crate::app::Text;
+use crate::protocol::bridge::{Message, Packet, Reply, Request};
+
+/// The packet in bytes as they pass over the line; `None`: they are none.
+pub fn packet(bytes: &[u8]) -> Option<Packet> {
+    let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
+    Packet::parse(stuffed).ok()
+}
+
+/// What an adapter is asked, whatever is behind it.
+pub fn asked(request: &Request) -> Text {
+    match request {
+        Request::BissRead | Request::SsiRead => Text::new("trace.position"),
+        Request::Hello => Text::new("trace.hello"),
+        _ => Text::new("trace.set_up"),
+    }
+}
+
+/// What an adapter says; `None` for what is no message of one.
+pub fn said(packet: &Packet) -> Option<Text> {
+    Some(match Message::parse(packet).ok()? {
+        Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),
+        Message::Reply(Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value }) => {
+            plain(format!("0x{value:02X}"))
+        }
+        Message::Reply(Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
+        Message::Reply(_) => Text::new("trace.taken"),
+        Message::Error { text, .. } => Text::new("trace.adapter_refuses").with("why", text),
+        Message::Data(_) => Text::new("trace.stream"),
+    })
+}

@@ -1,0 +1,87 @@
+//! What can be asked of an SSI encoder that is shown, or of its layout.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::design::Edit;
+use super::export::Format;
+use super::form::{Field, Input};
+use super::strip::Handle;
+use crate::app::studio::SessionId;
+
+/// Something in the SSI tab.
+pub enum Action {
+    /// Open the link again, after it was lost or could not be opened.
+    Reconnect,
+    /// Ask the adapter anew who it is; a layout in a file is read again.
+    Read,
+    /// Read one word.
+    ReadPosition,
+    /// Read words all the time, or no more.
+    Poll(Option<Duration>),
+    /// Change the layout.
+    Edit(Box<Edit>),
+    /// Put something into a row of its form.
+    Enter(Field, Input),
+    /// Move something in its frame to a clock, or as near to it as it can be.
+    Move(Handle, u8),
+    /// One more error bit.
+    AddErrorBit,
+    /// No error bit of this number any more.
+    RemoveErrorBit(usize),
+    /// Take the last change back.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Take all changes back.
+    RevertAll,
+    /// Try the layout with something.
+    Try(Try),
+    /// Show what writing would do: nothing is ever written.
+    Review,
+    /// Show what restoring a backup would do: there is none.
+    Restore(PathBuf),
+    /// Take this layout for a connected encoder.
+    WriteInto(SessionId),
+    /// Words have so many clocks while a layout is looked for; `None`: as many as the layout.
+    SetClocks(Option<u8>),
+    /// Look for the layout of the words that were read last.
+    Find,
+    /// Ask for a file with frames, to look for their layout.
+    AskFrames,
+    /// Look for the layout of the frames in a file.
+    FindIn(PathBuf),
+    /// Forget what was found.
+    ForgetSearch,
+    /// Take a layout that was found: the number of its class, and its place in that.
+    Take(usize, usize),
+    /// Forget what error bits have said.
+    ForgetErrors,
+    /// Ask where to save the layout.
+    AskSave,
+    /// Ask where to write the layout for other programs.
+    AskExport(Format),
+    /// Write the layout for other programs.
+    Export(Format, PathBuf),
+    /// Ask where to write the words that are kept.
+    AskSaveFrames,
+    /// Write the words that are kept.
+    SaveFrames(PathBuf),
+    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    Turn(f64),
+}
+
+/// A frame to try a layout with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Try {
+    /// The frame of a position.
+    Position(u64),
+    /// The frame of a turn and the steps within it.
+    Place(u64, u64),
+    /// A frame as it is written down.
+    Bits(String),
+    /// The other value for the bit on this clock, counted from 1.
+    Toggle(u8),
+    /// The word that was read last, again and again.
+    Live,
+}

@@ -1,0 +1,300 @@
+//! A layout on the drawing board: every change is a step with a way back, and what cannot work is refused in words and
+//! changes nothing, so that there is a frame at any time.
+
+mod reshape;
+
+use std::sync::Arc;
+
+use crate::app::Text;
+use crate::app::explain;
+use crate::link::{LinkUrl, Scheme};
+use crate::profile::ssi::{ReadingSettings, SsiProfile};
+use crate::protocol::ssi::{
+    Advice, Code, Descriptor, Direction, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
+};
+use crate::sim::bridge::DELIVERED;
+
+/// Steps that can be undone.
+const UNDO_STEPS: usize = 200;
+/// A layout to begin with.
+const TO_BEGIN_WITH: &str = "ahm36";
+
+/// A layout that can work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// What is saved of it.
+    pub profile: SsiProfile,
+    /// Its frame, checked.
+    pub layout: Layout,
+    /// The settings with which its family sends just this frame; `None`: it belongs to no family, or the family cannot.
+    pub settings: Option<Settings>,
+    /// What is accepted although the family's manual does not speak of it.
+    pub advice: Vec<Advice>,
+}
+
+/// A change of a layout.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// A family's layout as delivered, by its key.
+    Family(String),
+    /// No family: the frame stays, and everything about it can be set.
+    Free,
+    /// The family with other settings.
+    Settings(Box<Settings>),
+    /// Another frame.
+    Frame(Box<Descriptor>),
+    /// Other positions or another code; the frame grows and shrinks with them.
+    Position(Range, Code),
+    /// Which way the positions count.
+    Direction(Direction),
+    /// The position at the shaft's zero.
+    Preset(u64),
+    /// How one reads.
+    Reading(ReadingSettings),
+    /// What a person calls it.
+    Name(String),
+    /// Another layout as a whole.
+    Whole(Box<SsiProfile>),
+    /// The layout of a format string of LinuxCNC.
+    LinuxCnc(String),
+}
+
+/// The drawing board.
+#[derive(Clone, Debug)]
+pub struct Designer {
+    families: Arc<Families>,
+    now: Design,
+    saved: SsiProfile,
+    undo: Vec<SsiProfile>,
+    redo: Vec<SsiProfile>,
+    problem: Option<Text>,
+}
+
+impl Design {
+    /// A layout with what its family makes of it.
+    ///
+    /// # Errors
+    /// Why it cannot work.
+    pub fn of(profile: SsiProfile, families: &Families) -> Result<Self, Text> {
+        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| explain::ssi::layout(&error))?;
+        let family = profile.family.as_deref().and_then(|key| families.named(key));
+        let settings = family.and_then(|family| family.settings_of(&profile.descriptor));
+        let resolved = family.zip(settings.as_ref()).and_then(|(family, settings)| settings.resolve(family).ok());
+        let advice = resolved.map(|resolved| resolved.advice).unwrap_or_default();
+        Ok(Design { profile, layout, settings, advice })
+    }
+}
+
+impl Default for Design {
+    /// The least frame.
+    fn default() -> Self {
+        let layout = Layout::default();
+        let profile = SsiProfile::new(layout.descriptor().clone());
+        Design { profile, layout, settings: None, advice: Vec::new() }
+    }
+}
+
+impl Designer {
+    /// With a layout as it is saved. One that cannot work, which no file holds, is left out.
+    fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
+        let now = Design::of(profile, &families).unwrap_or_default();
+        let saved = now.profile.clone();
+        Designer { families, now, saved, undo: Vec::new(), redo: Vec::new(), problem: None }
+    }
+
+    /// With the layout of a family as delivered.
+    pub(super) fn delivered(families: Arc<Families>) -> Self {
+        let profile = of_text(TO_BEGIN_WITH, &families);
+        Designer::with(profile, families)
+    }
+
+    /// With the layout that a virtual encoder sends; nobody knows what another one does.
+    pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
+        let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
+        let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
+        let number = |name: &str| url.query.get(name).and_then(|text| text.parse::<u32>().ok());
+        if let Some(clock_hz) = number("clock") {
+            profile.reading.clock_hz = clock_hz;
+        }
+        if let Some(pause_us) = number("pause").and_then(|pause| u16::try_from(pause).ok()) {
+            profile.reading.pause_us = pause_us;
+        }
+        Designer::with(profile, families)
+    }
+
+    /// Another layout, as it is saved.
+    pub(super) fn open(&mut self, profile: SsiProfile) {
+        *self = Designer::with(profile, self.families.clone());
+    }
+
+    /// The layout as it is designed.
+    pub fn design(&self) -> &Design {
+        &self.now
+    }
+
+    /// Its frame.
+    pub fn layout(&self) -> &Layout {
+        &self.now.layout
+    }
+
+    /// All families known.
+    pub fn families(&self) -> &Families {
+        &self.families
+    }
+
+    /// The family whose limits and times count.
+    pub fn family(&self) -> Option<&Family> {
+        self.families.named(self.now.profile.family.as_deref()?)
+    }
+
+    /// What the times of the family allow; `None` without one.
+    pub fn times(&self) -> Option<&Times> {
+        self.family().map(|family| &family.times)
+    }
+
+    /// Why the last change was refused.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+
+    /// It is not as it was saved.
+    pub fn is_dirty(&self) -> bool {
+        self.now.profile != self.saved
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// Other families are known: what one makes of the layout is looked at anew.
+    pub(super) fn take_families(&mut self, families: Arc<Families>) {
+        self.families = families;
+        if let Ok(design) = Design::of(self.now.profile.clone(), &self.families) {
+            self.now = design;
+        }
+    }
+
+    /// Changes the layout, as one step that can be undone. False where it stays as it is.
+    pub(super) fn edit(&mut self, edit: Edit) -> bool {
+        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families)) {
+            Ok(design) => {
+                self.problem = None;
+                if design.profile == self.now.profile {
+                    return false;
+                }
+                let before = std::mem::replace(&mut self.now, design);
+                self.redo.clear();
+                self.undo.push(before.profile);
+                if self.undo.len() > UNDO_STEPS {
+                    self.undo.remove(0);
+                }
+                true
+            }
+            Err(why) => {
+                self.problem = Some(why);
+                false
+            }
+        }
+    }
+
+    /// Something was entered that stands for nothing.
+    pub(super) fn refuse(&mut self, why: Text) {
+        self.problem = Some(why);
+    }
+
+    /// The layout after a change.
+    fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
+        let mut profile = self.now.profile.clone();
+        match edit {
+            Edit::Family(key) => {
+                let Some(family) = self.families.named(&key) else {
+                    return Err(Text::new("ssi.no_family").with("key", key));
+                };
+                // A preset of the one before stands for another place.
+                profile.preset = 0;
+                return resolved(profile, family, Settings::default());
+            }
+            Edit::Free => profile.family = None,
+            Edit::Settings(settings) => {
+                let Some(family) = self.family() else { return Err(Text::new("ssi.no_family").with("key", "–")) };
+                return resolved(profile, family, *settings);
+            }
+            Edit::Frame(descriptor) => profile.descriptor = *descriptor,
+            Edit::Position(range, code) => {
+                profile.descriptor = reshape::with_positions(&profile.descriptor, range, code)
+                    .map_err(|error| explain::ssi::layout(&error))?;
+            }
+            Edit::Direction(direction) => profile.direction = direction,
+            Edit::Preset(preset) => profile.preset = preset,
+            Edit::Reading(reading) => profile.reading = reading,
+            Edit::Name(name) => profile.name = name,
+            Edit::Whole(whole) => return Ok(*whole),
+            Edit::LinuxCnc(format) => {
+                let layout = from_linuxcnc(&format).map_err(|error| explain::ssi::format(&error))?;
+                profile.family = None;
+                profile.descriptor = layout.descriptor().clone();
+            }
+        }
+        // A preset beyond the positions that there are now stands for none of them.
+        let last = profile.descriptor.range.last().unwrap_or(0);
+        if profile.preset > last {
+            return Err(Text::new("ssi.preset_range").with("preset", profile.preset).with("most", last));
+        }
+        Ok(profile)
+    }
+
+    /// Undoes the last step.
+    pub(super) fn undo(&mut self) -> bool {
+        let Some(before) = self.undo.pop() else { return false };
+        self.step_to(before, |own| &mut own.redo)
+    }
+
+    /// Does the last undone step again.
+    pub(super) fn redo(&mut self) -> bool {
+        let Some(after) = self.redo.pop() else { return false };
+        self.step_to(after, |own| &mut own.undo)
+    }
+
+    fn step_to(&mut self, profile: SsiProfile, other: fn(&mut Self) -> &mut Vec<SsiProfile>) -> bool {
+        self.problem = None;
+        // It could work when the step was made.
+        let Ok(design) = Design::of(profile, &self.families) else { return false };
+        let before = std::mem::replace(&mut self.now, design);
+        other(self).push(before.profile);
+        true
+    }
+
+    /// All changes are taken back, as one step.
+    pub(super) fn revert(&mut self) -> bool {
+        self.edit(Edit::Whole(Box::new(self.saved.clone())))
+    }
+
+    /// It is saved like this now; changes stay changes.
+    pub(super) fn saved_as(&mut self, profile: SsiProfile) {
+        self.saved = profile;
+    }
+}
+
+/// The layout that a text stands for; the least one where it stands for none.
+fn of_text(text: &str, families: &Families) -> SsiProfile {
+    let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
+        let family = families.named(&key)?;
+        Some(SsiProfile::of_family(family, &settings.resolve(family).ok()?))
+    });
+    resolved.unwrap_or_else(|| Design::default().profile)
+}
+
+/// What a family with these settings sends. Direction and preset are the profile's own.
+fn resolved(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
+    let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
+    let resolved = settings.resolve(family).map_err(|error| explain::ssi::settings(&error))?;
+    profile.descriptor = resolved.layout.descriptor().clone();
+    profile.family = Some(family.key.clone());
+    Ok(profile)
+}

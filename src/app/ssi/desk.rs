@@ -1,0 +1,81 @@
+//! SSI encoders among the devices of the studio.
+
+use std::sync::Arc;
+
+use super::action::Action;
+use super::design::Edit;
+use super::encoder::Encoder;
+use crate::app::action::{Action as StudioAction, Done};
+use crate::app::services::Services;
+use crate::app::studio::{SessionId, Studio};
+use crate::app::tab::Tab;
+use crate::app::{AnyDevice, Severity, explain};
+use crate::protocol::ssi::Families;
+use crate::store::StoreError;
+
+impl Studio {
+    /// The encoder or layout that the SSI tab shows.
+    pub fn ssi(&self) -> Option<&Encoder> {
+        self.device(self.shown.of(Tab::Ssi)?)?.ssi()
+    }
+
+    /// Shows a tab. A layout needs no device: where there is none, one to begin with.
+    pub(in crate::app) fn show_tab(&mut self, tab: Tab) {
+        self.settings.tab = tab;
+        if tab == Tab::Ssi && self.ssi().is_none() {
+            self.new_layout();
+        }
+    }
+
+    /// A layout that is in no file yet.
+    pub(in crate::app) fn new_layout(&mut self) {
+        let id = self.new_id();
+        let layout = Encoder::new_layout(id, &self.services);
+        self.devices.push(AnyDevice::Ssi(Box::new(layout)));
+        self.show(Tab::Ssi, id);
+    }
+
+    pub(in crate::app) fn act_ssi(&mut self, id: SessionId, action: Action) {
+        match action {
+            Action::Reconnect => self.reconnect(id),
+            Action::WriteInto(target) => {
+                let Some(profile) = self.device(id).and_then(AnyDevice::ssi).map(Encoder::wanted_profile) else {
+                    return;
+                };
+                self.show(Tab::Ssi, target);
+                self.with_ssi(target, |encoder, _| encoder.edit(Edit::Whole(Box::new(profile))));
+            }
+            action => self.with_ssi(id, |encoder, services| encoder.act(action, services)),
+        }
+    }
+
+    pub(in crate::app) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+        self.with_device(id, |device, services| {
+            if let Some(encoder) = device.ssi_mut() {
+                act(encoder, services);
+            }
+        });
+    }
+
+    /// Reads the families of the user's own beside the built-in ones, as a task.
+    pub(in crate::app) fn read_families(&self) {
+        let store = self.services.world.store.clone();
+        self.services.tasks.run("families", move || {
+            let (families, broken) = store.ssi_families();
+            StudioAction::Done(Done::Families(Arc::new(families), broken))
+        });
+    }
+
+    /// The families were read; those that cannot be used are told.
+    pub(in crate::app) fn take_families(&mut self, families: Arc<Families>, broken: &[StoreError]) {
+        for error in broken {
+            self.services.tell(Severity::Warning, vec![explain::store(error)], None);
+        }
+        for device in &mut self.devices {
+            if let Some(encoder) = device.ssi_mut() {
+                encoder.take_families(families.clone());
+            }
+        }
+        self.services.families = families;
+    }
+}

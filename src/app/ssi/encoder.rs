@@ -1,0 +1,228 @@
+//! An SSI encoder on the desk, or a layout of one: the layout on the drawing board, a frame to try it with, what was read,
+//! and what was found about it. The encoder has no memory; nothing is ever written into it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::design::{Design, Designer, Edit};
+use super::drafts::Drafts;
+use super::record::{Record, Seen, Streamed};
+use super::search::Hunt;
+use super::trial::{Decoded, Trial};
+use crate::app::Text;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::studio::SessionId;
+use crate::device::ssi::{Asking, Identity};
+use crate::link::LinkUrl;
+use crate::profile::ssi::SsiProfile;
+use crate::profile::{Body, Document};
+use crate::protocol::ssi::{Families, Range, Reads};
+use crate::sim::biss::Motor;
+use crate::worker::ssi::Ssi;
+
+/// An SSI encoder, or a layout of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Ssi>,
+    /// The layout.
+    pub designer: Designer,
+    /// The frame that it is tried with.
+    pub trial: Trial,
+    /// The frame that it is tried with is the word that was read last.
+    pub(super) follows: bool,
+    /// What was read.
+    pub record: Record,
+    /// The search for the layout.
+    pub hunt: Hunt,
+    /// Searches that were begun.
+    pub(super) searches: u32,
+    /// Who the adapter is and how it takes words, once it has told.
+    pub identity: Option<Identity>,
+    /// What turns the virtual encoder's shaft.
+    pub motor: Option<Motor>,
+    /// Words have so many clocks while a layout is looked for.
+    pub(super) clocks: Option<u8>,
+    /// How the adapter was last told to take words.
+    pub(super) told: Option<Asking>,
+    pub(in crate::app) drafting: Drafting<Drafts>,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl, services: &Services) -> Self {
+        let families = services.ssi_families();
+        let designer = Designer::at_link(&url, families);
+        Encoder::with(Session::at_link(id, url), designer)
+    }
+
+    /// A layout that is in no file yet: a family's as delivered.
+    pub(in crate::app) fn new_layout(id: SessionId, services: &Services) -> Self {
+        let designer = Designer::delivered(services.ssi_families());
+        let suggested = PathBuf::from("layout.ron");
+        let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// A layout in a file.
+    pub(in crate::app) fn in_file(
+        id: SessionId,
+        (path, key): (PathBuf, String),
+        document: Document,
+        services: &Services,
+    ) -> Self {
+        let families = services.ssi_families();
+        let mut designer = Designer::delivered(families);
+        if let Body::Ssi(profile) = &document.body {
+            designer.open(profile.clone());
+        }
+        let mut encoder = Encoder::with(Session::in_file(id, (path, key), document), designer);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    fn with(session: Session<Ssi>, designer: Designer) -> Self {
+        let mut trial = Trial::default();
+        // A position whose bits can be told apart.
+        trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
+        Encoder {
+            drafting: Drafting::new(session.id),
+            record: Record::new(designer.layout().clone()),
+            session,
+            designer,
+            trial,
+            follows: true,
+            hunt: Hunt::default(),
+            searches: 0,
+            identity: None,
+            motor: None,
+            clocks: None,
+            told: None,
+        }
+    }
+
+    /// The layout as it is designed.
+    pub fn design(&self) -> &Design {
+        self.designer.design()
+    }
+
+    /// The frame that is shown: the word that was read last where that is wished and there is one, else the one to try with.
+    pub fn shown(&self) -> Decoded {
+        let live = || self.record.last().and_then(|seen| seen.decoded.clone());
+        self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
+    }
+
+    /// What is shown is the word that was read last.
+    pub fn is_following(&self) -> bool {
+        self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
+    }
+
+    /// The word that was read last; `None`: none was.
+    pub fn last(&self) -> Option<&Seen> {
+        self.record.last()
+    }
+
+    /// What an adapter streams now; `None` where it does not.
+    pub fn streamed(&self) -> Option<&Streamed> {
+        self.record.streamed().filter(|_| self.session.is_polling())
+    }
+
+    /// Clocks of the words that are read: those of the layout, unless others are tried.
+    pub fn clocks(&self) -> u8 {
+        self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
+    }
+
+    /// Other clocks than those of the layout are tried.
+    pub fn has_own_clocks(&self) -> bool {
+        self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
+    }
+
+    /// How the adapter is to take words.
+    pub(super) fn asking(&self) -> Asking {
+        let reading = &self.design().profile.reading;
+        Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
+    }
+
+    pub(in crate::app) fn edits(&self) -> usize {
+        usize::from(self.designer.is_dirty())
+    }
+
+    pub(in crate::app) fn can_undo(&self) -> bool {
+        self.designer.can_undo()
+    }
+
+    pub(in crate::app) fn can_redo(&self) -> bool {
+        self.designer.can_redo()
+    }
+
+    /// The layout is not as it was saved.
+    pub fn is_dirty(&self) -> bool {
+        self.designer.is_dirty()
+    }
+
+    /// The layout as it would be saved.
+    pub(in crate::app) fn wanted_profile(&self) -> SsiProfile {
+        self.design().profile.clone()
+    }
+
+    /// The user's own families were read.
+    pub(in crate::app) fn take_families(&mut self, families: Arc<Families>) {
+        self.designer.take_families(families);
+    }
+
+    /// Changes the layout; everything that stands on it follows.
+    pub(super) fn edit(&mut self, edit: Edit) {
+        let before = self.designer.layout().clone();
+        if self.designer.edit(edit) {
+            self.follow_layout(&before);
+        }
+    }
+
+    pub(super) fn follow_layout(&mut self, before: &crate::protocol::ssi::Layout) {
+        let now = self.designer.layout();
+        if before == now {
+            return;
+        }
+        self.trial.follow(before, now);
+        self.record.read_as(now);
+    }
+
+    /// The name of the device beside the link: that of its family.
+    pub(super) fn name_after_family(&mut self) {
+        let family = self.designer.family().map(|family| family.name.clone());
+        self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
+    }
+
+    /// It is a profile in a file, or one that will be.
+    pub fn is_profile(&self) -> bool {
+        !matches!(self.session.source, Source::Link(_))
+    }
+
+    /// Why the layout as it is cannot be asked of the adapter.
+    pub fn refusal(&self) -> Option<&Text> {
+        self.designer.problem()
+    }
+}
+
+impl Designer {
+    /// How one reads, for what the times allow.
+    pub fn reads(&self) -> Reads {
+        let profile = &self.design().profile;
+        let descriptor = &profile.descriptor;
+        profile.reading.reads(descriptor.clocks, !matches!(descriptor.range, Range::Bits { .. } | Range::Length { .. }))
+    }
+
+    /// What it is called: by its person, or after its family.
+    pub fn title(&self) -> String {
+        let profile = &self.design().profile;
+        if !profile.name.is_empty() {
+            return profile.name.clone();
+        }
+        match (self.family(), &self.design().settings) {
+            (Some(family), Some(settings)) => settings.emit(&family.key),
+            (Some(family), None) => family.name.clone(),
+            (None, _) => "SSI".to_owned(),
+        }
+    }
+}

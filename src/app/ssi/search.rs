@@ -1,0 +1,117 @@
+//! The search for the layout of frames: those that were read last, or those in a file.
+
+use std::path::Path;
+
+use crate::app::Text;
+use crate::app::explain;
+use crate::protocol::ssi::{FrameTextError, Search, parse_frame};
+use crate::store::read_file;
+
+/// Frames that are searched at most: the newest.
+pub(super) const MOST: usize = 20_000;
+
+/// Where the frames are from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// They were read from the encoder.
+    Live,
+    /// They stand in a file, which is called this.
+    File(String),
+}
+
+/// Frames that follow each other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Frames {
+    /// Where they are from.
+    pub origin: Origin,
+    /// Bits of each, 1…64.
+    pub clocks: u8,
+    /// The frames, right-justified.
+    pub frames: Vec<u64>,
+}
+
+/// How it stands with the search.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Hunt {
+    /// Nothing was looked for.
+    #[default]
+    Nothing,
+    /// It goes on; which one it is.
+    Running(u32),
+    /// What was found.
+    Found {
+        /// Where the frames are from.
+        origin: Origin,
+        /// Bits of each.
+        clocks: u8,
+        /// What was found.
+        search: Box<Search>,
+    },
+    /// There was nothing to look at: why, and what to do.
+    Failed(Text),
+}
+
+/// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, the last column where there
+/// are several. Empty lines, a heading and what begins with # are passed over. Hexadecimal frames have `clocks` bits.
+///
+/// # Errors
+/// The file cannot be read, or a line is no frame: which, and why.
+pub(super) fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
+    let text = read_file(path).map_err(|error| explain::file(&error))?;
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    parse_frames(&text, clocks).map(|(clocks, frames)| Frames { origin: Origin::File(name), clocks, frames })
+}
+
+fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
+    let mut own = None;
+    let mut frames = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.trim().trim_start_matches('\u{feff}');
+        let column = line.rsplit([',', ';', '\t']).next().unwrap_or_default().trim().trim_matches('"');
+        if column.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let bits = column.trim_start_matches("0b");
+        let is_bits = bits.chars().all(|bit| matches!(bit, '0' | '1'));
+        let length = u8::try_from(bits.len()).unwrap_or(u8::MAX);
+        let width = *own.get_or_insert(if is_bits { length } else { clocks });
+        match parse_frame(column, width) {
+            Ok(frame) => frames.push(frame),
+            // A heading.
+            Err(FrameTextError::Form(_)) if frames.is_empty() && !column.starts_with("0x") => own = None,
+            Err(error) => {
+                let why = explain::ssi::frame_text(&error);
+                return Err(Text::new("ssi_find.line").with("line", number).with_text("why", why));
+            }
+        }
+    }
+    match own {
+        Some(clocks) if !frames.is_empty() && (1..=64).contains(&clocks) => Ok((clocks, frames)),
+        _ => Err(Text::new("ssi_find.no_frames")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_stand_in_a_file_one_a_line() {
+        assert_eq!(parse_frames("1010\n\n# comment\n0b1111\n", 25), Ok((4, vec![0b1010, 0b1111])));
+        assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
+        assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
+    }
+
+    #[test]
+    fn a_line_that_is_no_frame_is_named() {
+        let said = |text: &str| parse_frames(text, 8).unwrap_err();
+        let line = said("1010\n10\n");
+        assert_eq!(line.id(), "ssi_find.line");
+        assert!(line.terminal().contains('2'), "{}", line.terminal());
+        assert_eq!(said("0x1\nx\n").id(), "ssi_find.line");
+        assert_eq!(said("0x1FF\n").id(), "ssi_find.line");
+        for text in ["", "# nothing\n", "heading\n"] {
+            assert_eq!(said(text).id(), "ssi_find.no_frames");
+        }
+    }
+}

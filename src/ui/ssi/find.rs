@@ -1,0 +1,188 @@
+//! The search for the layout of frames: those that were read last, or those in a file. What fits is ranked with what
+//! speaks for it; what these frames cannot tell apart is one class, with what would decide.
+
+use egui::{RichText, Ui};
+
+use crate::app::ssi::{Action as Ssi, Encoder, Hunt, Origin};
+use crate::app::{Action, Text, explain};
+use crate::protocol::ssi::{Class, Doubt, Proposal, Search};
+use crate::ui::controls::{
+    card, card_with, enabled_button, entry, icon_button, paragraph, primary, row, spinner, text_entry,
+};
+use crate::ui::{Skin, icons};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    clocks: Option<String>,
+    /// Classes whose other members are shown.
+    unfolded: Option<usize>,
+}
+
+/// Classes that are shown; what is further down fits worse still.
+const CLASSES: usize = 6;
+/// Members of a class that are shown at first.
+const MEMBERS: usize = 4;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    frames(ui, skin, encoder, view, actions);
+    ui.add_space(skin.space.groups);
+    match &encoder.hunt {
+        Hunt::Nothing => {}
+        Hunt::Running(_) => {
+            ui.horizontal(|ui| {
+                spinner(ui, skin);
+                ui.label(skin.say("ssi_find.running"));
+            });
+        }
+        Hunt::Failed(why) => {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
+                paragraph(ui, skin.words(why));
+            });
+        }
+        Hunt::Found { origin, clocks, search } => found(ui, skin, encoder, view, (origin, *clocks, search), actions),
+    }
+}
+
+/// Which frames are looked into.
+fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    let mut ask = |action| actions.push(Action::Ssi(id, action));
+    card(ui, skin, "ssi_find.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ssi_find.words")));
+        ui.add_space(skin.space.inside);
+        let word = skin.say("ssi_find.clocks");
+        entry(ui, skin, &word, |ui| {
+            let own = encoder.clocks().to_string();
+            let mut text = view.clocks.take().unwrap_or_else(|| own.clone());
+            let response = text_entry(ui, &mut text, 56.0, &word, "");
+            if response.has_focus() {
+                view.clocks = Some(text);
+            } else if response.lost_focus()
+                && text != own
+                && let Ok(clocks) = text.trim().parse()
+            {
+                ask(Ssi::SetClocks(Some(clocks)));
+            }
+            if encoder.has_own_clocks()
+                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_find.own_clocks")).clicked()
+            {
+                ask(Ssi::SetClocks(None));
+            }
+        });
+        let words = encoder.record.words(encoder.clocks()).len();
+        row(ui, skin, &skin.say("ssi_find.read"), skin.mono(words.to_string()));
+        if !encoder.is_profile() && words == 0 {
+            paragraph(ui, skin.caption(skin.say("ssi_find.poll")));
+        }
+        ui.add_space(skin.space.inside);
+        ui.horizontal_wrapped(|ui| {
+            if enabled_button(ui, true, icons::FOLDER_OPEN, &skin.say("ssi_find.file")).clicked() {
+                ask(Ssi::AskFrames);
+            }
+            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &skin.say("ssi_find.save")).clicked() {
+                ask(Ssi::AskSaveFrames);
+            }
+            let running = matches!(encoder.hunt, Hunt::Running(_));
+            let find = primary(ui, skin, words > 0 && !running, icons::MAGNIFYING_GLASS, &skin.say("ssi_find.find"));
+            if find.on_disabled_hover_text(skin.say("ssi_find.poll")).clicked() {
+                ask(Ssi::Find);
+            }
+        });
+    });
+}
+
+fn found(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    view: &mut View,
+    (origin, clocks, search): (&Origin, u8, &Search),
+    actions: &mut Vec<Action>,
+) {
+    let source = match origin {
+        Origin::Live => Text::new("ssi_find.of_live"),
+        Origin::File(name) => Text::new("ssi_find.of_file").with("name", name),
+    };
+    let text = Text::new("ssi_find.frames")
+        .with("frames", search.frames)
+        .with("clocks", clocks)
+        .with("different", search.different)
+        .with_text("source", source);
+    paragraph(ui, skin.label(skin.words(&text)));
+    let (icon, colour, words) = match search.doubt {
+        None => (icons::CHECK_CIRCLE, skin.palette.good, Text::new("ssi_find.sure")),
+        Some(Doubt::Standing) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.standing")),
+        Some(Doubt::Stuck { high: true }) => (icons::X_CIRCLE, skin.palette.bad, Text::new("ssi.stuck_high")),
+        Some(Doubt::Stuck { high: false }) => (icons::X_CIRCLE, skin.palette.bad, Text::new("ssi.stuck_low")),
+        Some(Doubt::Nothing) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.nothing_fits")),
+        Some(Doubt::Close) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.close")),
+    };
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, skin.words(&words));
+    });
+    for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
+        ui.add_space(skin.space.between);
+        ui.push_id(number, |ui| class_ui(ui, skin, encoder, (number, class), view, actions));
+    }
+}
+
+/// Layouts that these frames cannot tell apart.
+fn class_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    (number, class): (usize, &Class),
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let id = encoder.session.id;
+    let evidence = &class.evidence;
+    let rank = Text::new("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
+    let aside = |ui: &mut Ui| {
+        ui.label(skin.caption(skin.words(&rank)));
+    };
+    card_with(ui, skin, if number == 0 { "ssi_find.best" } else { "ssi_find.other" }, aside, |ui| {
+        let all = view.unfolded == Some(number);
+        let shown = if all { class.members.len() } else { MEMBERS };
+        for (place, proposal) in class.members.iter().take(shown).enumerate() {
+            ui.horizontal(|ui| {
+                let word = skin.say("ssi_find.take");
+                let take = enabled_button(ui, true, icons::CHECK, &word);
+                if take.clicked() {
+                    actions.push(Action::Ssi(id, Ssi::Take(number, place)));
+                }
+                ui.vertical(|ui| {
+                    ui.add(egui::Label::new(skin.value(title(skin, encoder, proposal))).wrap());
+                    ui.add(egui::Label::new(skin.caption(skin.words(&explain::ssi::frame(&proposal.layout)))).wrap());
+                });
+            });
+        }
+        let more = class.members.len().saturating_sub(shown);
+        if more > 0 {
+            let text = Text::new("ssi_find.more").with("count", more);
+            if ui.link(skin.words(&text)).clicked() {
+                view.unfolded = Some(number);
+            }
+        }
+        for open in &class.open {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::QUESTION).color(skin.palette.accent));
+                paragraph(ui, skin.words(&explain::ssi::open(*open)));
+            });
+        }
+        paragraph(ui, skin.caption(skin.words(&explain::ssi::evidence(evidence))));
+    });
+}
+
+fn title(skin: &Skin, encoder: &Encoder, proposal: &Proposal) -> String {
+    match &proposal.family {
+        Some((key, settings)) => {
+            let name = encoder.designer.families().named(key).map_or(key.as_str(), |family| family.name.as_str());
+            format!("{name}   {}", settings.emit(key))
+        }
+        None => skin.say("ssi_find.any"),
+    }
+}

@@ -1,0 +1,102 @@
+//! The SSI tab: its pages, each about one thing that a person wants of a frame or of an encoder that sends it.
+
+mod encoder;
+mod export;
+mod find;
+mod form;
+mod frame;
+mod timing;
+mod trial;
+mod wiring;
+
+use egui::{ScrollArea, Ui};
+
+use super::{Skin, icons};
+use crate::app::ssi::Encoder;
+use crate::app::{Action, AnyDevice, Studio};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::ui) enum Page {
+    /// The frame on the drawing board, and a frame to try it with.
+    #[default]
+    Frame,
+    /// What the times of a transfer allow.
+    Timing,
+    /// The search for the layout of frames that were read.
+    Find,
+    /// The layout for other programs.
+    Export,
+    /// The encoder behind its adapter, what its error bits said, its wiring.
+    Encoder,
+}
+
+impl Page {
+    pub(super) const ALL: [Page; 5] = [Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
+
+    pub(super) fn icon(self) -> &'static str {
+        match self {
+            Page::Frame => icons::TABLE,
+            Page::Timing => icons::CLOCK_COUNTER_CLOCKWISE,
+            Page::Find => icons::MAGNIFYING_GLASS,
+            Page::Export => icons::DOWNLOAD_SIMPLE,
+            Page::Encoder => icons::CPU,
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Page::Frame => "page.frame",
+            Page::Timing => "page.timing",
+            Page::Find => "page.find",
+            Page::Export => "page.export",
+            Page::Encoder => "page.encoder",
+        }
+    }
+
+    pub(super) fn help(self) -> &'static str {
+        match self {
+            Page::Frame => "help.ssi_frame",
+            Page::Timing => "help.ssi_timing",
+            Page::Find => "help.ssi_find",
+            Page::Export => "help.ssi_export",
+            Page::Encoder => "help.ssi_encoder",
+        }
+    }
+}
+
+/// What the tab remembers of one session while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(in crate::ui) struct View {
+    /// The open page.
+    pub page: Page,
+    form: form::View,
+    frame: frame::View,
+    trial: trial::View,
+    export: export::View,
+    find: find::View,
+}
+
+/// Draws the open page.
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
+    let frame = egui::Frame::NONE.inner_margin(margin);
+    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
+        frame.show(ui, |ui| match view.page {
+            Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
+            Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
+            Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
+            Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+        });
+    });
+}

@@ -1,0 +1,72 @@
+//! The wiring card: the wires of SSI, its supply and cable, and what else the family's encoders give.
+
+use egui::Ui;
+
+use crate::app::Text;
+use crate::protocol::ssi::{Family, Signal};
+use crate::ui::Skin;
+use crate::ui::controls::{card, paragraph, row};
+
+/// Width of the column of wires.
+const WIRE: f32 = 84.0;
+
+/// The wires and what is on them (SICK SSI description 2.1, 2.2).
+const WIRES: [(&str, &str); 6] = [
+    ("CLOCK+", "ssi_wiring.clock"),
+    ("CLOCK−", "ssi_wiring.clock"),
+    ("DATA+", "ssi_wiring.data"),
+    ("DATA−", "ssi_wiring.data"),
+    ("US", "ssi_wiring.supply"),
+    ("GND", "ssi_wiring.ground"),
+];
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
+    card(ui, skin, "wiring.title", |ui| {
+        for (wire, words) in WIRES {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().interact_size.y = 18.0;
+                let name = ui.label(skin.mono(wire));
+                ui.add_space((WIRE - name.rect.width()).max(0.0));
+                paragraph(ui, skin.label(skin.say(words)));
+            });
+        }
+        ui.add_space(skin.space.inside);
+        for note in ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"] {
+            paragraph(ui, skin.caption(skin.say(note)));
+        }
+        let Some(family) = family else { return };
+        if !family.signals.is_empty() {
+            ui.add_space(skin.space.between);
+            ui.label(skin.heading(skin.say("ssi_wiring.signals")));
+            for signal in &family.signals {
+                row(ui, skin, &signal.name, limits(skin, signal));
+            }
+        }
+        if !family.notes.is_empty() {
+            ui.add_space(skin.space.between);
+            ui.label(skin.heading(&family.name));
+            for note in &family.notes {
+                paragraph(ui, skin.caption(note));
+            }
+            paragraph(ui, skin.caption(&family.source));
+        }
+    });
+}
+
+/// What a signal may be.
+fn limits(skin: &Skin, signal: &Signal) -> String {
+    let volts = |(least, most): (f64, f64)| {
+        if (most - least).abs() < 1e-9 {
+            skin.number(most, 2)
+        } else {
+            format!("{} … {}", skin.number(least, 2), skin.number(most, 2))
+        }
+    };
+    let parts = [
+        signal.amplitude_volts.map(|own| skin.words(&Text::new("ssi_wiring.volts_pp").with("volts", volts(own)))),
+        signal.offset_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.offset"), volts(own))),
+        signal.supply_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.at"), volts(own))),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }
+}

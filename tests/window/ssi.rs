@@ -1,0 +1,271 @@
+//! The SSI tab by actions: a layout on the drawing board, an encoder behind the virtual adapter, the search for a layout.
+
+use std::time::Duration;
+
+use encoder_studio::app::session::{Phase, Source};
+use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
+use encoder_studio::app::{Action, FileQuestion, Tab, Wish};
+use encoder_studio::protocol::ssi::{Code, Place, Range};
+
+use crate::support::Desk;
+
+/// The tab of a desk on which nothing was connected.
+fn layout() -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.settle();
+    desk
+}
+
+fn connected(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.open(link);
+    desk.until("the adapter has told who it is", |studio| {
+        studio.ssi().is_some_and(|own| own.identity.is_some() && own.session.is_ready() && own.last().is_some())
+    });
+    desk
+}
+
+fn encoder(desk: &Desk) -> &Encoder {
+    desk.studio.ssi().unwrap()
+}
+
+fn act(desk: &mut Desk, action: Ssi) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Ssi(id, action));
+}
+
+fn edit(desk: &mut Desk, edit: Edit) {
+    act(desk, Ssi::Edit(Box::new(edit)));
+}
+
+fn wish(desk: &mut Desk, wish: Wish) {
+    let action = desk.studio.shown().unwrap().wish(wish);
+    desk.act(action);
+}
+
+fn field(desk: &Desk, wanted: Field) -> Option<Entry> {
+    let form = encoder(desk).designer.form();
+    form.into_iter().flat_map(|group| group.rows).find(|row| row.field == wanted).map(|row| row.entry)
+}
+
+#[test]
+fn a_layout_needs_no_device() {
+    let mut desk = layout();
+    let own = encoder(&desk);
+    assert!(matches!(own.session.source, Source::New { .. }));
+    assert_eq!((own.session.phase.clone(), own.is_dirty()), (Phase::Offline, false));
+    assert_eq!(own.designer.family().unwrap().key, "ahm36");
+    // Reference section 8: AHM36, MT 123h, ST 2A5Bh, binary and Gray.
+    act(&mut desk, Ssi::Try(Try::Place(0x123, 0x2A5B)));
+    assert_eq!(encoder(&desk).shown().frame, 0x091_D4B6);
+    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
+    assert_eq!(encoder(&desk).shown().frame, 0x0D9_3EEC, "the position stays");
+    act(&mut desk, Ssi::Try(Try::Bits("000110110010011111011101100".to_owned())));
+    assert_eq!(
+        encoder(&desk).shown().place,
+        Some((0x123 << 14 | 0x2A5B, Place::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }))
+    );
+    // Every step has a way back.
+    assert!(encoder(&desk).is_dirty());
+    wish(&mut desk, Wish::Undo);
+    assert!(!encoder(&desk).is_dirty());
+    wish(&mut desk, Wish::Redo);
+    assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
+    wish(&mut desk, Wish::RevertAll);
+    assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Binary);
+    wish(&mut desk, Wish::Undo);
+    assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
+}
+
+#[test]
+fn what_cannot_work_is_refused_and_changes_nothing() {
+    let mut desk = layout();
+    let before = encoder(&desk).design().clone();
+    let refused = |desk: &mut Desk, field, input, id: &str| {
+        act(desk, Ssi::Enter(field, input));
+        assert_eq!(encoder(desk).designer.problem().unwrap().id(), id);
+    };
+    refused(&mut desk, Field::Singleturn, Input::Number(15), "ssi.refused");
+    refused(&mut desk, Field::Singleturn, Input::Number(300), "ssi_form.wrong");
+    refused(&mut desk, Field::Preset, Input::Number(1 << 26), "ssi.preset_range");
+    edit(&mut desk, Edit::Family("atm61".to_owned()));
+    assert_eq!(encoder(&desk).designer.problem().unwrap().id(), "ssi.no_family");
+    edit(&mut desk, Edit::LinuxCnc("pos%24q".to_owned()));
+    assert_eq!(encoder(&desk).designer.problem().unwrap().id(), "ssi.refused");
+    act(&mut desk, Ssi::Try(Try::Position(1 << 26)));
+    assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.range");
+    act(&mut desk, Ssi::Try(Try::Bits("10102".to_owned())));
+    assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.form");
+    assert_eq!(*encoder(&desk).design(), before);
+    // In words of both languages, with both sides named.
+    edit(&mut desk, Edit::Family("ahs36".to_owned()));
+    act(&mut desk, Ssi::Enter(Field::Clocks, Input::Number(14)));
+    let words = encoder(&desk).designer.problem().unwrap().terminal();
+    assert!(words.contains("ERROR is on clock 15") && words.contains("14 clocks"), "{words}");
+}
+
+#[test]
+fn a_frame_changed_by_hand_comes_back_to_its_family() {
+    let mut desk = layout();
+    edit(&mut desk, Edit::Family("atm60".to_owned()));
+    assert!(encoder(&desk).design().settings.is_some());
+    // A bit before the position: the ATM60 has no such frame.
+    let mut frame = encoder(&desk).design().profile.descriptor.clone();
+    (frame.clocks, frame.area, frame.lead) = (26, 26, 1);
+    edit(&mut desk, Edit::Frame(Box::new(frame)));
+    assert!(encoder(&desk).design().settings.is_none());
+    assert!(field(&desk, Field::Lead).is_some(), "everything can be set");
+    act(&mut desk, Ssi::Enter(Field::Lead, Input::Number(0)));
+    let own = encoder(&desk).design();
+    assert_eq!((own.profile.descriptor.clocks, own.settings.is_some()), (25, true));
+    assert!(field(&desk, Field::Align).is_some() && field(&desk, Field::Lead).is_none());
+    // Without a family it can be anything.
+    edit(&mut desk, Edit::Free);
+    act(&mut desk, Ssi::AddErrorBit);
+    act(&mut desk, Ssi::Enter(Field::Parity, Input::Choice(1)));
+    let own = &encoder(&desk).design().profile.descriptor;
+    assert_eq!((own.clocks, own.errors[0].clock, own.parity.unwrap().clock), (27, 26, 27));
+    act(&mut desk, Ssi::RemoveErrorBit(0));
+    act(&mut desk, Ssi::Enter(Field::Repeat, Input::Switch(true)));
+    assert_eq!(encoder(&desk).design().profile.descriptor.clocks, 55, "27, a zero, and 27 once more");
+    edit(&mut desk, Edit::LinuxCnc("err%1bpos%24ge".to_owned()));
+    let own = &encoder(&desk).design().profile.descriptor;
+    assert_eq!((own.code, own.range.bits(), own.errors.len()), (Code::Gray, Ok(24), 1));
+}
+
+#[test]
+fn a_layout_is_saved_opened_and_kept_over_a_crash() {
+    let mut desk = layout();
+    act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
+    wish(&mut desk, Wish::AskSave);
+    let question = desk.studio.take_file_question().unwrap();
+    assert_eq!(question.suggested().unwrap().to_str(), Some("ahm36_st_12.ron"));
+    let path = desk.outside.path("layout.ron");
+    desk.act(Action::Chosen(question, path.clone()));
+    desk.settle();
+    assert!(!encoder(&desk).is_dirty() && matches!(encoder(&desk).session.source, Source::File { .. }));
+    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    desk.settle();
+    let mut desk = desk.crash();
+    desk.act(Action::Open(path));
+    desk.until("the profile is open", |studio| studio.ssi().is_some_and(|own| own.is_dirty()));
+    let own = &encoder(&desk).design().profile.descriptor;
+    assert_eq!((own.range, own.code), (Range::Bits { multiturn: 12, singleturn: 12 }, Code::Gray));
+}
+
+#[test]
+fn every_export_is_written() {
+    let mut desk = layout();
+    for format in Format::ALL {
+        act(&mut desk, Ssi::AskExport(format));
+        let question = desk.studio.take_file_question().unwrap();
+        assert!(matches!(question, FileQuestion::Export { .. }));
+        let path = desk.outside.path(&format!("export.{}", question.endings()[0]));
+        desk.act(Action::Chosen(question, path.clone()));
+        desk.settle();
+        assert_eq!(std::fs::read_to_string(path).unwrap(), encoder(&desk).designer.export(format).unwrap());
+    }
+    // What has no place in a format is told.
+    edit(&mut desk, Edit::Free);
+    assert_eq!(encoder(&desk).designer.export(Format::Timing).unwrap_err().id(), "ssi_timing.no_family");
+}
+
+#[test]
+fn words_of_an_adapter_come_into_the_live_plot() {
+    let mut desk = connected("sim:?ssi=ahm36,code=gray&rpm=60");
+    let own = encoder(&desk);
+    assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
+    assert_eq!(own.identity.as_ref().unwrap().asking.clocks, 27);
+    act(&mut desk, Ssi::Poll(Some(Duration::from_millis(1))));
+    desk.until("words stream", |studio| studio.ssi().unwrap().record.positions() > 500);
+    let own = encoder(&desk);
+    assert!(own.streamed().is_some() && own.is_following());
+    let decoded = own.last().unwrap().decoded.as_ref().unwrap();
+    assert!(decoded.is_valid && decoded.findings.is_empty());
+    // Another layout reads the same words anew.
+    let before = own.record.positions();
+    act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
+    assert!(encoder(&desk).record.positions() >= before);
+    desk.until("the layout does not fit", |studio| {
+        studio.ssi().unwrap().record.tally().noted().iter().any(|noted| noted.stands)
+    });
+    act(&mut desk, Ssi::Poll(None));
+}
+
+#[test]
+fn another_number_of_clocks_is_told_to_the_adapter() {
+    let mut desk = connected("sim:?ssi=atm60,code=gray&rpm=6");
+    edit(&mut desk, Edit::Family("ahm36".to_owned()));
+    desk.until("the adapter is told", |studio| {
+        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.asking.clocks == 27)
+    });
+    act(&mut desk, Ssi::SetClocks(Some(30)));
+    desk.until("the adapter is told", |studio| {
+        studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.asking.clocks == 30)
+    });
+    act(&mut desk, Ssi::ReadPosition);
+    desk.until("a word is read", |studio| studio.ssi().unwrap().last().is_some_and(|seen| seen.clocks == 30));
+    assert!(encoder(&desk).last().unwrap().decoded.is_none(), "the layout has 27 clocks");
+}
+
+#[test]
+fn the_layout_is_found_live_and_taken() {
+    let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=20");
+    edit(&mut desk, Edit::Free);
+    let clocks = encoder(&desk).clocks();
+    assert_eq!(clocks, 33);
+    act(&mut desk, Ssi::Poll(Some(Duration::from_millis(1))));
+    desk.until("enough is read", |studio| studio.ssi().unwrap().record.words(33).len() >= 2000);
+    act(&mut desk, Ssi::Poll(None));
+    act(&mut desk, Ssi::Find);
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    let Hunt::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
+    assert_eq!(search.doubt, None);
+    let members = &search.classes[0].members;
+    let place = members.iter().position(|own| own.family.as_ref().is_some_and(|(key, _)| key == "afm60")).unwrap();
+    act(&mut desk, Ssi::Take(0, place));
+    let own = encoder(&desk);
+    assert_eq!(own.designer.family().unwrap().key, "afm60");
+    assert_eq!(own.design().profile.descriptor.code, Code::Gray);
+    // The frames can be kept, and looked into again.
+    let path = desk.outside.path("frames.txt");
+    act(&mut desk, Ssi::SaveFrames(path.clone()));
+    desk.settle();
+    act(&mut desk, Ssi::ForgetSearch);
+    act(&mut desk, Ssi::FindIn(path));
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    let nowhere = desk.outside.path("nowhere.txt");
+    act(&mut desk, Ssi::FindIn(nowhere));
+    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Failed(_)));
+}
+
+#[test]
+fn a_layout_of_a_profile_is_taken_for_an_encoder() {
+    let mut desk = connected("sim:?ssi=ahm36&rpm=6");
+    let live = encoder(&desk).session.id;
+    desk.act(Action::NewLayout);
+    edit(&mut desk, Edit::Family("ttk70".to_owned()));
+    act(&mut desk, Ssi::WriteInto(live));
+    assert_eq!(encoder(&desk).session.id, live);
+    assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
+    wish(&mut desk, Wish::Undo);
+    assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
+    // Nothing is written, and that is said.
+    wish(&mut desk, Wish::Review);
+    assert!(!desk.studio.shown().unwrap().is_reviewing());
+}
+
+#[test]
+fn an_adapter_without_ssi_is_named() {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.open("sim:?version=2");
+    desk.until("it is told", |studio| {
+        studio.shown().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
+    });
+    let Phase::Silent(why) = desk.studio.shown().unwrap().phase() else { panic!() };
+    assert_eq!(why.id(), "adapter.version");
+}
