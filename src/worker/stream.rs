@@ -16,7 +16,7 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 pub use analogue::{Analogue, Forgotten};
-pub use bridge::{BissFrames, Bridge, BridgeError, Open, Pair, SineCosine, SsiWords, Stretch, open_adapter};
+pub use bridge::{BissFrames, Bridge, BridgeError, Open, Pair, SineCosine, Stretch, open_adapter};
 
 use super::has_ended;
 use super::thread::Never;

@@ -1,8 +1,11 @@
 //! An SSI encoder behind an adapter that is not our program: position and status, and what can be typed wrongly about them.
 
+use std::io::{BufRead, BufReader, Read};
+use std::time::{Duration, Instant};
+
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran};
+use super::support::{Bench, Foreign, Ran, ended, signal};
 
 /// A foreign adapter that can SSI and nothing else, with an encoder of this format.
 fn adapter(bench: &Bench, format: &str, more: &[&str]) -> Option<Foreign> {
@@ -130,6 +133,37 @@ fn an_adapter_that_cannot_do_it_is_told() {
     let mut gone = adapter(&bench, "12,13,gray,0", &[]).unwrap();
     gone.kill();
     position(&bench, "atm60", &gone.url, &[]).fails(1, &["cannot be reached"]);
+}
+
+/// The plug is pulled, or the user ends it, in the middle: what was counted until then is told all the same.
+#[test]
+fn an_end_in_the_middle_is_told_with_what_was_counted() {
+    let bench = Bench::new();
+    let format = ["--capabilities", "1", "--ssi", "0,18,binary,3", "--ssi-error", "2"];
+    let encoders = [bench.adapter(&format), bench.adapter_on_terminal(&format), bench.adapter(&format)];
+    for (number, encoder) in encoders.into_iter().flatten().enumerate() {
+        let mut encoder = encoder;
+        let arguments = ["position", "ssi", "--layout", "afs60", "--link", &encoder.url, "--csv", "--interval", "5"];
+        let mut child = bench.program(&arguments).spawn().unwrap();
+        let begun = Instant::now();
+        let mut out = BufReader::new(child.stdout.take().unwrap());
+        let mut line = String::new();
+        while line.split(',').count() < 30 {
+            assert!(out.read_line(&mut line).unwrap() > 0, "{line}");
+        }
+        let is_cut = number < 2;
+        if is_cut {
+            encoder.kill();
+        } else {
+            signal(&child, "INT");
+        }
+        let rest = std::thread::spawn(move || out.read_to_string(&mut String::new()));
+        let ran = ended(child, begun);
+        rest.join().unwrap().unwrap();
+        assert_eq!(ran.status, Some(if is_cut { 1 } else { 0 }), "{ran:?}");
+        assert!(ran.took < Duration::from_secs(10) && ran.err.contains("ERRSYNC: "), "{ran:?}");
+        assert!(ran.err.contains(" times, last at ") && ran.err.contains("error: ") == is_cut, "{ran:?}");
+    }
 }
 
 #[test]

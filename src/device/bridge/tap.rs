@@ -6,25 +6,12 @@ use super::flow::{Flow, Portion, Streamed};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, other};
 use crate::device::line::{Line, LineError, LineState};
 use crate::link::{Ctx, LinkError};
-use crate::protocol::bridge::{Capabilities, Hello, Reply, Request, SsiFlags};
+use crate::protocol::bridge::{Capabilities, Hello, Reply, Request};
 use crate::units::{Moment, SupplyVoltage};
 
 /// A stream and how its signals are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// Words of SSI.
-    Ssi {
-        /// Bits of a word, 1…64.
-        clocks: u8,
-        /// Clock in hertz.
-        clock_hz: u32,
-        /// Pause between two words in microseconds.
-        pause_us: u16,
-        /// When the data line is looked at.
-        flags: SsiFlags,
-        /// Microseconds from one to the next.
-        period_us: u32,
-    },
     /// Frames of BiSS.
     Biss {
         /// Clock in hertz.
@@ -116,7 +103,6 @@ impl Tap {
         let Some(hello) = adapter.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
         let name = || hello.name.clone();
         let (capability, lacks): (_, fn(String) -> AdapterError) = match wanted {
-            Wanted::Ssi { .. } => (Capabilities::SSI, |name| AdapterError::NoSsi { name }),
             Wanted::Biss { .. } => (Capabilities::BISS, |name| AdapterError::NoBiss { name }),
             Wanted::Analog { .. } => (Capabilities::ANALOG, |name| AdapterError::NoAnalog { name }),
         };
@@ -134,7 +120,6 @@ impl Tap {
         let request = wanted.configure(&hello);
         let answered = adapter.ask(&request)?;
         let (streamed, full_scale_microvolt) = match (wanted, &answered.reply) {
-            (Wanted::Ssi { period_us, .. }, Reply::SsiConfig { .. }) => (Streamed::Ssi { period_us }, 0),
             (Wanted::Biss { period_us, .. }, Reply::BissConfig { .. }) => (Streamed::Biss { period_us }, 0),
             (Wanted::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
                 (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
@@ -175,9 +160,6 @@ impl Wanted {
     /// Never faster than the adapter can.
     fn configure(self, hello: &Hello) -> Request {
         match self {
-            Wanted::Ssi { clocks, clock_hz, pause_us, flags, .. } => {
-                Request::SsiConfig { clocks, clock_hz: clock_hz.min(hello.max_clock_hz), pause_us, flags }
-            }
             Wanted::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
                 clock_hz: clock_hz.min(hello.max_clock_hz),
                 data_bits,

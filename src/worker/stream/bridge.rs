@@ -13,7 +13,7 @@ use crate::device::biss::{Frame, frames};
 use crate::device::bridge::{Portion, Streaming, Tap, TapError, Wanted};
 use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::protocol::biss::Layout;
-use crate::protocol::bridge::{Data, SsiFlags};
+use crate::protocol::bridge::Data;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 
@@ -54,19 +54,6 @@ pub struct BissFrames {
     pub layout: Layout,
     /// Clock in hertz.
     pub clock_hz: u32,
-    /// Microseconds from one to the next.
-    pub period_us: u32,
-}
-
-/// Words of SSI as they came: the first bit received is the highest.
-#[derive(Clone, Copy, Debug)]
-pub struct SsiWords {
-    /// Bits of a word, 1…64.
-    pub clocks: u8,
-    /// Clock in hertz.
-    pub clock_hz: u32,
-    /// Pause between two words in microseconds.
-    pub pause_us: u16,
     /// Microseconds from one to the next.
     pub period_us: u32,
 }
@@ -181,20 +168,6 @@ impl Stretch for BissFrames {
     fn read(&self, data: Data, _: &Streaming) -> Option<Vec<Frame>> {
         let Data::Biss(data) = data else { return None };
         Some(frames(&self.layout, &data))
-    }
-}
-
-impl Stretch for SsiWords {
-    type Samples = Vec<u64>;
-
-    fn wanted(&self) -> Wanted {
-        let SsiWords { clocks, clock_hz, pause_us, period_us } = *self;
-        Wanted::Ssi { clocks, clock_hz, pause_us, flags: SsiFlags::FALLING_EDGE, period_us }
-    }
-
-    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<u64>> {
-        let Data::Ssi(data) = data else { return None };
-        Some(data.values)
     }
 }
 

@@ -122,19 +122,6 @@ fn twenty_thousand_frames_a_second_come_without_a_gap() {
 }
 
 #[test]
-fn words_of_ssi_come_the_same_way() {
-    let words = SsiWords { clocks: 25, clock_hz: 1_000_000, pause_us: 30, period_us: 100 };
-    let mut bench = bench(words, virtual_adapter("rpm=60&position=0&ssi=atm60"));
-    let batches = bench.take(Duration::from_secs(1));
-    let (there, lost) = count(&batches);
-    assert!((9_940..=10_300).contains(&there) && lost == 0, "{there} words, {lost} lost");
-    // A revolution a second is 8192 steps of 13 bits.
-    let words: Vec<u64> = batches.iter().flat_map(|batch| batch.samples.iter().copied()).collect();
-    let turned = words[9_000] - words[1_000];
-    assert!((6_553..=6_554).contains(&turned), "0.8 of a revolution: {turned}");
-}
-
-#[test]
 fn a_wrong_checksum_is_a_frame_without_a_reading() {
     let mut bench = bench(biss(), virtual_adapter("noise=0.01&seed=4"));
     let batches = bench.take(Duration::from_secs(2));
@@ -369,9 +356,6 @@ fn what_an_adapter_cannot_do_is_told() {
     let mut lame = puppet(Vec::new());
     lame.capabilities = Capabilities::ANALOG;
     assert_eq!(adapter_error(bench(biss(), lame).error()), AdapterError::NoBiss { name: "Puppet".to_owned() });
-    let words = SsiWords { clocks: 25, clock_hz: 1_000_000, pause_us: 30, period_us: 100 };
-    let error = adapter_error(bench(words, puppet(Vec::new())).error());
-    assert_eq!(error, AdapterError::NoSsi { name: "Puppet".to_owned() });
     let error = adapter_error(bench(SINE_COSINE, virtual_adapter("version=2")).error());
     assert_eq!(error, AdapterError::Version { expected: 1, got: 2 });
     let error = adapter_error(bench(SINE_COSINE, virtual_adapter("fault=silent-after:0")).error());
