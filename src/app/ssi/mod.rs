@@ -13,6 +13,7 @@ mod news;
 mod record;
 mod search;
 pub mod strip;
+pub mod timing;
 mod trace;
 mod trial;
 mod words;

@@ -111,6 +111,8 @@ pub struct Timing {
     pub burst: Duration,
     /// From burst to burst.
     pub cycle: Duration,
+    /// tm, least and most.
+    pub monoflop: (Duration, Duration),
     /// The shortest pause that is safe.
     pub least_pause: Duration,
     /// Bursts a second with the shortest pause.
@@ -227,6 +229,7 @@ impl Times {
             period,
             burst,
             cycle,
+            monoflop: (micros(shortest_monoflop), micros(monoflop)),
             least_pause,
             most_reads_hz: 1.0 / (burst + least_pause).as_secs_f64(),
             age,

@@ -24,6 +24,8 @@ use crate::app::ssi::strip::{self, Handle, Shown, Strip};
 use crate::protocol::ssi::{Meaning, Role as Carries};
 use crate::ui::Skin;
 
+pub(super) use paint::ink as field_ink;
+
 use names::Tag;
 use rows::Rows;
 

@@ -11,6 +11,7 @@ mod lissajous;
 mod register_table;
 mod step_ring;
 mod steps;
+mod timing_diagram;
 mod typed_view;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
@@ -29,6 +30,7 @@ pub use register_table::{
 };
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+pub use timing_diagram::{TimingDiagram, timing_diagram};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.

@@ -13,6 +13,7 @@ mod frame_strip;
 mod hex_editor;
 mod register_table;
 mod steps;
+mod timing_diagram;
 mod typed_view;
 
 fn skin() -> Skin {

@@ -29,6 +29,7 @@ fn bursts_of_the_reference() {
     // 33 bits at 400 kHz and tm of 25 µs: 107.5 µs.
     let timing = times("afm60").reckon(&reads(33, 400e3, 100));
     assert_eq!(timing.least_pause, Duration::from_micros(25));
+    assert_eq!(timing.monoflop, (Duration::from_micros(15), Duration::from_micros(25)));
     assert!((timing.most_reads_hz - 1e6 / 107.5).abs() < 1e-6, "{}", timing.most_reads_hz);
 }
 
@@ -73,6 +74,8 @@ fn ages() {
     let burst = reads(25, 500e3, 300);
     let behind = Reads { synchronous: true, ..burst };
     assert_eq!(times("atm60").reckon(&burst).age, Some((micros(55.0), micros(200.0))));
+    let tm = times("atm60").reckon(&behind).monoflop;
+    assert_eq!(tm, (micros(150.0), micros(150.0)), "synchronous");
     let any_steps = Reads { any_steps: true, ..burst };
     assert_eq!(times("atm60").reckon(&any_steps).age, Some((micros(55.0), micros(250.0))));
     assert_eq!(times("atm60").reckon(&behind).age, Some((micros(400.0), micros(400.0))), "that of the burst before");

@@ -13,7 +13,7 @@ use crate::ui::widgets::{focus_ring, series};
 use crate::ui::{Skin, controls};
 
 /// The colour of a field; none for zeros.
-pub(super) fn ink(skin: &Skin, kind: Kind) -> Color32 {
+pub(in crate::ui::widgets) fn ink(skin: &Skin, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => skin.palette.muted.into(),
         Kind::Turns => series(skin, 0),

@@ -1,0 +1,158 @@
+//! Words that stay off each other: those of moments above their lines, those of times beside theirs.
+
+/// A moment's words.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flag {
+    /// Where its line is.
+    pub(super) x: f32,
+    /// How wide its words are.
+    pub(super) width: f32,
+}
+
+/// Where words are: on which line, 0 the lowest, and from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Put {
+    pub(super) level: usize,
+    pub(super) left: f32,
+}
+
+/// Between words, and between words and a line.
+const APART: f32 = 6.0;
+
+/// The words of moments on as few lines as they need: no words lie over others, nor over the line of one that stands
+/// higher. Whatever cannot be kept apart lies on lines of its own.
+pub(super) fn flags(flags: &[Flag], (from, to): (f32, f32)) -> Vec<Put> {
+    for levels in 1..=flags.len() {
+        let mut put = Vec::new();
+        if fill(flags, (from, to), levels, &mut put) {
+            return put;
+        }
+    }
+    let left = |flag: &Flag| (flag.x + APART).min(to - flag.width).max(from);
+    flags.iter().enumerate().map(|(level, flag)| Put { level, left: left(flag) }).collect()
+}
+
+/// Places for those that have none yet, if there are any.
+fn fill(flags: &[Flag], (from, to): (f32, f32), levels: usize, put: &mut Vec<Put>) -> bool {
+    let Some(flag) = flags.get(put.len()) else { return true };
+    let right = flag.x + APART;
+    let before = flag.x - APART - flag.width;
+    let clamped = (to - flag.width).max(from);
+    for level in 0..levels {
+        for left in [right, before, clamped] {
+            let is_in = left >= from && left + flag.width <= to.max(from + flag.width);
+            let own = Put { level, left };
+            let agrees = flags.iter().zip(&*put).all(|(other, at)| agree((flag, &own), (other, at)));
+            if is_in && agrees {
+                put.push(own);
+                if fill(flags, (from, to), levels, put) {
+                    return true;
+                }
+                put.pop();
+            }
+        }
+    }
+    false
+}
+
+fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
+    let over = at.left < bt.left + b.width + APART && bt.left < at.left + a.width + APART;
+    let crosses = |higher: &Flag, lower: &Flag, put: &Put| {
+        put.left - APART / 2.0 < higher.x && higher.x < put.left + lower.width + APART / 2.0
+    };
+    match at.level.cmp(&bt.level) {
+        std::cmp::Ordering::Equal => !over && !crosses(a, b, bt) && !crosses(b, a, at),
+        std::cmp::Ordering::Greater => !crosses(a, b, bt),
+        std::cmp::Ordering::Less => !crosses(b, a, at),
+    }
+}
+
+/// A time's line and words.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bar {
+    /// Where it begins and ends.
+    pub(super) ends: (f32, f32),
+    /// How wide its words are.
+    pub(super) width: f32,
+}
+
+/// Times on lanes, each with where its words begin: within their line where they fit, else beside it.
+pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<Put> {
+    let mut taken: Vec<(usize, f32, f32)> = Vec::new();
+    let mut put = Vec::new();
+    for bar in bars {
+        let (begin, end) = bar.ends;
+        let within = f32::midpoint(begin, end) - bar.width / 2.0;
+        let places = [
+            (bar.width + 2.0 * APART <= end - begin, within),
+            (end + APART + bar.width <= to, end + APART),
+            (begin - APART - bar.width >= from, begin - APART - bar.width),
+            (true, (to - bar.width).max(from)),
+        ];
+        let lanes = (0..=bars.len()).flat_map(|lane| places.map(|(fits, left)| (lane, fits, left)));
+        let mut free = lanes.filter(|(_, fits, _)| *fits).filter(|(lane, _, left)| {
+            let (first, last) = (begin.min(*left), end.max(left + bar.width));
+            taken.iter().all(|(other, from, to)| other != lane || last <= *from || *to <= first)
+        });
+        let (level, _, left) = free.next().unwrap_or((bars.len(), true, from));
+        taken.push((level, begin.min(left), end.max(left + bar.width)));
+        put.push(Put { level, left });
+    }
+    put
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn flag((x, width): (f32, f32)) -> Flag {
+        Flag { x, width }
+    }
+
+    #[test]
+    fn words_of_moments_stand_beside_their_lines() {
+        let two = [flag((10.0, 80.0)), flag((300.0, 60.0))];
+        assert_eq!(flags(&two, (0.0, 400.0)), [Put { level: 0, left: 16.0 }, Put { level: 0, left: 306.0 }]);
+        // At the end there is room before the line only.
+        assert_eq!(flags(&two[1..], (0.0, 350.0)), [Put { level: 0, left: 234.0 }]);
+    }
+
+    #[test]
+    fn times_lie_in_lanes() {
+        let bar = |begin, end, width| Bar { ends: (begin, end), width };
+        let put = bars(&[bar(0.0, 200.0, 100.0), bar(200.0, 210.0, 50.0), bar(0.0, 5.0, 40.0)], (0.0, 300.0));
+        let expected = [(0, 50.0), (0, 216.0), (1, 11.0)].map(|(level, left)| Put { level, left });
+        assert_eq!(put, expected);
+    }
+
+    proptest! {
+        #[test]
+        fn words_of_moments_never_lie_over_each_other(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
+            let all: Vec<Flag> = places.into_iter().map(flag).collect();
+            let put = flags(&all, (0.0, 520.0));
+            for (one, (a, at)) in all.iter().zip(&put).enumerate() {
+                prop_assert!(at.left >= 0.0 && at.left + a.width <= 520.0);
+                for (b, bt) in all.iter().zip(&put).skip(one + 1) {
+                    let over = at.left < bt.left + b.width && bt.left < at.left + a.width;
+                    prop_assert!(at.level != bt.level || !over);
+                }
+            }
+        }
+
+        #[test]
+        fn words_of_times_never_lie_over_other_lines(ends in prop::collection::vec((0.0..500_f32, 0.0..500_f32, 20.0..150_f32), 1..7)) {
+            let bar = |(a, b, width): &(f32, f32, f32)| Bar { ends: (a.min(*b), a.max(*b)), width: *width };
+            let all: Vec<Bar> = ends.iter().map(bar).collect();
+            let put = bars(&all, (0.0, 500.0));
+            let span = |bar: &Bar, put: &Put| (bar.ends.0.min(put.left), bar.ends.1.max(put.left + bar.width));
+            for (one, (a, at)) in all.iter().zip(&put).enumerate() {
+                let (from, to) = span(a, at);
+                for (b, bt) in all.iter().zip(&put).skip(one + 1) {
+                    let (other_from, other_to) = span(b, bt);
+                    prop_assert!(at.level != bt.level || to <= other_from || other_to <= from);
+                }
+            }
+        }
+    }
+}
