@@ -35,8 +35,8 @@ struct Source {
 impl Source {
     /// Lines of code with their numbers: no comments, no tests.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
-        // A test module stands at the end of its file; `#[cfg(test)] mod x;` may stand anywhere.
-        let end = self.text.find("\n#[cfg(test)]\nmod tests").unwrap_or(self.text.len());
+        // A test module stands at the end of its file; `#[cfg(test)] mod tests;` may stand anywhere.
+        let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         self.text
             .get(..end)
             .unwrap_or_default()
@@ -312,7 +312,7 @@ struct Literal {
 
 /// The string literals of a source: not those in its comments, nor those of the tests at its end.
 fn literals(source: &str) -> Vec<Literal> {
-    let source = source.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let source = source.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let characters: Vec<char> = source.chars().collect();
     let mut found = Vec::new();
     let (mut at, mut line) = (0, 1);
