@@ -5,9 +5,11 @@ use egui::{RichText, Ui};
 
 use super::form::{View, rows_ui};
 use crate::app::ssi::Encoder;
+use crate::app::ssi::timing::Diagram;
 use crate::app::{Action, Text, explain};
 use crate::protocol::ssi::{Times, Timing};
 use crate::ui::controls::{card, paragraph, row, two_columns};
+use crate::ui::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
@@ -30,6 +32,13 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         },
         |ui, _| card(ui, skin, "ssi_timing.result", |ui| result(ui, skin, times, &timing)),
     );
+    ui.add_space(skin.space.groups);
+    card(ui, skin, "ssi_timing.diagram", |ui| {
+        let diagram = Diagram::of(designer.layout(), times, &reads);
+        let label = skin.say("ssi_timing.diagram");
+        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
+        timing_diagram(ui, skin, &model);
+    });
 }
 
 fn result(ui: &mut Ui, skin: &Skin, times: &Times, timing: &Timing) {
