@@ -9,7 +9,7 @@ use super::session::{Kind, Opening, Phase, Source, without_codes};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
-use super::{AnyDevice, Severity, Text, explain};
+use super::{AnyDevice, Severity, Text, explain, ssi};
 use crate::link::{LinkUrl, TraceEntry};
 use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
@@ -104,7 +104,12 @@ impl Studio {
                 self.open_task(url, earlier, prepare, opened(id, attempt))
             }
             Tab::Biss => self.open_task(url, earlier, |_: &mut Session<Biss>| (), opened(id, attempt)),
-            Tab::Ssi => self.open_task(url, earlier, |_: &mut Session<Ssi>| (), opened(id, attempt)),
+            Tab::Ssi => {
+                let asking = self.device(id).and_then(AnyDevice::ssi).map(ssi::Encoder::asking);
+                let prepare =
+                    move |session: &mut Session<Ssi>| asking.into_iter().for_each(|own| session.ask_like(own));
+                self.open_task(url, earlier, prepare, opened(id, attempt))
+            }
             // No device is shown there.
             Tab::Signals => return,
         };

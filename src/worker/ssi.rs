@@ -10,9 +10,10 @@ use std::time::Duration;
 
 pub use open::{check, open};
 
-use super::{Desk, Device, Session, Tell, Watched};
-use crate::device::ssi::{Asking, Error, Identity, Master, Station, Words};
+use super::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::device::ssi::{Asking, Error, Identity, Master, Station, Words, check};
 use crate::link::{ByteLink, Clock, LinkError};
+use crate::protocol::ssi::Layout;
 use crate::sim::biss::Motor;
 use crate::store::Store;
 
@@ -27,7 +28,7 @@ pub struct Ssi {
 }
 
 /// What can be asked of an adapter before an SSI encoder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
     /// Who the adapter is; the encoder's supply switched on where that is wished, and words taken as the station says.
     Hello,
@@ -35,10 +36,12 @@ pub enum SsiJob {
     Set(Asking),
     /// One word.
     Read,
+    /// The device check, with what the layout says of words.
+    Check(Box<Layout>),
 }
 
 /// What a job gives.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SsiOutput {
     /// Who the adapter is.
     Hello(Box<Identity>),
@@ -46,7 +49,13 @@ pub enum SsiOutput {
     Set(Box<Identity>),
     /// The word, a run of one.
     Read(Words),
+    /// What the device check found.
+    Check(Vec<check::Line>),
 }
+
+/// The step that is told of a job: words are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doing;
 
 /// Why a job ended early.
 pub type JobError = Error;
@@ -80,6 +89,11 @@ impl Session<Ssi> {
         Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
+    /// Words are taken like this from the beginning.
+    pub fn ask_like(&mut self, asking: Asking) {
+        self.device.station.asking = asking;
+    }
+
     /// What is known about the line and the adapter.
     pub fn station(&self) -> &Station {
         &self.device.station
@@ -100,20 +114,23 @@ impl Device for Ssi {
     type Sample = Words;
     /// There is nothing but words.
     type Watch = Infallible;
-    /// No job has steps.
-    type Doing = Infallible;
+    type Doing = Doing;
 
     fn run(
         &mut self,
         desk: &mut Desk,
         job: SsiJob,
-        _tell: &mut dyn FnMut(Tell<Infallible, Infallible>),
+        tell: &mut dyn FnMut(Tell<Infallible, Doing>),
     ) -> Result<SsiOutput, JobError> {
         let mut master = self.master(desk);
         Ok(match job {
             SsiJob::Hello => SsiOutput::Hello(Box::new(master.hello()?)),
             SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
             SsiJob::Read => SsiOutput::Read(master.word()?),
+            SsiJob::Check(layout) => {
+                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: Doing }));
+                SsiOutput::Check(check::check(&mut master, &layout, progress)?)
+            }
         })
     }
 

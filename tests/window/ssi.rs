@@ -5,6 +5,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
 use encoder_studio::app::{Action, FileQuestion, Tab, Wish};
+use encoder_studio::device::ssi::check::Verdict;
 use encoder_studio::protocol::ssi::{Code, Place, Range};
 
 use crate::support::Desk;
@@ -145,9 +146,15 @@ fn a_layout_is_saved_opened_and_kept_over_a_crash() {
     assert_eq!(question.suggested().unwrap().to_str(), Some("ahm36_st_12.ron"));
     let path = desk.outside.path("layout.ron");
     desk.act(Action::Chosen(question, path.clone()));
-    desk.settle();
+    desk.until("it is saved", |studio| studio.ssi().is_some_and(|own| !own.is_dirty()));
     assert!(!encoder(&desk).is_dirty() && matches!(encoder(&desk).session.source, Source::File { .. }));
     act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    let drafts = desk.outside.path("data/drafts/ssi-files");
+    desk.until("the draft is kept", |_| {
+        std::fs::read_dir(&drafts).is_ok_and(|mut files| {
+            files.any(|file| file.is_ok_and(|file| file.path().extension().is_some_and(|own| own == "ron")))
+        })
+    });
     desk.settle();
     let mut desk = desk.crash();
     desk.act(Action::Open(path));
@@ -164,8 +171,9 @@ fn every_export_is_written() {
         let question = desk.studio.take_file_question().unwrap();
         assert!(matches!(question, FileQuestion::Export { .. }));
         let path = desk.outside.path(&format!("export.{}", question.endings()[0]));
+        let _ = std::fs::remove_file(&path);
         desk.act(Action::Chosen(question, path.clone()));
-        desk.settle();
+        desk.until("it is written", |_| path.exists());
         assert_eq!(std::fs::read_to_string(path).unwrap(), encoder(&desk).designer.export(format).unwrap());
     }
     // What has no place in a format is told.
@@ -233,7 +241,7 @@ fn the_layout_is_found_live_and_taken() {
     // The frames can be kept, and looked into again.
     let path = desk.outside.path("frames.txt");
     act(&mut desk, Ssi::SaveFrames(path.clone()));
-    desk.settle();
+    desk.until("they are written", |_| path.exists());
     act(&mut desk, Ssi::ForgetSearch);
     act(&mut desk, Ssi::FindIn(path));
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
@@ -268,4 +276,17 @@ fn an_adapter_without_ssi_is_named() {
     });
     let Phase::Silent(why) = desk.studio.shown().unwrap().phase() else { panic!() };
     assert_eq!(why.id(), "adapter.version");
+}
+
+#[test]
+fn the_device_check_says_what_is_wrong() {
+    let verdicts = |link: &str| {
+        let mut desk = connected(link);
+        act(&mut desk, Ssi::Check);
+        desk.until("it is checked", |studio| studio.ssi().unwrap().check.is_some());
+        encoder(&desk).check.as_ref().unwrap().iter().map(|line| line.verdict).collect::<Vec<_>>()
+    };
+    assert_eq!(verdicts("sim:?ssi=afs60"), [Verdict::Good; 6]);
+    let high = verdicts("sim:?ssi=afs60&line=high");
+    assert_eq!((high[0], high[2]), (Verdict::Good, Verdict::Bad));
 }

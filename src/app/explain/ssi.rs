@@ -1,5 +1,6 @@
 //! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
 
+mod check;
 mod refused;
 
 use super::{adapter, link};
@@ -7,6 +8,7 @@ use crate::app::Text;
 use crate::protocol::ssi::{Advice, Code, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning};
 use crate::worker::ssi::JobError;
 
+pub use check::check;
 pub(super) use refused::PHRASES;
 pub use refused::{format, frame_text, layout, settings};
 

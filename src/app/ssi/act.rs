@@ -33,6 +33,7 @@ impl Encoder {
             Action::Review | Action::Restore(_) => {
                 services.tell(Severity::Note, vec![Text::new("ssi.never_written")], Some(&self.session.name()));
             }
+            Action::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
             Action::ReadPosition => self.submit(SsiJob::Read, services),
             Action::Poll(interval) => {
                 if let Some(line) = &mut self.session.line {
@@ -157,7 +158,8 @@ impl Encoder {
 
     /// Starts a job, or says why not.
     pub(super) fn submit(&mut self, job: SsiJob, services: &mut Services) {
-        self.session.submit(job, words::job(&job), false, services);
+        let what = words::job(&job);
+        self.session.submit(job, what, false, services);
     }
 
     /// Looks for the layout of the words that were read last.

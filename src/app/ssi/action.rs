@@ -15,6 +15,8 @@ pub enum Action {
     Reconnect,
     /// Ask the adapter anew who it is; a layout in a file is read again.
     Read,
+    /// The device check.
+    Check,
     /// Read one word.
     ReadPosition,
     /// Read words all the time, or no more.

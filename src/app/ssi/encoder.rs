@@ -10,6 +10,7 @@ use super::record::{Record, Seen, Streamed};
 use super::search::Hunt;
 use super::trial::{Decoded, Trial};
 use crate::app::Text;
+use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
@@ -39,6 +40,8 @@ pub struct Encoder {
     pub(super) searches: u32,
     /// Who the adapter is and how it takes words, once it has told.
     pub identity: Option<Identity>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
     /// What turns the virtual encoder's shaft.
     pub motor: Option<Motor>,
     /// Words have so many clocks while a layout is looked for.
@@ -96,6 +99,7 @@ impl Encoder {
             hunt: Hunt::default(),
             searches: 0,
             identity: None,
+            check: None,
             motor: None,
             clocks: None,
             told: None,
@@ -139,7 +143,7 @@ impl Encoder {
     }
 
     /// How the adapter is to take words.
-    pub(super) fn asking(&self) -> Asking {
+    pub(in crate::app) fn asking(&self) -> Asking {
         let reading = &self.design().profile.reading;
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }

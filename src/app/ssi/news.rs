@@ -42,8 +42,8 @@ impl Kind for Ssi {
         Some(LastWords { job: *job, end, severity, texts })
     }
 
-    fn doing(what: &Self::Doing) -> Text {
-        match *what {}
+    fn doing(_: &Self::Doing) -> Text {
+        Text::new("ssi_job.words")
     }
 }
 
@@ -99,7 +99,7 @@ impl Encoder {
     fn take(&mut self, event: Event<Ssi>, services: &mut Services) {
         match event {
             Event::Started(_) => {}
-            Event::Progress(_, progress) => match progress.what {},
+            Event::Progress(..) => {}
             Event::Remark(remark) => match remark {},
             Event::Finished(id, output) => {
                 services.job_ends(self.session.id, id, JobEnd::Done);
@@ -124,15 +124,24 @@ impl Encoder {
 
     fn finished(&mut self, output: SsiOutput, services: &mut Services) {
         match output {
-            SsiOutput::Hello(identity) => self.take_identity(*identity, services),
+            SsiOutput::Hello(identity) => {
+                self.told = Some(identity.asking);
+                self.take_identity(*identity, services);
+                self.see_a_word(services);
+            }
             SsiOutput::Set(identity) => {
                 self.identity = Some(*identity);
-                // What comes like this is to be seen, unless it comes anyway.
-                if !self.session.is_polling() {
-                    self.submit(SsiJob::Read, services);
-                }
+                self.see_a_word(services);
             }
             SsiOutput::Read(words) => self.record.add(vec![words], 0),
+            SsiOutput::Check(lines) => self.check = Some(explain::ssi::check(&lines)),
+        }
+    }
+
+    /// What comes like this is to be seen, unless it comes anyway.
+    fn see_a_word(&mut self, services: &mut Services) {
+        if !self.session.is_polling() {
+            self.submit(SsiJob::Read, services);
         }
     }
 

@@ -8,6 +8,7 @@ pub(super) fn job(job: &SsiJob) -> Text {
     match job {
         SsiJob::Hello => Text::new("ssi_job.hello"),
         SsiJob::Set(asking) => Text::new("ssi_job.set").with("clocks", asking.clocks),
+        SsiJob::Check(_) => Text::new("job.check"),
         SsiJob::Read => Text::new("ssi_job.read"),
     }
 }

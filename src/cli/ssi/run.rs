@@ -12,7 +12,7 @@ use crate::device::ssi::{Asking, Words};
 use crate::link::LinkUrl;
 use crate::protocol::ssi::{Range, Reads};
 use crate::store::Store;
-use crate::worker::ssi::{JobError, Ssi, SsiJob, SsiOutput, open};
+use crate::worker::ssi::{Doing, JobError, Ssi, SsiJob, SsiOutput, open};
 use crate::worker::{OpenError, Session};
 
 /// A session with an adapter before an SSI encoder on its thread.
@@ -36,8 +36,8 @@ impl Runs for Ssi {
         match *remark {}
     }
 
-    fn doing(doing: &Infallible) -> String {
-        match *doing {}
+    fn doing(_: &Doing) -> String {
+        "words".to_owned()
     }
 
     fn failure(error: &JobError) -> Vec<Text> {

@@ -2,6 +2,7 @@
 //! nothing to identify, nothing to write, and no time in which it has to be let alone. What a word says is its layout's
 //! business (`protocol/ssi`); here words are only taken, one by one or as a stream.
 
+pub mod check;
 mod error;
 mod master;
 mod station;

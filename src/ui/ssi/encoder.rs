@@ -7,6 +7,7 @@ use crate::app::ssi::{Action as Ssi, Encoder};
 use crate::app::{Action, Text, explain};
 use crate::protocol::ssi::Meaning;
 use crate::sim::biss::Motor;
+use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -24,6 +25,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
         },
         |ui, actions| {
             errors(ui, skin, encoder, actions);
+            ui.add_space(skin.space.groups);
+            check(ui, skin, encoder, actions);
         },
     );
     ui.add_space(skin.space.groups);
@@ -75,7 +78,7 @@ fn turning(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: 
     card(ui, skin, "motor_card.title", |ui| {
         paragraph(ui, skin.caption(skin.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {
-            for rpm in [-600.0, -60.0, -6.0, 0.0, 6.0, 60.0, 600.0] {
+            for rpm in [-60.0, -6.0, 0.0, 6.0, 60.0] {
                 let is_own = (motor.rpm() - rpm).abs() < 1e-9;
                 let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
                 let response = ui.add(egui::Button::selectable(is_own, &word));
@@ -116,5 +119,17 @@ fn errors(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
                 });
             });
         }
+    });
+}
+
+fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let run = |ui: &mut Ui| {
+        let ready = encoder.session.is_ready();
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Ssi(encoder.session.id, Ssi::Check));
+        }
+    };
+    card_with(ui, skin, "check_card.title", run, |ui| {
+        lines_ui(ui, skin, encoder.check.as_deref(), "ssi_check.nothing");
     });
 }

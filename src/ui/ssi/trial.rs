@@ -47,14 +47,14 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 
 fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, put: &mut dyn FnMut(Try)) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
+    let most = Text::new("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
+    paragraph(ui, skin.caption(skin.words(&most)));
     let word = skin.say("ssi_trial.position");
     entry(ui, skin, &word, |ui| {
         settled_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
             put(Try::Position(whole(text)?));
             Ok(())
         });
-        let most = Text::new("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
-        ui.add(egui::Label::new(skin.caption(skin.words(&most))).truncate());
     });
     refused(ui, skin, view.position.as_ref());
     match shown.place {
