@@ -12,7 +12,7 @@ use crate::device::bridge::flow::{Flow, Streamed};
 use crate::device::bridge::{Adapter, AdapterError, Failure};
 use crate::device::line::Line;
 use crate::link::Ctx;
-use crate::protocol::bridge::{Capabilities, Data, REPEAT_AFTER, Reply, Request, SsiFlags};
+use crate::protocol::bridge::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
 use crate::units::Moment;
 
 /// A wish to end is heard so often.
@@ -65,10 +65,15 @@ impl<'a> Master<'a> {
     /// # Errors
     /// As [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
-        let Identity { asking, clock_hz, .. } = self.hello()?;
-        let taken = self.repeated(Self::word_once);
-        let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
-        Ok(Words::one(at, word, asking, clock_hz))
+        match self.word_as_set() {
+            // It does not know any more how words are taken: it was reset. Once more, set anew.
+            Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
+                if operation == Request::SsiRead.operation() =>
+            {
+                self.word_as_set()
+            }
+            taken => taken,
+        }
     }
 
     /// Takes the next of many words that are asked for one by one.
@@ -165,6 +170,13 @@ impl<'a> Master<'a> {
         };
         self.station.set = Some((asking, clock_hz));
         Ok(clock_hz)
+    }
+
+    fn word_as_set(&mut self) -> Result<Words, Error> {
+        let Identity { asking, clock_hz, .. } = self.hello()?;
+        let taken = self.repeated(Self::word_once);
+        let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
+        Ok(Words::one(at, word, asking, clock_hz))
     }
 
     fn word_once(&mut self) -> Result<(u64, Moment), Failure> {

@@ -154,6 +154,19 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     }
 }
 
+/// Asked word by word, it is found out with the next one.
+#[test]
+fn an_adapter_that_was_reset_between_two_words_is_set_again() {
+    let query = "supply=switched&rpm=60";
+    let mut stand = Stand::new("voltage=5", query);
+    stand.session.pace(Some(Duration::from_millis(100)));
+    assert_eq!((stand.sample().first, stand.sample().first), (0, 1));
+    *stand.adapter.lock().unwrap() = Adapter::new(&Config::from_pairs(&pairs(query)).unwrap());
+    let words = stand.sample();
+    assert!(words.first == 2 && words.words[0] != (1 << 25) - 1, "the encoder has its supply again: {words:?}");
+    assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));
+}
+
 /// Packets that are damaged on the way are missing before the next, and no word is a wrong one.
 #[test]
 fn what_gets_lost_on_the_way_is_told() {
