@@ -4,7 +4,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::{file, plain};
+use super::{file, plain, ssi};
 use crate::app::Text;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
@@ -134,7 +134,7 @@ const PHRASES: &[&str] = &[
 
 /// A phrase of a lower floor, which speaks English: recognised by its words.
 pub fn phrase(words: &str) -> Text {
-    let all = PHRASES.iter().chain(super::ssi::PHRASES);
+    let all = PHRASES.iter().chain(ssi::PHRASES);
     all.copied().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
 }
 
@@ -177,7 +177,7 @@ pub fn document(error: &ProfileError) -> Text {
             Text::new("detail.value").with("path", path).with_text("what", phrase(what))
         }
         ProfileError::Frame { path, cause } => {
-            Text::new("detail.value").with("path", path).with_text("what", phrase(&cause.to_string()))
+            Text::new("detail.value").with("path", path).with_text("what", ssi::cannot_work(cause))
         }
         // These have sentences of their own.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),

@@ -9,7 +9,7 @@ use crate::protocol::ssi::{Advice, Code, Evidence, Finding, Layout, Meaning, Not
 use crate::worker::ssi::JobError;
 
 pub use check::check;
-pub(super) use refused::PHRASES;
+pub(super) use refused::{PHRASES, cannot_work};
 pub use refused::{format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.

@@ -176,6 +176,22 @@ fn a_wrong_ssi_profile_is_told_in_both_languages() {
         ("clock_hz: 1000", "clock_hz: 999"),
         ("meaning: \"invalid\"", "meaning: \"bad\""),
         ("\"ones\"", "\"all\""),
+        ("clocks: 15", "clocks: 65"),
+        ("clocks: 15", "clocks: 13"),
+        ("clocks: 15", "clocks: 14"),
+        ("clocks: 15", "clocks: 15, lead: 1, area: 14"),
+        ("clocks: 15", "clocks: 15, between: 1, area: 15"),
+        ("clocks: 15", "clocks: 15, area: 15, over: \"padded\", code: \"gray\""),
+        ("clocks: 15", "clocks: 15, area: 15, shift: true"),
+        ("clocks: 15", "clocks: 15, over: \"padded\""),
+        ("clocks: 15", "clocks: 15, parity: (clock: 14, even: true)"),
+        ("clocks: 15", "clocks: 15, repeat: (word: 15)"),
+        ("clock: 15", "clock: 14"),
+        ("singleturn: 14", "singleturn: 33"),
+        ("singleturn: 14", "singleturn: 0"),
+        ("singleturn: 14", "steps: 9, revolutions: \"1/0\""),
+        ("singleturn: 14", "steps: 359, code: \"gray-excess\""),
+        ("\"ones\"", "0x8000"),
     ];
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();

@@ -40,7 +40,12 @@ pub(in crate::app::explain) const PHRASES: &[&str] = &[
 
 /// A frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
-    let why = match error {
+    refused(cannot_work(error))
+}
+
+/// Why a frame cannot work.
+pub(in crate::app::explain) fn cannot_work(error: &LayoutError) -> Text {
+    match error {
         LayoutError::Overlap { clock, first, second } => Text::new("phrase.ssi_overlap")
             .with("clock", clock)
             .with_text("first", phrase(first))
@@ -52,8 +57,7 @@ pub fn layout(error: &LayoutError) -> Text {
             Text::new("phrase.ssi_many").with("limit", limit).with_text("what", phrase(what)).with("count", count)
         }
         other => phrase(&other.to_string()),
-    };
-    refused(why)
+    }
 }
 
 /// Settings that a family does not have.
