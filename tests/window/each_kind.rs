@@ -88,7 +88,9 @@ fn review(desk: &mut Desk, action: ReviewAction) {
 #[track_caller]
 fn until_ready(desk: &mut Desk) {
     desk.until("it is read", |studio| {
-        let is_ready = |own: &AnyDevice| own.is_ready() && *own.phase() == Phase::Connected && own.backups().is_some();
+        // There are no backups of what is never written.
+        let is_read = |own: &AnyDevice| own.backups().is_some() || own.ssi().is_some_and(|own| own.last().is_some());
+        let is_ready = |own: &AnyDevice| own.is_ready() && *own.phase() == Phase::Connected && is_read(own);
         shown(studio).is_some_and(is_ready)
     });
     desk.settle();
@@ -290,6 +292,8 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
         (Tab::Biss, "tcp:moxa:4002".to_owned()),
         (Tab::Biss, format!("bridge:{ADAPTER}?clock=2000000")),
         (Tab::Biss, "bridge:tcp:adapter:5000".to_owned()),
+        (Tab::Ssi, "sim:".to_owned()),
+        (Tab::Ssi, "sim:?ssi=ahm36,code=gray&rpm=6".to_owned()),
     ];
     let mut desk = Desk::fresh("");
     for (tab, link) in links {
@@ -299,8 +303,12 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
             desk.connect(Connect::Use(link.clone()));
             let dialog = desk.studio.connect.as_ref().unwrap();
             if !typed {
-                let (form, biss) = (Box::new(dialog.form.clone()), Box::new(dialog.biss.clone()));
-                desk.connect(if tab == Tab::Biss { Connect::EditBiss(biss) } else { Connect::Edit(form) });
+                let form = match tab {
+                    Tab::Biss => Connect::EditBiss(Box::new(dialog.biss.clone())),
+                    Tab::Ssi => Connect::EditSsi(Box::new(dialog.ssi.clone())),
+                    _ => Connect::Edit(Box::new(dialog.form.clone())),
+                };
+                desk.connect(form);
                 assert_eq!(desk.studio.connect.as_ref().unwrap().link(), link);
             }
             desk.connect(Connect::Connect);

@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::Phase;
+use encoder_studio::app::ssi::{Action as Ssi, Edit, Field, Input};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab, Theme};
 
 use crate::screen::Screen;
@@ -57,6 +58,39 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
         });
         look_at_everything(&mut screen, size);
     }
+}
+
+#[test]
+fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
+    for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)] {
+        let mut screen = Screen::opened_in(Tab::Ssi, link, size);
+        screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.last().is_some()));
+        let id = screen.studio().ssi().unwrap().session.id;
+        screen.act(Action::Ssi(id, Ssi::Check));
+        screen.until("it is checked", |studio| studio.ssi().unwrap().check.is_some());
+        look_at_everything(&mut screen, size);
+    }
+}
+
+#[test]
+fn every_page_of_an_ssi_layout_is_drawn() {
+    let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
+    screen.act(Action::ShowTab(Tab::Ssi));
+    look_at_everything(&mut screen, SMALL);
+    // Any frame, with all that one can have.
+    let id = screen.studio().ssi().unwrap().session.id;
+    screen.act(Action::Ssi(id, Ssi::Edit(Box::new(Edit::Free))));
+    for action in [
+        Ssi::AddErrorBit,
+        Ssi::AddErrorBit,
+        Ssi::Enter(Field::Parity, Input::Choice(1)),
+        Ssi::Enter(Field::Repeat, Input::Switch(true)),
+        Ssi::Enter(Field::Singleturn, Input::Number(99)),
+    ] {
+        screen.act(Action::Ssi(id, action));
+    }
+    assert_eq!(screen.studio().ssi().unwrap().clocks(), 61);
+    look_at_everything(&mut screen, SMALL);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::protocol::ssi::{FrameTextError, Search, parse_frame};
 use crate::store::read_file;
 
 /// Frames that are searched at most: the newest.
-pub(super) const MOST: usize = 20_000;
+pub(super) const MOST: usize = 8_000;
 
 /// Where the frames are from.
 #[derive(Clone, Debug, PartialEq, Eq)]
