@@ -7,7 +7,7 @@ use super::form::{View, rows_ui};
 use crate::app::ssi::Encoder;
 use crate::app::ssi::timing::Diagram;
 use crate::app::{Action, Text, explain};
-use crate::protocol::ssi::{Times, Timing};
+use crate::protocol::ssi::Timing;
 use crate::ui::controls::{card, paragraph, row, two_columns};
 use crate::ui::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::{Skin, icons};
@@ -23,6 +23,13 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     };
     let reads = designer.reads();
     let timing = times.reckon(&reads);
+    card(ui, skin, "ssi_timing.title", |ui| {
+        let diagram = Diagram::of(designer.layout(), times, &reads);
+        let label = skin.say("ssi_timing.title");
+        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
+        timing_diagram(ui, skin, &model);
+    });
+    ui.add_space(skin.space.groups);
     two_columns(
         ui,
         skin,
@@ -30,18 +37,11 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         |ui, (view, actions)| {
             card(ui, skin, "ssi_timing.reading", |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
         },
-        |ui, _| card(ui, skin, "ssi_timing.result", |ui| result(ui, skin, times, &timing)),
+        |ui, _| card(ui, skin, "ssi_timing.result", |ui| result(ui, skin, &timing)),
     );
-    ui.add_space(skin.space.groups);
-    card(ui, skin, "ssi_timing.diagram", |ui| {
-        let diagram = Diagram::of(designer.layout(), times, &reads);
-        let label = skin.say("ssi_timing.diagram");
-        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
-        timing_diagram(ui, skin, &model);
-    });
 }
 
-fn result(ui: &mut Ui, skin: &Skin, times: &Times, timing: &Timing) {
+fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
     let micros = |time: std::time::Duration| skin.number(time.as_secs_f64() * 1e6, 2);
     let mut told = |id: &'static str, words: String| row(ui, skin, &skin.say(id), skin.mono(words));
     told("ssi_timing.period", format!("{} µs", micros(timing.period)));
@@ -50,12 +50,8 @@ fn result(ui: &mut Ui, skin: &Skin, times: &Times, timing: &Timing) {
         "ssi_timing.cycle",
         format!("{} µs · {} Hz", micros(timing.cycle), skin.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
     );
-    let (least, most) = times.monoflop;
-    let monoflop = if (most - least).abs() < 1e-9 {
-        skin.number(most, 0)
-    } else {
-        format!("{} … {}", skin.number(least, 0), skin.number(most, 0))
-    };
+    let (least, most) = timing.monoflop;
+    let monoflop = if least == most { micros(most) } else { format!("{} … {}", micros(least), micros(most)) };
     told("ssi_timing.monoflop", format!("{monoflop} µs"));
     told("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
     told("ssi_timing.most_reads", format!("{} Hz", skin.number(timing.most_reads_hz, 0)));

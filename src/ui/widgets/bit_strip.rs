@@ -1,6 +1,7 @@
 //! An SSI frame as a row of cells, one a clock, whose boundaries and single bits can be moved.
 //!
-//! * **Size**: as wide as there is room; cells shrink to a least width, then the strip wraps into lines of 32, 16 or 8.
+//! * **Size**: as wide as there is room; cells shrink to a least width, then the strip wraps into as few lines
+//!   of whole bytes as there can be.
 //! * **Keyboard**: Tab goes to the cells and from handle to handle. On the cells the left and right arrows, Home and End
 //!   select one, Space turns its bit over where that is wished. On a handle the arrows move it by one clock, Home and End
 //!   as far as it goes.

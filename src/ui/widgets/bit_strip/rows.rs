@@ -1,4 +1,4 @@
-//! Where the cells of a bit strip are: on one line where there is room, else on lines of 32, 16 or 8.
+//! Where the cells of a bit strip are: on one line where there is room, else on lines of whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -36,7 +36,9 @@ impl Rows {
             let columns = (room / cell).floor().min(64.0) as u8;
             return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
         }
-        let columns = [32_u8, 16].into_iter().find(|columns| f32::from(*columns) * LEAST <= room).unwrap_or(8);
+        // As few lines as there can be, each of whole bytes.
+        let columns = |lines: u8| clocks.div_ceil(lines).next_multiple_of(8);
+        let columns = (2..=8).map(columns).find(|columns| f32::from(*columns) * LEAST <= room).unwrap_or(8);
         let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
         Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() }
     }
@@ -152,10 +154,12 @@ mod tests {
             let rows = Rows::new(room, clocks);
             assert_eq!((rows.cell, rows.count(clocks)), (cell, lines), "{clocks} clocks in {room}");
         }
-        for (room, columns) in [(1108.0, 64), (1107.0, 32), (564.0, 32), (563.0, 16), (292.0, 16), (291.0, 8)] {
+        for (room, columns) in
+            [(1108.0, 64), (1107.0, 32), (564.0, 32), (563.0, 24), (428.0, 24), (427.0, 16), (292.0, 16), (291.0, 8)]
+        {
             let rows = Rows::new(room, 64);
             assert_eq!(rows.columns, columns, "{room}");
-            let rows = rows.at(Pos2::ZERO, &vec![1; 64 / usize::from(columns)]);
+            let rows = rows.at(Pos2::ZERO, &vec![1; 64_usize.div_ceil(columns.into())]);
             assert!(rows.size(64).x <= room);
         }
     }
