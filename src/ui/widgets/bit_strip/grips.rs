@@ -7,8 +7,8 @@ use super::rows::Rows;
 use super::{Drag, StripEvent, View, keep_arrows, paint};
 use crate::app::ssi::strip::{self, Handle, Strip};
 
-/// How far beside its edge a handle stands that belongs to the field there, and how wide it can be taken hold of.
-pub(super) const BESIDE: f32 = 5.0;
+/// How far beside its edge a handle is taken hold of that belongs to the field there, and how wide that is.
+const BESIDE: f32 = 5.0;
 const WIDTH: f32 = 9.0;
 
 /// All of them: what they look like, and what was done to one.
@@ -79,7 +79,7 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         return Some(lane.shrink2(Vec2::new(WIDTH.min(lane.width() / 3.0), 0.0)));
     }
     let edge = edge(rows, strip, handle)?;
-    let x = edge.center().x + side(handle) * BESIDE;
+    let x = edge.center().x + side(handle) * if is_second(strip, handle) { WIDTH } else { BESIDE };
     let (top, bottom) = match handle {
         // Other boundaries may stand on the same edge.
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
@@ -97,8 +97,18 @@ pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     Some(rows.edge(clock, begins, clocks))
 }
 
+/// Where the tab of a boundary is drawn, from its edge on.
+pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
+    side(handle) * if is_second(strip, handle) { WIDTH - 1.0 } else { BESIDE * 0.6 }
+}
+
+/// A boundary between turns and steps stands on the edge itself; where zeros may come between, is beside it.
+fn is_second(strip: &Strip, handle: Handle) -> bool {
+    handle == Handle::BetweenEnd && strip.handles().contains(&Handle::Split)
+}
+
 /// On which side of its edge a boundary belongs to a field: -1 before, 1 behind, 0 to both.
-pub(super) const fn side(handle: Handle) -> f32 {
+const fn side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
         Handle::TurnsEnd | Handle::StepsEnd => -1.0,

@@ -1,8 +1,10 @@
 //! The names of the fields below their brackets: in the middle where there is room, else beside a line that leads down
 //! to them, as many lines of them as keep them apart.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, FontId, Galley, Painter, Rect, Stroke, Ui, Vec2, pos2};
 
 use super::rows::{NAME, Rows};
@@ -27,8 +29,71 @@ pub(super) struct Tag {
 
 /// Between two names on a line.
 const APART: f32 = 6.0;
+/// Longer names are cut off; the field's tooltip has them whole.
+const WIDEST: f32 = 160.0;
 /// Lines of names at most, before the last: as many as a frame has error bits.
 const LEVELS: usize = 8;
+
+/// A name that is wider than its field.
+struct Narrow {
+    index: usize,
+    line: usize,
+    /// The middle of the field.
+    x: f32,
+    /// None of its neighbours is such a name.
+    alone: bool,
+    /// It begins at its line instead of ending there.
+    begins: bool,
+    /// Where the cells end.
+    room: f32,
+    galley: Arc<Galley>,
+}
+
+impl Narrow {
+    /// Where it is beside those that have their place.
+    fn placed(self, tags: &[Tag]) -> Tag {
+        let width = self.galley.size().x;
+        let middle = self.x - width / 2.0;
+        let is_in = (-APART..=self.room + APART - width).contains(&middle);
+        let (left, level) = if self.alone && is_in && self.is_free(tags, middle, 0) {
+            (middle, 0)
+        } else {
+            let left = if self.begins {
+                (self.x - APART / 2.0).min(self.room + APART - width)
+            } else {
+                self.x + APART / 2.0 - width
+            };
+            let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
+            // Where lines cannot be kept off names, names at least are kept off each other.
+            let apart = || (0..).find(|level| self.is_apart(tags, left, *level));
+            (left, free.or_else(apart).unwrap_or(LEVELS))
+        };
+        let leader = Some(self.x).filter(|_| level > 0);
+        Tag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
+    }
+
+    /// No other name is there.
+    fn is_apart(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+        let right = left + self.galley.size().x;
+        let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
+        own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
+    }
+
+    /// No other name is there, nor a line that leads to one further down, nor is one in the way of its own line.
+    fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+        let right = left + self.galley.size().x;
+        let mut others = tags.iter().filter(|tag| tag.line == self.line);
+        let crossed = others.any(|tag| {
+            let (from, to) = tag.span();
+            match tag.level.cmp(&level) {
+                Ordering::Equal => false,
+                Ordering::Greater => tag.leader.is_some_and(|x| left <= x && x <= right),
+                Ordering::Less => from <= self.x && self.x <= to,
+            }
+        });
+        self.is_apart(tags, left, level) && !crossed
+    }
+}
 
 impl Tag {
     fn span(&self) -> (f32, f32) {
@@ -67,7 +132,9 @@ pub(super) fn tags(
             Some(meaning) => (skin.strong(size), format!("{} {words}", controls::verdict(skin, verdict(meaning)).0)),
             None => (FontId::proportional(size), words),
         };
-        ui.painter().layout_no_wrap(words, font, skin.palette.muted.into())
+        let mut job = LayoutJob::simple_singleline(words, font, skin.palette.muted.into());
+        job.wrap = TextWrapping::truncate_at_width(WIDEST);
+        ui.painter().layout_job(job)
     };
     let mut tags: Vec<Tag> = Vec::new();
     let mut narrow = Vec::new();
@@ -83,29 +150,24 @@ pub(super) fn tags(
             None => narrow.push((index, own, run, line)),
         }
     }
-    for (at, (index, own, run, line)) in narrow.iter().enumerate() {
-        let beside =
-            |other: Option<&(usize, &Field, Rect, usize)>| other.is_some_and(|other| other.0.abs_diff(*index) == 1);
-        let alone = !beside(narrow.get(at + 1)) && !beside(at.checked_sub(1).and_then(|at| narrow.get(at)));
+    let room = rows.width(strip.layout().clocks());
+    let narrow = narrow.into_iter().map(|(index, own, run, line)| {
         let galley = galley(own, bare(strip, own));
-        let (x, width) = (run.center().x, galley.size().x);
-        let free = |left: f32, level: usize| {
-            let own = tags.iter().filter(|tag| tag.line == *line);
-            own.clone().filter(|tag| tag.level == level).map(Tag::span).all(|(from, to)| {
-                // Nor across a line that leads further down.
-                left + width + APART <= from || to + APART <= left
-            }) && own.filter(|tag| tag.level > level).filter_map(|tag| tag.leader).all(|x| left + width < x || x < left)
-        };
-        let inside = |left: f32| left >= rows.cell(1).left() - APART;
-        // Where several stand side by side, each ends at its own line, so that the next one's passes it.
-        let before = x + APART / 2.0 - width;
-        let (left, level) = if alone && inside(x - width / 2.0) && free(x - width / 2.0, 0) {
-            (x - width / 2.0, 0)
-        } else {
-            let left = if inside(before) { before } else { x - APART / 2.0 };
-            (left, (0..LEVELS).find(|level| free(left, *level)).unwrap_or(LEVELS))
-        };
-        tags.push(Tag { field: *index, line: *line, level, left, leader: Some(x).filter(|_| level > 0), galley });
+        let begins = run.center().x + APART / 2.0 < galley.size().x;
+        Narrow { index, line, x: run.center().x, alone: true, begins, room, galley }
+    });
+    let mut narrow: Vec<Narrow> = narrow.collect();
+    // Where several stand side by side, each ends at its own line, so that the next one's passes it; at the beginning,
+    // where there is no room for that, each begins at its own, the last of them the highest.
+    for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
+        let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
+        for own in group {
+            (own.alone, own.begins) = (alone, begins);
+        }
+    }
+    let (begin, end): (Vec<Narrow>, Vec<Narrow>) = narrow.into_iter().partition(|own| own.begins);
+    for narrow in end.into_iter().chain(begin.into_iter().rev()) {
+        tags.push(narrow.placed(&tags));
     }
     let levels = (0..rows.count(strip.layout().clocks())).map(|line| {
         let own = tags.iter().filter(|tag| tag.line == line);

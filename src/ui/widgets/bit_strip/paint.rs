@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 
-use super::grips::{BESIDE, edge, side};
+use super::grips::{edge, tab};
 use super::names::{Tag, verdict, widest};
 use super::rows::Rows;
 use super::{Drag, View, tells};
@@ -122,7 +122,7 @@ pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Dr
             }
         }
     } else if let Some(edge) = edge(view.rows, view.shown, handle) {
-        let x = edge.center().x + side(handle) * BESIDE * if handle == Handle::FrameEnd { 0.8 } else { 0.6 };
+        let x = edge.center().x + tab(view.shown, handle);
         let lane = edge.bottom() - 8.0;
         let y = if handle == Handle::AreaEnd { edge.top() - 7.0 } else { lane };
         let size = if lit { Vec2::new(5.0, 13.0) } else { Vec2::new(4.0, 11.0) };

@@ -65,10 +65,14 @@ impl Rows {
         self
     }
 
+    /// How wide the cells are together.
+    pub(super) fn width(&self, clocks: u8) -> f32 {
+        f32::from(clocks.min(self.columns)) * self.cell
+    }
+
     /// What all of it takes.
     pub(super) fn size(&self, clocks: u8) -> Vec2 {
-        let columns = f32::from(clocks.min(self.columns));
-        Vec2::new(columns * self.cell + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
+        Vec2::new(self.width(clocks) + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
     }
 
     /// The line of a clock.

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::{NONE, focus, press, skin, window};
 use crate::app::ssi::strip::{Handle, Strip};
-use crate::protocol::ssi::{Families, Layout, Settings};
+use crate::protocol::ssi::{ErrorBit, Families, Layout, Meaning, Settings};
 use crate::ui::widgets::{BitStrip, StripEvent, bit_strip};
 
 struct Design {
@@ -183,6 +183,38 @@ fn every_frame_lies_within_its_width() {
         for label in labels.into_iter().chain(["Boundary between turns and steps"]) {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= left && rect.right() <= left + width, "{label} at {width}: {rect}");
+        }
+    }
+}
+
+/// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
+#[test]
+fn names_stay_off_each_other() {
+    for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {
+        let mut descriptor = crate::protocol::ssi::Descriptor::plain(0, 4);
+        descriptor.clocks = 64;
+        descriptor.lead = if first == 1 { 10 } else { 0 };
+        descriptor.area = 64;
+        let error = |index: u8| ErrorBit {
+            name: format!("A_LONG_NAME_OF_AN_ERROR_BIT_{index}"),
+            clock: first + index,
+            meaning: Meaning::Warning,
+            active_low: false,
+            cleared_by_transfer: false,
+        };
+        descriptor.errors = (0..8).map(error).collect();
+        let harness = strip(&Layout::new(descriptor).unwrap(), width);
+        // A field's rectangle is its bracket together with its name, which is wider.
+        let name = |index: u8| {
+            let label = format!("A_LONG_NAME_OF_AN_ERROR_BIT_{index}, on clock {}", first + index);
+            harness.get_by_label(&label).rect()
+        };
+        let mut lines: Vec<f32> = (0..8).map(|index| name(index).bottom()).collect();
+        lines.sort_by(f32::total_cmp);
+        lines.dedup();
+        assert_eq!(lines.len(), 8, "{lines:?}");
+        for index in 0..8 {
+            assert!(name(index).left() >= 0.0 && name(index).right() <= width + 16.0, "{index}: {}", name(index));
         }
     }
 }
