@@ -7,7 +7,7 @@ mod tests;
 mod words;
 
 pub use moving::moved;
-pub use words::{bare, cell, clocks, field, handle, hint, name, short, value};
+pub use words::{bare, cell, clocks, field, handle, hint, name, reach, short, value};
 
 use crate::protocol::ssi::{Coded, Flags, Layout, Meaning, Range, Role, Word};
 

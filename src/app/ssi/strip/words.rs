@@ -114,6 +114,16 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
     }
 }
 
+/// How far a handle can be moved.
+pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
+    let (first, last) = strip.limits(handle, following);
+    if first == last {
+        Text::new("ssi.strip_stuck")
+    } else {
+        Text::new("ssi.strip_reach").with("first", first).with("last", last)
+    }
+}
+
 /// What moving a handle does.
 pub fn hint(handle: Handle) -> Text {
     Text::new(match handle {

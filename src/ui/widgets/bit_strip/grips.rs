@@ -183,5 +183,7 @@ fn tip(view: &View<'_>, response: Response, handle: Handle) {
         let value = view.skin.words(&strip::value(view.model.strip, handle));
         ui.label(format!("{name}: {value}"));
         ui.label(view.skin.caption(view.skin.words(&strip::hint(handle))));
+        let reach = strip::reach(view.model.strip, handle, view.model.following);
+        ui.label(view.skin.caption(view.skin.words(&reach)));
     });
 }

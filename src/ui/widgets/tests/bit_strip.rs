@@ -187,6 +187,25 @@ fn every_frame_lies_within_its_width() {
     }
 }
 
+#[test]
+fn a_handle_says_what_it_does_and_how_far_it_goes() {
+    let mut harness = tree();
+    // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five behind.
+    for (label, reach) in
+        [("Boundary between turns and steps", "Possible: 5 to 19"), ("Whole position", "Possible: 1 to 10")]
+    {
+        let rect = harness.get_by_label(label).rect();
+        harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
+        harness.run_steps(60);
+        harness.get_by_label(reach);
+    }
+    let mut harness = strip(&layout("kh53", &Settings::default()), 860.0);
+    let rect = harness.get_by_label("Whole position").rect();
+    harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
+    harness.run_steps(60);
+    harness.get_by_label("It cannot be moved: nothing is free beside it.");
+}
+
 /// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
 #[test]
 fn names_stay_off_each_other() {
