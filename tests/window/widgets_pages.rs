@@ -62,7 +62,8 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
 
 #[test]
 fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
-    for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)] {
+    for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)]
+    {
         let mut screen = Screen::opened_in(Tab::Ssi, link, size);
         screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.last().is_some()));
         let id = screen.studio().ssi().unwrap().session.id;
