@@ -155,7 +155,8 @@ fn class_ui(
                     actions.push(Action::Ssi(id, Ssi::Take(number, place)));
                 }
                 ui.vertical(|ui| {
-                    ui.add(egui::Label::new(skin.value(title(skin, encoder, proposal))).wrap());
+                    ui.spacing_mut().item_spacing.y = skin.space.inside;
+                    title(ui, skin, encoder, proposal);
                     ui.add(egui::Label::new(skin.caption(skin.words(&explain::ssi::frame(&proposal.layout)))).wrap());
                 });
             });
@@ -177,12 +178,18 @@ fn class_ui(
     });
 }
 
-fn title(skin: &Skin, encoder: &Encoder, proposal: &Proposal) -> String {
-    match &proposal.family {
-        Some((key, settings)) => {
-            let name = encoder.designer.families().named(key).map_or(key.as_str(), |family| family.name.as_str());
-            format!("{name}   {}", settings.emit(key))
-        }
-        None => skin.say("ssi_find.any"),
-    }
+/// The family, and how it is set.
+fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
+    let Some((key, settings)) = &proposal.family else {
+        ui.label(skin.say("ssi_find.any"));
+        return;
+    };
+    let family = encoder.designer.families().named(key);
+    // As few settings as there can be.
+    let fewest = family.and_then(|family| family.settings_of(proposal.layout.descriptor()));
+    let name = family.map_or(key.as_str(), |family| family.name.as_str());
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(name).font(skin.strong(skin.sizes.body)));
+        ui.label(skin.mono(fewest.as_ref().unwrap_or(settings).emit(key)));
+    });
 }

@@ -109,7 +109,7 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         ui.label(skin.label(&word));
         let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
         let free = std::iter::once((None, skin.say("ssi_layout.free")));
-        if choice(ui, &word, &mut chosen, all.chain(free)) {
+        if choice(ui, &word, &mut chosen, free.chain(all)) {
             let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
             actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
         }
