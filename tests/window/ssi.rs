@@ -226,7 +226,7 @@ fn the_layout_is_found_live_and_taken() {
     let clocks = encoder(&desk).clocks();
     assert_eq!(clocks, 33);
     act(&mut desk, Ssi::Poll(Some(Duration::from_millis(1))));
-    desk.until("enough is read", |studio| studio.ssi().unwrap().record.words(33).len() >= 2000);
+    desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
     act(&mut desk, Ssi::Poll(None));
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));

@@ -10,7 +10,7 @@ use super::trial::Decoded;
 use crate::app::recorder::{GroupId, Line, Recorder};
 use crate::app::track::{Meaning, Sighting, Track, Watchable};
 use crate::device::ssi::Words;
-use crate::protocol::ssi::{Flags, Layout, Meaning as Says, Range, Tally};
+use crate::protocol::ssi::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
 use crate::signal::Time;
 use crate::units::Moment;
 
@@ -30,6 +30,8 @@ pub struct Record {
     /// Words in `kept`.
     held: usize,
     tally: Tally,
+    /// What was said until then is not to be told any more.
+    forgotten: Option<Moment>,
     last: Option<Seen>,
     stream: Option<Streamed>,
     lost: u64,
@@ -74,6 +76,7 @@ impl Record {
             track: Track::default(),
             meaning: meaning(&layout),
             tally: Tally::default(),
+            forgotten: None,
             layout,
             kept: VecDeque::new(),
             held: 0,
@@ -87,7 +90,7 @@ impl Record {
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.track.begin(began);
         self.kept.clear();
-        (self.held, self.stream) = (0, None);
+        (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
     /// Positions are wished at this interval from now on.
@@ -134,7 +137,9 @@ impl Record {
                 continue;
             }
             let reading = self.layout.decode(word);
-            self.tally.note(&self.layout, reading, Time::from(at));
+            if self.forgotten.is_none_or(|until| at > until) {
+                self.tally.note(&self.layout, reading, Time::from(at));
+            }
             let is_bad = !self.layout.is_valid(reading);
             let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
             let position = i64::try_from(reading.position).ok();
@@ -157,12 +162,20 @@ impl Record {
         }
     }
 
-    /// Another layout: the words that are kept are read with it, what was recorded before them cannot be.
+    /// Another layout: the words that are kept are read with it, what was recorded before them cannot be. Where only names
+    /// are others, everything stays.
     pub(super) fn read_as(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;
         }
-        self.layout = layout.clone();
+        let before = std::mem::replace(&mut self.layout, layout.clone());
+        if nameless(&before) == nameless(layout) {
+            self.tally.rename();
+            if let Some(last) = self.last.as_mut() {
+                last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
+            }
+            return;
+        }
         self.meaning = meaning(layout);
         self.tally.reset();
         self.track.begin_again();
@@ -176,19 +189,28 @@ impl Record {
     }
 
     /// The words that are kept with so many clocks, the newest run of them without a gap.
-    pub fn words(&self, clocks: u8) -> Vec<u64> {
-        let mut runs: Vec<&Words> = Vec::new();
-        for run in self.kept.iter().rev() {
-            let goes_on = runs.last().is_none_or(|later| later.period_ns == run.period_ns);
-            if run.clocks != clocks || !goes_on {
-                break;
-            }
-            runs.push(run);
-            if run.lost > 0 || run.begins() {
-                break;
-            }
-        }
-        runs.iter().rev().flat_map(|run| run.words.iter().copied()).collect()
+    pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
+        let mut runs: Vec<&Words> = self.runs(clocks).collect();
+        runs.reverse();
+        runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
+    }
+
+    /// How many [`words`](Self::words) there are.
+    pub fn count(&self, clocks: u8) -> usize {
+        self.runs(clocks).map(|run| run.words.len()).sum()
+    }
+
+    /// The newest run first; each goes on where the one before it ends.
+    fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
+        let mut later: Option<&Words> = None;
+        self.kept.iter().rev().take_while(move |run| {
+            let goes_on = later.is_none_or(|later| {
+                let ends = run.first + run.words.len() as u64;
+                !later.begins() && later.first == ends && later.period_ns == run.period_ns
+            });
+            later = Some(run);
+            goes_on && run.clocks == clocks
+        })
     }
 
     /// What error bits, patterns and the like have said.
@@ -196,9 +218,10 @@ impl Record {
         &self.tally
     }
 
-    /// Nothing was said from now on.
+    /// Nothing was said until now, also where words are read anew.
     pub(super) fn forget_tally(&mut self) {
         self.tally.reset();
+        self.forgotten = self.last.as_ref().map(|last| last.at);
     }
 
     /// The last word.
@@ -231,6 +254,14 @@ impl Record {
     }
 }
 
+/// What makes positions and verdicts of words.
+fn nameless(layout: &Layout) -> Descriptor {
+    let mut descriptor = layout.descriptor().clone();
+    descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
+    descriptor.patterns.iter_mut().for_each(|pattern| pattern.name.clear());
+    descriptor
+}
+
 /// What the positions of a layout are.
 fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
@@ -255,3 +286,6 @@ impl Watchable for Nothing {
         match *self {}
     }
 }
+
+#[cfg(test)]
+mod tests;

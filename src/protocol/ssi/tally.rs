@@ -71,6 +71,12 @@ impl Tally {
         &self.noted
     }
 
+    /// What is said has other names from now on: what stands is told again with the next frame.
+    pub fn rename(&mut self) {
+        self.noted.iter_mut().for_each(|noted| noted.stands = false);
+        self.before = (Flags::NONE, Vec::new());
+    }
+
     /// Begins anew; what stands is told again with the next frame.
     pub fn reset(&mut self) {
         *self = Tally::default();

@@ -71,7 +71,7 @@ fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
                 ask(Ssi::SetClocks(None));
             }
         });
-        let words = encoder.record.words(encoder.clocks()).len();
+        let words = encoder.record.count(encoder.clocks());
         row(ui, skin, &skin.say("ssi_find.read"), skin.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {
             paragraph(ui, skin.caption(skin.say("ssi_find.poll")));
