@@ -165,9 +165,7 @@ impl Encoder {
     /// Looks for the layout of the words that were read last.
     fn find_live(&mut self, services: &mut Services) {
         let clocks = self.clocks();
-        let mut frames = self.record.words(clocks);
-        let surplus = frames.len().saturating_sub(MOST);
-        frames.drain(..surplus);
+        let frames = self.record.words(clocks);
         if frames.is_empty() {
             self.hunt = Hunt::Failed(Text::new("ssi_find.nothing_read"));
             return;
@@ -187,7 +185,8 @@ impl Encoder {
         self.hunt = Hunt::Running(number);
         let (session, families) = (self.session.id, services.ssi_families());
         services.tasks.run("find", move || {
-            let result = frames().map(|Frames { origin, clocks, frames }| {
+            let result = frames().map(|Frames { origin, clocks, mut frames }| {
+                frames.drain(..frames.len().saturating_sub(MOST));
                 let search = Box::new(find(&frames, clocks, &families));
                 Hunt::Found { origin, clocks, search }
             });

@@ -71,10 +71,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
         if column.is_empty() || line.starts_with('#') {
             continue;
         }
-        let bits = column.trim_start_matches("0b");
-        let is_bits = bits.chars().all(|bit| matches!(bit, '0' | '1'));
-        let length = u8::try_from(bits.len()).unwrap_or(u8::MAX);
-        let width = *own.get_or_insert(if is_bits { length } else { clocks });
+        let width = *own.get_or_insert_with(|| bits_of(column).unwrap_or(clocks));
         match parse_frame(column, width) {
             Ok(frame) => frames.push(frame),
             // A heading.
@@ -91,6 +88,14 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
     }
 }
 
+/// How many bits are written down; `None`: it is something else.
+fn bits_of(column: &str) -> Option<u8> {
+    let bits = column.strip_prefix("0b").or(column.strip_prefix("0B")).unwrap_or(column);
+    let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();
+    bits.peek()?;
+    bits.try_fold(0_u8, |count, bit| matches!(bit, '0' | '1').then(|| count.saturating_add(1)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +103,7 @@ mod tests {
     #[test]
     fn frames_stand_in_a_file_one_a_line() {
         assert_eq!(parse_frames("1010\n\n# comment\n0b1111\n", 25), Ok((4, vec![0b1010, 0b1111])));
+        assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
         assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
         assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
     }
