@@ -117,8 +117,12 @@ impl AnyDevice {
         each!(self, own => &own.session.source)
     }
 
-    pub(super) fn source_mut(&mut self) -> &mut Source {
-        each!(self, own => &mut own.session.source)
+    /// Another link leads to its wire, and counts from now on.
+    pub(super) fn take_link(&mut self, url: LinkUrl) {
+        if let AnyDevice::Ssi(own) = self {
+            own.take_link(&url);
+        }
+        each!(self, own => own.session.source = Source::Link(url));
     }
 
     /// How it stands with the connection.

@@ -37,7 +37,7 @@ impl Studio {
             let held = device.is_connected();
             device.let_go(JobEnd::Cancelled, &mut self.services);
             if device.tab() == tab {
-                *device.source_mut() = Source::Link(url.clone());
+                device.take_link(url.clone());
                 own = Some(device.id());
             } else if held {
                 *device.phase_mut() = Phase::Lost(Text::new("session.let_go_for_other"));

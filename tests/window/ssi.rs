@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
-use encoder_studio::app::{Action, FileQuestion, Tab, Wish};
+use encoder_studio::app::{Action, AnyDevice, FileQuestion, Tab, Wish};
 use encoder_studio::device::ssi::check::Verdict;
 use encoder_studio::protocol::ssi::{Code, Place, Range};
 
@@ -264,6 +264,54 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     // Nothing is written, and that is said.
     wish(&mut desk, Wish::Review);
     assert!(!desk.studio.shown().unwrap().is_reviewing());
+}
+
+#[test]
+fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
+    let mut desk = layout();
+    edit(&mut desk, Edit::Family("ttk70".to_owned()));
+    desk.act(Action::NewLayout);
+    edit(&mut desk, Edit::Family("kh53".to_owned()));
+    desk.settle();
+    assert_eq!(desk.studio.devices().iter().map(AnyDevice::name).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
+    // Closed, the first name is free again; what was begun under it comes back with it.
+    for id in desk.studio.devices().iter().map(AnyDevice::id).collect::<Vec<_>>() {
+        desk.act(Action::CloseSession(id));
+        desk.act(Action::Confirm);
+    }
+    for family in ["ttk70", "kh53"] {
+        desk.act(Action::NewLayout);
+        desk.until("what was begun is back", |studio| {
+            studio.ssi().unwrap().designer.family().is_some_and(|own| own.key == family)
+        });
+    }
+}
+
+#[test]
+fn another_link_to_the_same_wire_says_how_it_is_read() {
+    let mut desk = layout();
+    let reading = |desk: &Desk| {
+        let reading = &encoder(desk).design().profile.reading;
+        (reading.clock_hz, reading.pause_us)
+    };
+    desk.open("bridge:/nowhere/tty?clock=500000");
+    desk.settle();
+    act(&mut desk, Ssi::Enter(Field::Pause, Input::Number(90)));
+    let id = encoder(&desk).session.id;
+    assert_eq!(reading(&desk), (500_000, 90));
+    desk.open("bridge:/nowhere/tty?clock=750000");
+    desk.settle();
+    assert_eq!((encoder(&desk).session.id, reading(&desk)), (id, (750_000, 90)), "what was set here stays");
+}
+
+#[test]
+fn an_encoder_is_called_by_its_family() {
+    let mut desk = connected("sim:?ssi=ahm36");
+    let before = encoder(&desk).session.name();
+    edit(&mut desk, Edit::Family("ttk70".to_owned()));
+    let own = encoder(&desk);
+    assert_eq!(own.session.name(), own.designer.family().unwrap().name);
+    assert_ne!(own.session.name(), before);
 }
 
 #[test]

@@ -50,7 +50,8 @@ pub(in crate::app) trait Drafted {
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::of_file(Self::KIND, key)),
-            Source::New { .. } => Some(DraftKey::of_file(Self::KIND, "new")),
+            // Files are named by 16 hexadecimal digits.
+            Source::New { suggested } => Some(DraftKey::of_file(Self::KIND, &suggested.to_string_lossy())),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
                 let name = || format!("{device_type}-{serial}");

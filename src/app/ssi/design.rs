@@ -112,14 +112,13 @@ impl Designer {
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
         let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
-        let number = |name: &str| url.query.get(name).and_then(|text| text.parse::<u32>().ok());
-        if let Some(clock_hz) = number("clock") {
-            profile.reading.clock_hz = clock_hz;
-        }
-        if let Some(pause_us) = number("pause").and_then(|pause| u16::try_from(pause).ok()) {
-            profile.reading.pause_us = pause_us;
-        }
+        profile.reading = read_over(profile.reading, url, |_| true);
         Designer::with(profile, families)
+    }
+
+    /// How one reads over another link to the same wire: what that says otherwise counts, and what was set here stays.
+    pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
+        read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
     /// Another layout, as it is saved.
@@ -278,6 +277,17 @@ impl Designer {
     /// It is saved like this now; changes stay changes.
     pub(super) fn saved_as(&mut self, profile: SsiProfile) {
         self.saved = profile;
+    }
+}
+
+/// How one reads over a link, as those of its parameters say that count.
+fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
+    let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
+    let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
+    ReadingSettings {
+        clock_hz: number("clock").unwrap_or(reading.clock_hz),
+        pause_us: pause_us.unwrap_or(reading.pause_us),
+        ..reading
     }
 }
 

@@ -1,5 +1,6 @@
 //! SSI encoders among the devices of the studio.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::action::Action;
@@ -7,6 +8,7 @@ use super::design::Edit;
 use super::encoder::Encoder;
 use crate::app::action::{Action as StudioAction, Done};
 use crate::app::services::Services;
+use crate::app::session::Source;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
 use crate::app::{AnyDevice, Severity, explain};
@@ -27,10 +29,17 @@ impl Studio {
         }
     }
 
-    /// A layout that is in no file yet.
+    /// A layout that is in no file yet, with the first name that no other such layout has.
     pub(in crate::app) fn new_layout(&mut self) {
+        let taken = |name: &PathBuf| {
+            let others = self.devices.iter().map(AnyDevice::source);
+            others.into_iter().any(|source| matches!(source, Source::New { suggested } if suggested == name))
+        };
+        let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
+        let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
+        let Some(name) = names.find(|name| !taken(name)) else { return };
         let id = self.new_id();
-        let layout = Encoder::new_layout(id, &self.services);
+        let layout = Encoder::new_layout(id, name, &self.services);
         self.devices.push(AnyDevice::Ssi(Box::new(layout)));
         self.show(Tab::Ssi, id);
     }

@@ -63,7 +63,8 @@ impl Drafted for Encoder {
     fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
         let Body::Ssi(profile) = &document.body else { return };
         let before = self.designer.layout().clone();
-        if self.designer.is_dirty() {
+        // What was done and undone stays, unless the file holds something else by now.
+        if self.designer.is_dirty() || self.designer.design().profile == *profile {
             self.designer.saved_as(profile.clone());
         } else {
             self.designer.open(profile.clone());

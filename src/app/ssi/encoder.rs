@@ -18,7 +18,7 @@ use crate::device::ssi::{Asking, Identity};
 use crate::link::LinkUrl;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Body, Document};
-use crate::protocol::ssi::{Families, Range, Reads};
+use crate::protocol::ssi::{Families, Layout, Range, Reads};
 use crate::sim::biss::Motor;
 use crate::worker::ssi::Ssi;
 
@@ -59,10 +59,9 @@ impl Encoder {
         Encoder::with(Session::at_link(id, url), designer)
     }
 
-    /// A layout that is in no file yet: a family's as delivered.
-    pub(in crate::app) fn new_layout(id: SessionId, services: &Services) -> Self {
+    /// A layout that is in no file yet, and a name for one: a family's as delivered.
+    pub(in crate::app) fn new_layout(id: SessionId, suggested: PathBuf, services: &Services) -> Self {
         let designer = Designer::delivered(services.ssi_families());
-        let suggested = PathBuf::from("layout.ron");
         let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
         encoder.load_draft(services);
         encoder
@@ -183,7 +182,18 @@ impl Encoder {
         }
     }
 
-    pub(super) fn follow_layout(&mut self, before: &crate::protocol::ssi::Layout) {
+    /// Another link leads to the same wire: it is read as that says.
+    pub(in crate::app) fn take_link(&mut self, url: &LinkUrl) {
+        if let Source::Link(before) = &self.session.source {
+            self.edit(Edit::Reading(self.designer.reading_over(before, url)));
+        }
+    }
+
+    /// The layout was changed: what stands on it is changed too.
+    pub(super) fn follow_layout(&mut self, before: &Layout) {
+        if self.identity.is_some() {
+            self.name_after_family();
+        }
         let now = self.designer.layout();
         if before == now {
             return;
