@@ -1,6 +1,6 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use super::target::{assemble, entered, filled, host_and_port, refused};
+use super::target::{adapter_in_network, assemble, entered, filled, host_and_port, parted, refused, to_adapter};
 use crate::app::Text;
 use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::link::{LinkUrl, Scheme};
@@ -64,8 +64,6 @@ pub struct BissForm {
 
 /// The parameter that puts the virtual adapter in front of the virtual encoder.
 const BRIDGE: (&str, &str) = ("bridge", "on");
-/// Begins the target of a link to an adapter in the network.
-const TCP: &str = "tcp:";
 
 impl Default for BissForm {
     fn default() -> Self {
@@ -105,7 +103,7 @@ impl BissForm {
         let target = url.target.as_str();
         let network = match url.scheme {
             Scheme::Tcp => Some(target),
-            Scheme::Bridge => target.strip_prefix(TCP),
+            Scheme::Bridge => adapter_in_network(target),
             _ => None,
         };
         form.way = match url.scheme {
@@ -115,8 +113,8 @@ impl BissForm {
             Scheme::Replay => BissWay::Replay,
         };
         if let Some(network) = network {
-            let (host, port) = network.rsplit_once(':').unwrap_or((network, ""));
-            (form.network, form.host, form.tcp_port) = (true, host.to_owned(), port.to_owned());
+            form.network = true;
+            (form.host, form.tcp_port) = parted(network);
         } else if form.way == BissWay::Replay {
             form.file = target.to_owned();
         } else {
@@ -192,19 +190,13 @@ impl BissForm {
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
-        let place = || {
-            if self.network {
-                host_and_port(&self.host, &self.tcp_port)
-            } else {
-                entered(&self.port, "form.port_missing")
-            }
-        };
+        let port = || entered(&self.port, "form.port_missing");
         Ok(match self.way {
             BissWay::Virtual => (Scheme::Sim, String::new()),
-            BissWay::Pin if self.network => (Scheme::Tcp, place()?),
-            BissWay::Pin => (Scheme::Serial, place()?),
-            BissWay::Bus if self.network => (Scheme::Bridge, format!("{TCP}{}", place()?)),
-            BissWay::Bus => (Scheme::Bridge, place()?),
+            BissWay::Pin if self.network => (Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
+            BissWay::Pin => (Scheme::Serial, port()?),
+            BissWay::Bus if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
+            BissWay::Bus => (Scheme::Bridge, port()?),
             BissWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::target::{assemble, entered, filled, host_and_port, refused};
+use super::target::{assemble, entered, filled, host_and_port, parted, refused};
 use crate::app::Text;
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
@@ -112,8 +112,8 @@ impl LinkForm {
             // Leads to no HIPERFACE encoder.
             Scheme::Bridge => {}
             Scheme::Tcp => {
-                let (host, port) = target.rsplit_once(':').unwrap_or((&target, ""));
-                (form.kind, form.host, form.tcp_port) = (LinkKind::Tcp, host.to_owned(), port.to_owned());
+                form.kind = LinkKind::Tcp;
+                (form.host, form.tcp_port) = parted(&target);
             }
         }
         for (name, value) in url.query.pairs() {

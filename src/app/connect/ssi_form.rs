@@ -1,6 +1,6 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
-use super::target::{assemble, entered, filled, host_and_port, refused};
+use super::target::{adapter_in_network, assemble, entered, filled, parted, refused, to_adapter};
 use crate::app::Text;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
@@ -49,9 +49,6 @@ pub struct SsiForm {
     pub rest: Vec<(String, String)>,
 }
 
-/// Begins the target of a link to an adapter in the network.
-const TCP: &str = "tcp:";
-
 impl SsiForm {
     /// The virtual encoder as the window begins with it: slow enough for the bits to be seen.
     pub fn usual() -> LinkUrl {
@@ -69,9 +66,9 @@ impl SsiForm {
             Scheme::Replay => SsiWay::Replay,
             Scheme::Bridge | Scheme::Serial | Scheme::Tcp => SsiWay::Adapter,
         };
-        if let Some(network) = target.strip_prefix(TCP).filter(|_| url.scheme == Scheme::Bridge) {
-            let (host, port) = network.rsplit_once(':').unwrap_or((network, ""));
-            (form.network, form.host, form.tcp_port) = (true, host.to_owned(), port.to_owned());
+        if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
+            form.network = true;
+            (form.host, form.tcp_port) = parted(network);
         } else if form.way == SsiWay::Replay {
             form.file = target.to_owned();
         } else {
@@ -113,9 +110,7 @@ impl SsiForm {
     fn target(&self) -> Result<(Scheme, String), Text> {
         Ok(match self.way {
             SsiWay::Virtual => (Scheme::Sim, String::new()),
-            SsiWay::Adapter if self.network => {
-                (Scheme::Bridge, format!("{TCP}{}", host_and_port(&self.host, &self.tcp_port)?))
-            }
+            SsiWay::Adapter if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
             SsiWay::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
             SsiWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
@@ -137,7 +132,12 @@ impl SsiForm {
         add("margin", &self.margin);
         // What only a virtual encoder has is not taken along.
         let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
-        parameters.extend(self.rest.iter().filter(|(name, _)| belongs(name)).cloned());
+        for (name, value) in self.rest.iter().filter(|(name, _)| belongs(name)) {
+            // What has an entry by now is what that says.
+            if parameters.iter().all(|(own, _)| own != name) {
+                parameters.push((name.clone(), value.clone()));
+            }
+        }
         parameters
     }
 }
@@ -195,5 +195,9 @@ mod tests {
         let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
         (form.way, form.port) = (SsiWay::Adapter, "COM3".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
+        // What a typed link had and its way has no entry for.
+        let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
+        (form.way, form.rpm) = (SsiWay::Virtual, "6".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "sim:?rpm=6");
     }
 }

@@ -78,6 +78,28 @@ pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
+/// Host and port of a place in the network, as a link has them; an empty port where it has none.
+pub(super) fn parted(place: &str) -> (String, String) {
+    let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
+    (host.to_owned(), port.to_owned())
+}
+
+/// Begins the target of a link to an adapter in the network.
+const TCP: &str = "tcp:";
+
+/// Where in the network an adapter is; `None` for one at a serial port.
+pub(super) fn adapter_in_network(target: &str) -> Option<&str> {
+    target.strip_prefix(TCP)
+}
+
+/// The target of a link to an adapter in the network.
+///
+/// # Errors
+/// As [`host_and_port`].
+pub(super) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
+    Ok(format!("{TCP}{}", host_and_port(host, port)?))
+}
+
 /// Puts a link together.
 ///
 /// # Errors
