@@ -18,7 +18,7 @@ use crate::device::ssi::{Asking, Identity};
 use crate::link::LinkUrl;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Body, Document};
-use crate::protocol::ssi::{Families, Layout, Range, Reads};
+use crate::protocol::ssi::{Families, Layout, Reads};
 use crate::sim::biss::Motor;
 use crate::worker::ssi::Ssi;
 
@@ -222,9 +222,7 @@ impl Encoder {
 impl Designer {
     /// How one reads, for what the times allow.
     pub fn reads(&self) -> Reads {
-        let profile = &self.design().profile;
-        let descriptor = &profile.descriptor;
-        profile.reading.reads(descriptor.clocks, !matches!(descriptor.range, Range::Bits { .. } | Range::Length { .. }))
+        self.design().profile.reads()
     }
 
     /// What it is called: by its person, or after its family.

@@ -11,7 +11,7 @@ use crate::cli::args::{SsiExport, SsiFormat};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::protocol::ssi::{
-    Range, Reads, bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+    Reads, bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
 };
 
 pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
@@ -33,9 +33,8 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
         SsiFormat::Timing => {
             let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
             let times = times.as_ref().ok_or_else(unknown)?;
-            let any_steps = !matches!(layout.descriptor().range, Range::Bits { .. } | Range::Length { .. });
             // What is not asked for is as the profile has it.
-            let own = chosen.profile.reading.reads(layout.clocks(), any_steps);
+            let own = chosen.profile.reads();
             let reads = Reads {
                 clock_hz: clock.map_or(own.clock_hz, f64::from),
                 pause: pause.map_or(own.pause, |micros| Duration::from_micros(micros.into())),

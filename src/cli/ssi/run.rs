@@ -10,7 +10,7 @@ use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::device::ssi::{Asking, Words};
 use crate::link::LinkUrl;
-use crate::protocol::ssi::{Range, Reads};
+use crate::protocol::ssi::Reads;
 use crate::store::Store;
 use crate::worker::ssi::{Doing, JobError, Ssi, SsiJob, SsiOutput, open};
 use crate::worker::{OpenError, Session};
@@ -61,11 +61,10 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
         other => return Err(unexpected(&other)),
     };
     if let Some(times) = &chosen.times {
-        let any_steps = !matches!(chosen.layout.descriptor().range, Range::Bits { .. } | Range::Length { .. });
         let reads = Reads {
             clock_hz: identity.clock_hz.into(),
             pause: std::time::Duration::from_micros(asking.pause_us.into()),
-            ..reading.reads(asking.clocks, any_steps)
+            ..chosen.profile.reads()
         };
         for warning in times.reckon(&reads).warnings {
             output.remark(&explain::ssi::timing(&warning).terminal());

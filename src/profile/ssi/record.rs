@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::profile::ron_text::Unknown;
-use crate::protocol::ssi::{Descriptor, Direction, Family, Reads, Resolved};
+use crate::protocol::ssi::{Descriptor, Direction, Family, Range, Reads, Resolved};
 
 /// An SSI encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,20 +58,6 @@ impl Default for ReadingSettings {
     }
 }
 
-impl ReadingSettings {
-    /// The same for what the times allow, with a burst of so many bits; `any_steps`: the number of steps is no power of two.
-    pub fn reads(&self, clocks: u8, any_steps: bool) -> Reads {
-        Reads {
-            clocks,
-            clock_hz: self.clock_hz.into(),
-            pause: Duration::from_micros(self.pause_us.into()),
-            cable_metres: self.cable_metres.map(f64::from),
-            synchronous: self.synchronous,
-            any_steps,
-        }
-    }
-}
-
 impl SsiProfile {
     /// A frame of no family, counted as it is by default.
     pub fn new(descriptor: Descriptor) -> Self {
@@ -83,6 +69,19 @@ impl SsiProfile {
             preset: 0,
             reading: ReadingSettings::default(),
             unknown: Kept::default(),
+        }
+    }
+
+    /// How its frame is read, for what the times allow.
+    pub fn reads(&self) -> Reads {
+        let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
+        Reads {
+            clocks: self.descriptor.clocks,
+            clock_hz: clock_hz.into(),
+            pause: Duration::from_micros(pause_us.into()),
+            cable_metres: cable_metres.map(f64::from),
+            synchronous,
+            any_steps: !matches!(self.descriptor.range, Range::Bits { .. } | Range::Length { .. }),
         }
     }
 
