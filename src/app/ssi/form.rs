@@ -6,7 +6,7 @@ mod free;
 
 use super::design::{Designer, Edit};
 use crate::app::{Text, explain};
-use crate::protocol::ssi::{Code, Coded, Direction, Range};
+use crate::protocol::ssi::{Code, Coded, Descriptor, Direction, Fraction, Range};
 
 /// A row of the form.
 #[derive(Clone, Debug, PartialEq)]
@@ -316,6 +316,41 @@ impl RangeKind {
             RangeKind::Length => "ssi_form.range_length",
         })
     }
+}
+
+/// What the positions of a frame are and how they are coded, where they can be of these kinds.
+fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
+    let mut rows = Vec::new();
+    if kinds.len() > 1 {
+        rows.push(range_row(kinds, &descriptor.range));
+    }
+    match descriptor.range {
+        Range::Bits { multiturn, singleturn } => {
+            rows.extend(has_turns.then(|| Row::number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit")));
+            rows.push(Row::number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
+        }
+        Range::Steps { per_turn, turns } => {
+            rows.push(Row::number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
+            rows.extend(has_turns.then(|| Row::number(Field::Turns, "ssi_form.turns", turns, "")));
+        }
+        Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
+            rows.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
+            rows.push(
+                Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", numerator, "")
+                    .hinted("ssi_form.revolutions_hint"),
+            );
+            rows.push(Row::number(Field::RevolutionsBelow, "ssi_form.revolutions_below", denominator, ""));
+        }
+        Range::Length { bits, step_nanometres } => {
+            rows.push(Row::number(Field::Bits, "ssi_form.bits", bits, "bit"));
+            rows.push(Row::number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
+        }
+    }
+    rows.push(code_row(descriptor.code));
+    if descriptor.code == Code::Gray {
+        rows.push(over_row(descriptor.coded));
+    }
+    rows
 }
 
 fn range_row(kinds: &[RangeKind], range: &Range) -> Row {

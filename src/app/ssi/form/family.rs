@@ -1,6 +1,6 @@
 //! The rows of a family: what its encoders can be set to.
 
-use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, code_row, over_row, range_row, word};
+use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
 use crate::app::ssi::design::Designer;
 use crate::protocol::ssi::{Align, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
@@ -8,45 +8,7 @@ use crate::protocol::ssi::{Align, Code, ErrorPlace, Family, Fraction, Frame, Ran
 pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
     let kinds = kinds(family);
-    let mut position = Vec::new();
-    if kinds.len() > 1 {
-        position.push(range_row(&kinds, &descriptor.range));
-    }
-    match descriptor.range {
-        Range::Bits { multiturn, singleturn } => {
-            if family.multiturn.is_some() {
-                position.push(Row::number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit"));
-            }
-            position.push(Row::number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
-        }
-        Range::Steps { per_turn, turns } => {
-            position.push(Row::number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
-            if family.multiturn.is_some() {
-                position.push(Row::number(Field::Turns, "ssi_form.turns", turns, ""));
-            }
-        }
-        Range::RoundAxis { steps, revolutions } => {
-            position.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
-            position.push(
-                Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", revolutions.numerator, "")
-                    .hinted("ssi_form.revolutions_hint"),
-            );
-            position.push(Row::number(
-                Field::RevolutionsBelow,
-                "ssi_form.revolutions_below",
-                revolutions.denominator,
-                "",
-            ));
-        }
-        Range::Length { bits, step_nanometres } => {
-            position.push(Row::number(Field::Singleturn, "ssi_form.bits", bits, "bit"));
-            position.push(Row::number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
-        }
-    }
-    position.push(code_row(descriptor.code));
-    if descriptor.code == Code::Gray {
-        position.push(over_row(descriptor.coded));
-    }
+    let position = position_rows(&kinds, family.multiturn.is_some(), descriptor);
     let mut frame = Vec::new();
     let resolved = settings.resolve(family).ok();
     if family.align.len() > 1 {
@@ -103,7 +65,7 @@ pub(super) fn entered(
             }
         }
         (Field::Multiturn, Input::Number(bits)) => next.multiturn = Some(byte(*bits)?),
-        (Field::Singleturn, Input::Number(bits)) => next.singleturn = Some(byte(*bits)?),
+        (Field::Singleturn | Field::Bits, Input::Number(bits)) => next.singleturn = Some(byte(*bits)?),
         (Field::Steps, Input::Number(steps)) => next.steps = Some(word(*steps)?),
         (Field::Turns, Input::Number(turns)) => next.turns = Some(word(*turns)?),
         (Field::RevolutionsAbove | Field::RevolutionsBelow, Input::Number(number)) => {
@@ -133,7 +95,8 @@ pub(super) fn entered(
         _ => return None,
     }
     // A number of clocks that was not asked for follows the resolution.
-    if matches!(field, Field::Multiturn | Field::Singleturn | Field::Steps | Field::Turns) && settings.clocks.is_none()
+    if matches!(field, Field::Multiturn | Field::Singleturn | Field::Bits | Field::Steps | Field::Turns)
+        && settings.clocks.is_none()
     {
         next.clocks = None;
     }

@@ -1,9 +1,9 @@
 //! The rows of a frame that belongs to no family, or that its family does not send.
 
-use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, code_row, over_row, range_row, word};
+use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
 use crate::app::ssi::design::{Designer, Edit};
-use crate::protocol::ssi::{Code, Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+use crate::protocol::ssi::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
 
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
 /// Error bits that a frame may have.
@@ -11,38 +11,7 @@ const MOST_ERRORS: usize = 8;
 
 pub(super) fn groups(designer: &Designer) -> Vec<Group> {
     let descriptor = &designer.design().profile.descriptor;
-    let mut position = vec![range_row(&KINDS, &descriptor.range)];
-    match descriptor.range {
-        Range::Bits { multiturn, singleturn } => {
-            position.push(Row::number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit"));
-            position.push(Row::number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
-        }
-        Range::Steps { per_turn, turns } => {
-            position.push(Row::number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
-            position.push(Row::number(Field::Turns, "ssi_form.turns", turns, ""));
-        }
-        Range::RoundAxis { steps, revolutions } => {
-            position.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
-            position.push(
-                Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", revolutions.numerator, "")
-                    .hinted("ssi_form.revolutions_hint"),
-            );
-            position.push(Row::number(
-                Field::RevolutionsBelow,
-                "ssi_form.revolutions_below",
-                revolutions.denominator,
-                "",
-            ));
-        }
-        Range::Length { bits, step_nanometres } => {
-            position.push(Row::number(Field::Bits, "ssi_form.bits", bits, "bit"));
-            position.push(Row::number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
-        }
-    }
-    position.push(code_row(descriptor.code));
-    if descriptor.code == Code::Gray {
-        position.push(over_row(descriptor.coded));
-    }
+    let position = position_rows(&KINDS, true, descriptor);
     let mut groups = vec![
         Group { title: "ssi_form.position", rows: position },
         Group { title: "ssi_form.frame", rows: frame(descriptor) },
