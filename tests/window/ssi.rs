@@ -338,3 +338,24 @@ fn the_device_check_says_what_is_wrong() {
     let high = verdicts("sim:?ssi=afs60&line=high");
     assert_eq!((high[0], high[2]), (Verdict::Good, Verdict::Bad));
 }
+
+#[test]
+fn the_virtual_encoder_sends_the_layout_on_the_board() {
+    let mut desk = connected("sim:?ssi=afs60&rpm=6");
+    assert_eq!(encoder(&desk).link_to_send(), None);
+    edit(&mut desk, Edit::Family("ahm36".to_owned()));
+    let link = encoder(&desk).link_to_send().unwrap().to_string();
+    assert_eq!(link, "sim:?ssi=ahm36&rpm=6");
+    act(&mut desk, Ssi::SendLayout);
+    desk.until("it is connected again", |studio| {
+        let own = studio.ssi().unwrap();
+        own.session.is_ready() && own.link_to_send().is_none() && own.identity.is_some()
+    });
+    act(&mut desk, Ssi::ReadPosition);
+    desk.until("a word fits", |studio| {
+        let own = studio.ssi().unwrap();
+        own.last()
+            .is_some_and(|seen| seen.clocks == 27 && seen.decoded.as_ref().is_some_and(|own| own.findings.is_empty()))
+    });
+    assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
+}

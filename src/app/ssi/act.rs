@@ -24,7 +24,7 @@ impl Encoder {
     pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Reconnect | Action::WriteInto(_) | Action::SendLayout => {}
             Action::Read => {
                 if !self.session.read_file_again(services) && !matches!(self.session.source, Source::New { .. }) {
                     self.submit(SsiJob::Hello, services);

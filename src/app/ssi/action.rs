@@ -69,6 +69,8 @@ pub enum Action {
     AskSaveFrames,
     /// Write the words that are kept.
     SaveFrames(PathBuf),
+    /// Let the virtual encoder send this layout.
+    SendLayout,
     /// Turn the virtual encoder's shaft, in revolutions a minute.
     Turn(f64),
 }

@@ -121,6 +121,11 @@ impl Designer {
         read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
+    /// The frame that a virtual encoder at this link sends.
+    pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
+        of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
+    }
+
     /// Another layout, as it is saved.
     pub(super) fn open(&mut self, profile: SsiProfile) {
         *self = Designer::with(profile, self.families.clone());

@@ -54,6 +54,13 @@ impl Studio {
                 self.show(Tab::Ssi, target);
                 self.with_ssi(target, |encoder, _| encoder.edit(Edit::Whole(Box::new(profile))));
             }
+            Action::SendLayout => {
+                let link = self.device(id).and_then(AnyDevice::ssi).and_then(Encoder::link_to_send);
+                if let (Some(url), Some(device)) = (link, self.device_mut(id)) {
+                    *device.source_mut() = Source::Link(url);
+                    self.reconnect(id);
+                }
+            }
             action => self.with_ssi(id, |encoder, services| encoder.act(action, services)),
         }
     }

@@ -208,6 +208,19 @@ impl Encoder {
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
 
+    /// The link to a virtual encoder that sends this layout, where it is connected to one that sends another; only what a
+    /// family sends can be said in a link.
+    pub fn link_to_send(&self) -> Option<LinkUrl> {
+        let Source::Link(url) = &self.session.source else { return None };
+        let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
+        let differs = self.session.is_virtual() && self.designer.sent_by(url) != self.design().profile.descriptor;
+        differs.then(|| {
+            let mut url = url.clone();
+            url.query.set("ssi", &settings.emit(&family.key));
+            url
+        })
+    }
+
     /// It is a profile in a file, or one that will be.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))

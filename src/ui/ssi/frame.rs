@@ -83,6 +83,15 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         family(ui, skin, encoder, view, &mut asked);
         ui.add_space(skin.space.between);
         strip_ui(ui, skin, encoder, view, &mut asked);
+        if encoder.link_to_send().is_some() {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
+                ui.label(skin.say("ssi_layout.sends_other"));
+                if button(ui, icons::PLAY, &skin.say("ssi_layout.send")).clicked() {
+                    asked.push(Action::Ssi(id, Ssi::SendLayout));
+                }
+            });
+        }
         problem(ui, skin, designer.problem());
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
