@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
+use encoder_studio::app::ssi::strip::Handle;
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, Tab, Wish};
 use encoder_studio::device::ssi::check::Verdict;
@@ -358,4 +359,21 @@ fn the_virtual_encoder_sends_the_layout_on_the_board() {
             .is_some_and(|seen| seen.clocks == 27 && seen.decoded.as_ref().is_some_and(|own| own.findings.is_empty()))
     });
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36", "the layout stays");
+}
+
+/// Reference section 8: AHS36 with 12 bits, its error bit fixed on clock 15 or following on 13.
+#[test]
+fn a_boundary_is_dragged_as_the_family_is_set() {
+    let mut desk = layout();
+    edit(&mut desk, Edit::Family("ahs36".to_owned()));
+    act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
+    let own = encoder(&desk).design();
+    assert_eq!((own.profile.descriptor.errors[0].clock, own.profile.descriptor.clocks), (15, 15));
+    assert_eq!(own.settings.as_ref().unwrap().emit("ahs36"), "ahs36,st=12");
+    wish(&mut desk, Wish::Undo);
+    act(&mut desk, Ssi::Enter(Field::Errors, Input::Choice(1)));
+    act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
+    let own = encoder(&desk).design();
+    assert_eq!(own.profile.descriptor.errors[0].clock, 13);
+    assert_eq!(own.settings.as_ref().unwrap().emit("ahs36"), "ahs36,st=12,err=following");
 }

@@ -49,7 +49,7 @@ impl Encoder {
             },
             Action::Move(handle, to) => {
                 let layout = self.designer.layout();
-                let moved = strip::moved(layout, handle, to, strip::follows(layout));
+                let moved = strip::moved(layout, handle, to, self.designer.errors_follow());
                 self.edit(Edit::Frame(Box::new(moved.descriptor().clone())));
             }
             Action::AddErrorBit => {

@@ -5,12 +5,13 @@ mod reshape;
 
 use std::sync::Arc;
 
+use super::strip;
 use crate::app::Text;
 use crate::app::explain;
 use crate::link::{LinkUrl, Scheme};
 use crate::profile::ssi::{ReadingSettings, SsiProfile};
 use crate::protocol::ssi::{
-    Advice, Code, Descriptor, Direction, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
+    Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
 };
 use crate::sim::bridge::DELIVERED;
 
@@ -71,14 +72,21 @@ pub struct Designer {
 }
 
 impl Design {
-    /// A layout with what its family makes of it.
+    /// A layout with what its family makes of it. Of several settings with the same frame it is those that were `wished`,
+    /// else the fewest.
     ///
     /// # Errors
     /// Why it cannot work.
-    pub fn of(profile: SsiProfile, families: &Families) -> Result<Self, Text> {
+    fn of(profile: SsiProfile, families: &Families, wished: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| explain::ssi::layout(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.named(key));
-        let settings = family.and_then(|family| family.settings_of(&profile.descriptor));
+        let sends = |family: &Family, settings: &Settings| {
+            settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
+        };
+        let settings = family.and_then(|family| {
+            let wished = wished.filter(|wished| sends(family, wished));
+            wished.cloned().or_else(|| family.settings_of(&profile.descriptor))
+        });
         let resolved = family.zip(settings.as_ref()).and_then(|(family, settings)| settings.resolve(family).ok());
         let advice = resolved.map(|resolved| resolved.advice).unwrap_or_default();
         Ok(Design { profile, layout, settings, advice })
@@ -97,7 +105,7 @@ impl Default for Design {
 impl Designer {
     /// With a layout as it is saved. One that cannot work, which no file holds, is left out.
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
-        let now = Design::of(profile, &families).unwrap_or_default();
+        let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
         Designer { families, now, saved, undo: Vec::new(), redo: Vec::new(), problem: None }
     }
@@ -156,6 +164,15 @@ impl Designer {
         self.family().map(|family| &family.times)
     }
 
+    /// Error and parity bits go with the position's end: as the family is set, else as the frame looks.
+    pub fn errors_follow(&self) -> bool {
+        let settings = self.family().zip(self.now.settings.as_ref());
+        match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
+            Some(resolved) => resolved.errors == ErrorPlace::Following,
+            None => strip::follows(&self.now.layout),
+        }
+    }
+
     /// Why the last change was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
@@ -179,17 +196,23 @@ impl Designer {
     /// Other families are known: what one makes of the layout is looked at anew.
     pub(super) fn take_families(&mut self, families: Arc<Families>) {
         self.families = families;
-        if let Ok(design) = Design::of(self.now.profile.clone(), &self.families) {
+        if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
             self.now = design;
         }
     }
 
     /// Changes the layout, as one step that can be undone. False where it stays as it is.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
-        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families)) {
+        let wished = match &edit {
+            Edit::Settings(settings) => Some((**settings).clone()),
+            _ => self.now.settings.clone(),
+        };
+        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families, wished.as_ref())) {
             Ok(design) => {
                 self.problem = None;
                 if design.profile == self.now.profile {
+                    // Other settings may send the same frame.
+                    self.now = design;
                     return false;
                 }
                 let before = std::mem::replace(&mut self.now, design);
@@ -268,7 +291,7 @@ impl Designer {
     fn step_to(&mut self, profile: SsiProfile, other: fn(&mut Self) -> &mut Vec<SsiProfile>) -> bool {
         self.problem = None;
         // It could work when the step was made.
-        let Ok(design) = Design::of(profile, &self.families) else { return false };
+        let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
         let before = std::mem::replace(&mut self.now, design);
         other(self).push(before.profile);
         true

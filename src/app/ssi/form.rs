@@ -28,8 +28,8 @@ pub enum Entry {
     Number {
         /// As it is.
         value: u64,
-        /// Its unit, as it is spelled in every language; empty for none.
-        unit: &'static str,
+        /// Its unit.
+        unit: Option<Text>,
     },
     /// One of several.
     Choice {
@@ -155,7 +155,13 @@ impl Group {
 }
 
 impl Row {
+    /// `unit` is its symbol; empty for none.
     fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
+        let unit = match unit {
+            "" => None,
+            "bit" => Some(Text::new("ssi_form.bit")),
+            symbol => Some(explain::plain(symbol)),
+        };
         Row { field, name: Text::new(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
     }
 

@@ -72,8 +72,8 @@ pub(super) fn rows_ui(
                             put(Input::Number(if up { value.saturating_add(1) } else { value.saturating_sub(1) }));
                         }
                     }
-                    if !unit.is_empty() {
-                        ui.label(skin.label(*unit));
+                    if let Some(unit) = unit {
+                        ui.label(skin.label(skin.words(unit)));
                     }
                     response
                 })

@@ -182,7 +182,7 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         selected,
         toggles: true,
         movable: true,
-        following: strip::follows(layout),
+        following: encoder.designer.errors_follow(),
     };
     match bit_strip(ui, skin, &model) {
         Some(StripEvent::Moved(handle, to)) => actions.push(Action::Ssi(id, Ssi::Move(handle, to))),
