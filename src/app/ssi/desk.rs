@@ -56,10 +56,13 @@ impl Studio {
             }
             Action::SendLayout => {
                 let link = self.device(id).and_then(AnyDevice::ssi).and_then(Encoder::link_to_send);
-                if let (Some(url), Some(device)) = (link, self.device_mut(id)) {
-                    *device.source_mut() = Source::Link(url);
-                    self.reconnect(id);
-                }
+                let Some(url) = link else { return };
+                self.with_device(id, |device, services| {
+                    // The draft belongs to the encoder that the link before stands for.
+                    device.leave_draft(services);
+                    device.take_link(url);
+                });
+                self.reconnect(id);
             }
             action => self.with_ssi(id, |encoder, services| encoder.act(action, services)),
         }
