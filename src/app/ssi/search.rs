@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::form::whole;
 use crate::app::Text;
 use crate::app::explain;
 use crate::protocol::ssi::{FrameTextError, Search, parse_frame};
@@ -49,6 +50,16 @@ pub enum Hunt {
     },
     /// There was nothing to look at: why, and what to do.
     Failed(Text),
+}
+
+/// A number of clocks as people write one.
+///
+/// # Errors
+/// No whole number, or none that a frame can have; in words.
+pub fn read_clocks(text: &str) -> Result<u8, Text> {
+    let number = whole(text)?;
+    let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
+    clocks.ok_or_else(|| Text::new("ssi_find.clocks_range").with("clocks", number))
 }
 
 /// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, the last column where there
@@ -106,6 +117,16 @@ mod tests {
         assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
         assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
         assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
+    }
+
+    #[test]
+    fn clocks_are_read_or_refused_in_words() {
+        assert_eq!(read_clocks(" 25 "), Ok(25));
+        assert_eq!(read_clocks("0x40"), Ok(64));
+        for (text, id) in [("0", "ssi_find.clocks_range"), ("65", "ssi_find.clocks_range"), ("many", "ssi_form.whole")]
+        {
+            assert_eq!(read_clocks(text).unwrap_err().id(), id, "{text}");
+        }
     }
 
     #[test]

@@ -3,18 +3,18 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::ssi::{Action as Ssi, Encoder, Hunt, Origin};
+use crate::app::ssi::{Action as Ssi, Encoder, Hunt, Origin, read_clocks};
 use crate::app::{Action, Text, explain};
 use crate::protocol::ssi::{Class, Doubt, Proposal, Search};
 use crate::ui::controls::{
-    card, card_with, enabled_button, entry, icon_button, paragraph, primary, row, spinner, text_entry,
+    card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
 };
 use crate::ui::{Skin, icons};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
 pub(super) struct View {
-    clocks: Option<String>,
+    clocks: Option<(String, Option<Text>)>,
     /// Classes whose other members are shown.
     unfolded: Option<usize>,
 }
@@ -54,23 +54,18 @@ fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         ui.add_space(skin.space.inside);
         let word = skin.say("ssi_find.clocks");
         entry(ui, skin, &word, |ui| {
-            let own = encoder.clocks().to_string();
-            let mut text = view.clocks.take().unwrap_or_else(|| own.clone());
-            let response = text_entry(ui, &mut text, 56.0, &word, "");
-            if response.has_focus() {
-                view.clocks = Some(text);
-            } else if response.lost_focus()
-                && text != own
-                && let Ok(clocks) = text.trim().parse()
-            {
-                ask(Ssi::SetClocks(Some(clocks)));
-            }
+            settled_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
+                ask(Ssi::SetClocks(Some(read_clocks(text)?)));
+                Ok(())
+            });
             if encoder.has_own_clocks()
                 && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_find.own_clocks")).clicked()
             {
+                view.clocks = None;
                 ask(Ssi::SetClocks(None));
             }
         });
+        problem(ui, skin, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
         row(ui, skin, &skin.say("ssi_find.read"), skin.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {
