@@ -103,7 +103,8 @@ fn bits(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
-    let width = ui.available_width();
+    // The frame around what is typed comes to it.
+    let width = (ui.available_width() - 18.0).max(0.0);
     let response = mono_entry(ui, skin, &mut text, width, &word, "");
     if response.has_focus() {
         view.bits = Some(text);
