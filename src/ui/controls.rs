@@ -240,6 +240,8 @@ pub(super) fn choice<T: PartialEq + Copy>(
     let height = ui.ctx().content_rect().height() * 0.6;
     let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
     let response = list.show_ui(ui, |ui| {
+        // Twelve fit without scrolling: egui gives such an area 400 points at first.
+        ui.spacing_mut().item_spacing.y = ui.spacing().button_padding.y;
         for (own, word) in options {
             ui.selectable_value(value, own, word);
         }

@@ -239,8 +239,8 @@ impl Window {
             keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
             keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
-            // A text that is typed has steps of its own, and so has the hex editor.
-            if device.tab() == Tab::Ssi && !ctx.egui_wants_keyboard_input() {
+            // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
+            if device.tab() == Tab::Ssi && !ctx.text_edit_focused() {
                 keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
                 keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
                 keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));

@@ -35,6 +35,7 @@ mod widgets_commutation;
 mod widgets_idle;
 mod widgets_pages;
 mod widgets_plot;
+mod widgets_ssi;
 mod widgets_writing;
 mod wire;
 mod writing;

@@ -16,13 +16,23 @@ pub(super) struct View {
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
     bits: Option<String>,
+    /// What was shown when typing began: words that come meanwhile change nothing under it.
+    held: Option<Decoded>,
+}
+
+impl View {
+    /// Something is being typed; what was refused only stands there.
+    fn is_typed_in(&self) -> bool {
+        let numbers = [&self.position, &self.turns, &self.steps];
+        self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
+    }
 }
 
 const NUMBER: f32 = 128.0;
 
 /// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    let shown = encoder.shown();
+    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.shown());
     let is_live = encoder.is_following();
     let id = encoder.session.id;
     let mut wish = None;
@@ -43,6 +53,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         findings(ui, skin, &shown);
     });
     actions.extend(wish.map(|with| Action::Ssi(id, Ssi::Try(with))));
+    view.held = view.is_typed_in().then_some(shown);
 }
 
 fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, put: &mut dyn FnMut(Try)) {
@@ -72,9 +83,9 @@ fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &
                     put(Try::Place(turns, whole(text)?));
                     Ok(())
                 });
-                ui.label(skin.mono(format!("{} °", skin.number(degrees, 4))));
             });
             refused(ui, skin, view.steps.as_ref());
+            row(ui, skin, &skin.say("ssi_trial.angle"), skin.mono(format!("{} °", skin.number(degrees, 4))));
         }
         Some((_, Place::Length { millimetres })) => {
             row(ui, skin, &skin.say("ssi_trial.length"), skin.mono(format!("{} mm", skin.number(millimetres, 4))));

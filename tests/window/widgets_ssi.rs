@@ -1,0 +1,57 @@
+//! The pages of the SSI tab, used as a person uses them: by keys and by what is typed.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::ssi::{Action as Ssi, Try};
+use encoder_studio::app::{Action, Tab};
+
+use crate::screen::Screen;
+use crate::support::Outside;
+
+const SIZE: [f32; 2] = [1280.0, 800.0];
+
+fn layout() -> Screen {
+    let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
+    screen.act(Action::ShowTab(Tab::Ssi));
+    screen
+}
+
+#[test]
+fn a_boundary_that_was_just_moved_is_taken_back_by_key() {
+    let mut screen = layout();
+    let dirty = |screen: &Screen| screen.studio().ssi().unwrap().is_dirty();
+    let boundary = screen.say("ssi.strip_split");
+    screen.harness.get_by_label(&boundary).focus();
+    screen.steps();
+    screen.key(Key::ArrowLeft);
+    assert!(dirty(&screen));
+    assert!(screen.harness.get_by_label(&boundary).is_focused());
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    screen.steps();
+    assert!(!dirty(&screen));
+}
+
+#[test]
+fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
+    let mut screen = Screen::opened_in(Tab::Ssi, "sim:?ssi=afs60&rpm=6", SIZE);
+    screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_following()));
+    let id = screen.studio().ssi().unwrap().session.id;
+    let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;
+    for id_of_entry in ["ssi_trial.position", "ssi_trial.bits_label"] {
+        screen.act(Action::Ssi(id, Ssi::Try(Try::Live)));
+        let label = screen.say(id_of_entry);
+        screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
+        screen.steps();
+        let before = last(&screen);
+        screen.act(Action::Ssi(id, Ssi::ReadPosition));
+        screen.until("the shaft has turned", move |studio| {
+            studio.ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame != before
+        });
+        // Left as it was.
+        let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
+        assert!(node.accesskit_node().is_focused());
+        screen.key(Key::Tab);
+        assert!(screen.studio().ssi().unwrap().is_following(), "{id_of_entry}");
+    }
+}
