@@ -1,6 +1,7 @@
 //! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
 
 mod check;
+mod family;
 mod refused;
 
 use super::{adapter, link};
@@ -9,6 +10,7 @@ use crate::protocol::ssi::{Advice, Code, Evidence, Finding, Layout, Meaning, Not
 use crate::worker::ssi::JobError;
 
 pub use check::check;
+pub use family::note;
 pub(super) use refused::{PHRASES, cannot_work};
 pub use refused::{format, frame_text, layout, settings};
 

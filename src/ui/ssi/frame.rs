@@ -163,7 +163,7 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
             });
         }
         Some(family) => {
-            paragraph(ui, skin.caption(&family.source));
+            paragraph(ui, skin.caption(skin.words(&explain::ssi::note(&family.source))));
         }
         None => paragraph(ui, skin.caption(skin.say("ssi_layout.free_words"))),
     }

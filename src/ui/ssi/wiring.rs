@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::app::Text;
+use crate::app::{Text, explain};
 use crate::protocol::ssi::{Family, Signal};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, row};
@@ -46,9 +46,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
             ui.add_space(skin.space.between);
             ui.label(skin.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, skin.caption(note));
+                paragraph(ui, skin.caption(skin.words(&explain::ssi::note(note))));
             }
-            paragraph(ui, skin.caption(&family.source));
+            paragraph(ui, skin.caption(skin.words(&explain::ssi::note(&family.source))));
         }
     });
 }
