@@ -3,5 +3,6 @@
 pub mod biss;
 pub mod bridge;
 pub mod hiperface;
+pub mod interbus;
 pub mod ssi;
 pub mod ubicom;

@@ -1,0 +1,85 @@
+//! Cams and programs of them: which are on at a position (reference 5).
+
+use super::value::Value;
+
+/// Which of a program's cams: 0 to 7. Words have room for 16 and the manual names 8 (reference 6.9).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CamNumber(u8);
+
+/// Which program: 1 to 8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ProgramNumber(u8);
+
+/// A stretch of positions. Both edges belong to it (`U`); where the start is beyond the stop it goes over the end of the
+/// measuring range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Cam {
+    /// The first position at which it is on.
+    pub start: Value,
+    /// The last one.
+    pub stop: Value,
+}
+
+/// Eight cams, and which of them work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Program {
+    /// By number; `None` where there is none.
+    pub cams: [Option<Cam>; Program::CAMS],
+    /// The activation mask: bit i for cam i.
+    pub mask: u8,
+}
+
+impl CamNumber {
+    /// `None` beyond 7.
+    pub const fn new(number: u8) -> Option<Self> {
+        if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
+    }
+
+    /// 0 to 7.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl ProgramNumber {
+    /// How many there are.
+    pub const COUNT: usize = 8;
+
+    /// `None` where it is not 1 to 8.
+    pub const fn new(number: u8) -> Option<Self> {
+        if number >= 1 && number as usize <= ProgramNumber::COUNT { Some(ProgramNumber(number)) } else { None }
+    }
+
+    /// 1 to 8.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl Cam {
+    /// It goes over the end of the measuring range.
+    pub fn wraps(self) -> bool {
+        self.start > self.stop
+    }
+
+    /// Whether it is on.
+    pub fn is_on(self, position: Value) -> bool {
+        if self.wraps() {
+            position >= self.start || position <= self.stop
+        } else {
+            position >= self.start && position <= self.stop
+        }
+    }
+}
+
+impl Program {
+    /// Cams of a program.
+    pub const CAMS: usize = 8;
+
+    /// The outputs at a position: bit i for cam i.
+    pub fn outputs(&self, position: Value) -> u8 {
+        let on = |cam: &Option<Cam>| cam.is_some_and(|cam| cam.is_on(position));
+        let all = self.cams.iter().rev().fold(0, |bits, cam| bits << 1 | u8::from(on(cam)));
+        all & self.mask
+    }
+}

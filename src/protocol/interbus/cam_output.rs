@@ -1,0 +1,106 @@
+//! The IN word while a cam program runs: eight outputs, and a window of the position (reference 5).
+
+use super::value::Value;
+
+/// What an encoder sends in cam mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CamOutput {
+    /// Bits 7..0: cam i is on in bit i.
+    pub outputs: u8,
+    /// Bits 24..8 of the word: 17 bits of the position, from bit `shift_iw` of it on.
+    pub window: u32,
+    /// Bits 30..25, which should be 0.
+    pub stray: u8,
+}
+
+/// The word says that nothing in it counts: bit 31 is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cam outputs are not valid in {word:08X}")]
+pub struct CamOutputError {
+    /// The word, which [`Reply`](super::Reply) reads.
+    pub word: u32,
+}
+
+/// `shift_iw`: how far the position is shifted to the right under the window. 0 to 25.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct WindowShift(u8);
+
+/// What a bit of the word is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CamBit {
+    /// Bit 31: nothing else counts.
+    Invalid,
+    /// A bit that should be 0.
+    Zero,
+    /// This bit of the position.
+    Position(u8),
+    /// The output of this cam.
+    Cam(u8),
+}
+
+/// Bits of the window.
+const WINDOW_BITS: u32 = 17;
+/// Bits of the outputs, below the window.
+const OUTPUT_BITS: u32 = 8;
+
+impl WindowShift {
+    /// `None` beyond 25.
+    pub const fn new(shift: u8) -> Option<Self> {
+        if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
+    }
+
+    /// 0 to 25.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+
+    /// The bits of the position that lie under the window; none at 25.
+    pub const fn mask(self) -> u32 {
+        (((1_u64 << WINDOW_BITS) - 1) << self.0) as u32 & Value::MAX.get()
+    }
+}
+
+impl CamOutput {
+    /// What an encoder sends at a position with these outputs.
+    pub const fn at(position: Value, outputs: u8, shift: WindowShift) -> Self {
+        let window = (position.get() & shift.mask()) >> shift.0;
+        CamOutput { outputs, window, stray: 0 }
+    }
+
+    /// Reads a word.
+    ///
+    /// # Errors
+    /// Bit 31 is set.
+    pub const fn parse(word: u32) -> Result<Self, CamOutputError> {
+        if word >> 31 != 0 {
+            return Err(CamOutputError { word });
+        }
+        Ok(CamOutput {
+            outputs: word as u8,
+            window: word >> OUTPUT_BITS & ((1 << WINDOW_BITS) - 1),
+            stray: (word >> Value::BITS) as u8,
+        })
+    }
+
+    /// The word. Of the window and the stray bits what has room in them.
+    pub const fn emit(self) -> u32 {
+        let window = self.window & ((1 << WINDOW_BITS) - 1);
+        ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
+    }
+
+    /// The bits of the position that the window has, at their places; [`WindowShift::mask`] says which they are.
+    pub const fn position_bits(self, shift: WindowShift) -> u32 {
+        ((self.window as u64) << shift.0) as u32 & shift.mask()
+    }
+
+    /// What a bit of the word is, counted from 0. `None` beyond 31.
+    pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
+        Some(match bit {
+            0..=7 => CamBit::Cam(bit),
+            8..=24 if ((bit - 8 + shift.0) as u32) < Value::BITS => CamBit::Position(bit - 8 + shift.0),
+            8..=30 => CamBit::Zero,
+            31 => CamBit::Invalid,
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,105 @@
+//! The three classes of encoders, who they are on the bus, and the words of those without commands (reference 1).
+
+use super::value::Value;
+
+/// What an encoder exchanges with its master.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Class {
+    /// 16 bits IN: a position.
+    K1,
+    /// 32 bits IN: a position.
+    K2,
+    /// 32 bits IN and OUT: seven bits of status or command, 25 of data.
+    K3,
+}
+
+/// What carries the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Interface {
+    /// Copper.
+    Standard,
+    /// Optical fibre (*LWL*).
+    OpticalFibre,
+    /// INTERBUS Loop 2.
+    Loop2,
+}
+
+impl Interface {
+    /// All of them, in the manual's order.
+    pub const ALL: [Interface; 3] = [Interface::Standard, Interface::OpticalFibre, Interface::Loop2];
+}
+
+impl Class {
+    /// All of them.
+    pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
+
+    /// Bytes from the encoder, and bytes to it.
+    pub const fn bytes(self) -> (usize, usize) {
+        match self {
+            Class::K1 => (2, 0),
+            Class::K2 => (4, 0),
+            Class::K3 => (4, 4),
+        }
+    }
+}
+
+/// The identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h beside 55
+/// (reference 6.1).
+pub const fn id_code(class: Class, interface: Interface) -> u8 {
+    match (class, interface) {
+        (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,
+        (Class::K1 | Class::K2, Interface::Loop2) => 0xB2,
+        (Class::K3, Interface::Standard | Interface::OpticalFibre) => 0x37,
+        (Class::K3, Interface::Loop2) => 0xB3,
+    }
+}
+
+/// What may have an identification code: several where their codes are the same, none for another device's.
+pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
+    Class::ALL
+        .into_iter()
+        .flat_map(|class| Interface::ALL.map(|interface| (class, interface)))
+        .filter(move |(class, interface)| id_code(*class, *interface) == code)
+}
+
+/// The word of a K1 or K2 encoder: a position, right-justified, with zeros above it. Bits that should be 0 are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Single {
+    /// 12 bits of a single turn in 16.
+    K1(u16),
+    /// Up to 25 bits in 32.
+    K2(u32),
+}
+
+impl Single {
+    /// A K1 word.
+    pub const fn parse_k1(word: u16) -> Self {
+        Single::K1(word)
+    }
+
+    /// A K2 word.
+    pub const fn parse_k2(word: u32) -> Self {
+        Single::K2(word)
+    }
+
+    /// The word, right-justified.
+    pub const fn emit(self) -> u32 {
+        match self {
+            Single::K1(word) => word as u32,
+            Single::K2(word) => word,
+        }
+    }
+
+    /// The position in steps.
+    pub const fn position(self) -> Value {
+        match self {
+            Single::K1(word) => Value::of_word((word & 0x0FFF) as u32),
+            Single::K2(word) => Value::of_word(word),
+        }
+    }
+
+    /// What stands in the bits that should be 0, where it stands.
+    pub const fn stray(self) -> u32 {
+        self.emit() & !self.position().get()
+    }
+}

@@ -1,0 +1,227 @@
+//! OUT words: what a master asks of a K3 encoder (reference 3 and 5), and in which mode it may.
+
+use super::cam::{CamNumber, ProgramNumber};
+use super::cam_output::WindowShift;
+use super::mode::Mode;
+use super::parameter::Parameter;
+use super::read_out::ReadOut;
+use super::value::{Code, Value};
+
+/// What an OUT word asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// 00000000h: normal running.
+    Normal,
+    /// 80000000h: run. Its edge leaves parameterisation, a read-out and the setting of cams.
+    Run,
+    /// 40000000h: the position becomes the preset. Once for each preset that was set.
+    Preset,
+    /// 60000000h: as often as wanted; run follows.
+    FrabaPreset,
+    /// A parameter is set.
+    Set(Parameter, Value),
+    /// 20400001h and 20400000h: speed instead of the position, or the position again.
+    Velocity(bool),
+    /// 2021xxxxh: something is read out.
+    ReadOut(ReadOut),
+    /// 2080000ph: cam mode with this program; without one position mode.
+    Cams(Option<ProgramNumber>),
+    /// 2040cccch: which cams work, bit i for cam i. There are 8, so that the upper byte is 0 (reference 6.9).
+    Activate(u16),
+    /// 201000ssh: how far the position is shifted under its window.
+    Shift(WindowShift),
+    /// 40h to 4Fh in front: the first position of a cam.
+    CamStart(CamNumber, Value),
+    /// 60h to 6Fh in front: its last position.
+    CamStop(CamNumber, Value),
+    /// 20200000h: the activation mask is read.
+    ReadActivation,
+    /// 2020001ch: a cam's first position is read.
+    ReadCamStart(CamNumber),
+    /// 2020002ch: its last one.
+    ReadCamStop(CamNumber),
+    /// 20200040h: the shift of the window is read (20200030h is a misprint, reference 6.5).
+    ReadShift,
+    /// A word that the manual does not have.
+    Unknown(u32),
+}
+
+/// A command that an encoder in this mode takes for another one, or for none. It must not be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
+pub struct Refused {
+    /// What was meant.
+    pub command: Command,
+    /// The mode that the encoder is in.
+    pub mode: Mode,
+}
+
+const RUN: u32 = 0x8000_0000;
+const PRESET: u32 = 0x4000_0000;
+const FRABA_PRESET: u32 = 0x6000_0000;
+const SHIFT: u32 = 0x2010_0000;
+const READ_CAMS: u32 = 0x2020_0000;
+const READ_START: u32 = 0x10;
+const READ_STOP: u32 = 0x20;
+const READ_SHIFT: u32 = 0x40;
+const READ_OUT: u32 = 0x2021_0000;
+const MASK: u32 = 0x2040_0000;
+const CAMS: u32 = 0x2080_0000;
+/// Bits 31..29 of a cam's edges.
+const START: u32 = 0b010 << 29;
+const STOP: u32 = 0b011 << 29;
+
+impl Command {
+    /// The word.
+    pub fn emit(self) -> u32 {
+        let edge =
+            |which: u32, cam: CamNumber, position: Value| which | u32::from(cam.get()) << Value::BITS | position.get();
+        match self {
+            Command::Normal => 0,
+            Command::Run => RUN,
+            Command::Preset => PRESET,
+            Command::FrabaPreset => FRABA_PRESET,
+            Command::Set(parameter, value) => u32::from(parameter.row().code) << Value::BITS | value.get(),
+            Command::Velocity(on) => MASK | u32::from(on),
+            Command::ReadOut(read_out) => READ_OUT | u32::from(read_out.number()),
+            Command::Cams(program) => CAMS | program.map_or(0, |program| u32::from(program.get())),
+            Command::Activate(mask) => MASK | u32::from(mask),
+            Command::Shift(shift) => SHIFT | u32::from(shift.get()),
+            Command::CamStart(cam, position) => edge(START, cam, position),
+            Command::CamStop(cam, position) => edge(STOP, cam, position),
+            Command::ReadActivation => READ_CAMS,
+            Command::ReadCamStart(cam) => READ_CAMS | READ_START | u32::from(cam.get()),
+            Command::ReadCamStop(cam) => READ_CAMS | READ_STOP | u32::from(cam.get()),
+            Command::ReadShift => READ_CAMS | READ_SHIFT,
+            Command::Unknown(word) => word,
+        }
+    }
+
+    /// All that a word may mean, in any mode: one or two; [`Command::Unknown`] where the manual has nothing.
+    pub fn readings(word: u32) -> Vec<Command> {
+        let both: Vec<Command> = [Command::outside_cams(word), Command::of_cams(word)].into_iter().flatten().collect();
+        // Both have the selection of a program, as the same.
+        match both.as_slice() {
+            [] => vec![Command::Unknown(word)],
+            [one, other] if one == other => vec![*one],
+            _ => both,
+        }
+    }
+
+    /// What an encoder in a mode takes a word for.
+    ///
+    /// # Errors
+    /// [`Refused`] with what it means in another mode, or nowhere.
+    pub fn in_mode(word: u32, mode: Mode) -> Result<Command, Refused> {
+        let readings = Command::readings(word);
+        match readings.iter().find(|command| command.is_legal_in(mode)) {
+            Some(command) => Ok(*command),
+            None => Err(Refused { command: readings.first().copied().unwrap_or(Command::Unknown(word)), mode }),
+        }
+    }
+
+    /// That this command may be sent to an encoder in a mode, which then takes it for what it is.
+    ///
+    /// # Errors
+    /// [`Refused`]: nothing may be sent.
+    pub fn ensure_legal(self, mode: Mode) -> Result<(), Refused> {
+        if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
+    }
+
+    /// Whether it may be sent in a mode. Words stay on the process data, so that one that enters a mode is legal in it.
+    /// Read-outs are allowed wherever the outputs count, since one of them tells the mode (`U`).
+    pub const fn is_legal_in(self, mode: Mode) -> bool {
+        use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
+        match self {
+            Command::Normal | Command::Run => true,
+            Command::Preset | Command::FrabaPreset => matches!(mode, Position),
+            Command::Set(..) => matches!(mode, Position | Parameterisation),
+            Command::Velocity(_) => matches!(mode, Position | Velocity),
+            Command::ReadOut(_) => matches!(mode, Position | ReadOut | Velocity | Cam),
+            Command::Cams(_) => matches!(mode, Position | Cam),
+            Command::Activate(_)
+            | Command::Shift(_)
+            | Command::CamStart(..)
+            | Command::CamStop(..)
+            | Command::ReadActivation
+            | Command::ReadCamStart(_)
+            | Command::ReadCamStop(_)
+            | Command::ReadShift => matches!(mode, Cam),
+            Command::Unknown(_) => false,
+        }
+    }
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Command::Normal => "normal running",
+            Command::Run => "run",
+            Command::Preset => "set preset",
+            Command::FrabaPreset => "FRABA preset",
+            Command::Set(parameter, _) => parameter.name(),
+            Command::Velocity(true) => "velocity start",
+            Command::Velocity(false) => "velocity stop",
+            Command::ReadOut(_) => "read-out",
+            Command::Cams(Some(_)) => "cam program",
+            Command::Cams(None) => "position mode",
+            Command::Activate(_) => "activation mask",
+            Command::Shift(_) => "shift of the window",
+            Command::CamStart(..) => "start of a cam",
+            Command::CamStop(..) => "stop of a cam",
+            Command::ReadActivation => "read the activation mask",
+            Command::ReadCamStart(_) => "read the start of a cam",
+            Command::ReadCamStop(_) => "read the stop of a cam",
+            Command::ReadShift => "read the shift of the window",
+            Command::Unknown(_) => "an unknown word",
+        }
+    }
+
+    /// What a word means while no cam program is selected.
+    fn outside_cams(word: u32) -> Option<Command> {
+        let low = word as u16;
+        match word {
+            0 => Some(Command::Normal),
+            RUN => Some(Command::Run),
+            PRESET => Some(Command::Preset),
+            FRABA_PRESET => Some(Command::FrabaPreset),
+            _ if word == MASK | u32::from(low & 1) => Some(Command::Velocity(low == 1)),
+            _ if word >> 16 == READ_OUT >> 16 => Some(Command::ReadOut(ReadOut::new(low))),
+            _ if word >> 16 == CAMS >> 16 => program(low),
+            _ if word >> 29 == 0 => {
+                Parameter::of_code(Code::of_word(word)).map(|parameter| Command::Set(parameter, Value::of_word(word)))
+            }
+            _ => None,
+        }
+    }
+
+    /// What a word means while one is.
+    fn of_cams(word: u32) -> Option<Command> {
+        let low = word as u16;
+        let cam = || CamNumber::new(Code::of_word(word).get());
+        let read_cam = || u8::try_from(low & 0xF).ok().and_then(CamNumber::new);
+        match word >> 16 {
+            high if high == CAMS >> 16 => program(low),
+            high if high == MASK >> 16 => Some(Command::Activate(low)),
+            high if high == SHIFT >> 16 => u8::try_from(low).ok().and_then(WindowShift::new).map(Command::Shift),
+            high if high == READ_CAMS >> 16 => match u32::from(low) {
+                0 => Some(Command::ReadActivation),
+                READ_SHIFT => Some(Command::ReadShift),
+                number if number & !0xF == READ_START => read_cam().map(Command::ReadCamStart),
+                number if number & !0xF == READ_STOP => read_cam().map(Command::ReadCamStop),
+                _ => None,
+            },
+            _ if word & STOP == START && word >> 31 == 0 => {
+                cam().map(|cam| Command::CamStart(cam, Value::of_word(word)))
+            }
+            _ if word & STOP == STOP && word >> 31 == 0 => cam().map(|cam| Command::CamStop(cam, Value::of_word(word))),
+            _ => None,
+        }
+    }
+}
+
+fn program(number: u16) -> Option<Command> {
+    match u8::try_from(number).ok()? {
+        0 => Some(Command::Cams(None)),
+        number => ProgramNumber::new(number).map(|program| Command::Cams(Some(program))),
+    }
+}

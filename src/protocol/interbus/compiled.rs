@@ -1,0 +1,36 @@
+//! All programs made ready to be asked often: the positions at which anything changes, and what is on from there.
+
+use super::cam::{Program, ProgramNumber};
+use super::value::Value;
+
+/// Programs as a list of stretches without a change. A preview asks it for millions of positions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Compiled {
+    /// Where a stretch begins, rising. What is on before the first of them is `before`.
+    starts: Vec<u32>,
+    /// What is on in it: a byte a program, the first lowest.
+    outputs: Vec<u64>,
+    before: u64,
+}
+
+impl Compiled {
+    /// Makes eight programs ready.
+    pub fn new(programs: &[Program; ProgramNumber::COUNT]) -> Self {
+        let at = |position: u32| u64::from_le_bytes(programs.map(|program| program.outputs(Value::of_word(position))));
+        let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
+        let mut starts: Vec<u32> = cams.flat_map(|cam| [cam.start.get(), cam.stop.get() + 1]).collect();
+        starts.sort_unstable();
+        starts.dedup();
+        // Behind the last position nothing begins.
+        starts.retain(|start| (1..=Value::MAX.get()).contains(start));
+        let outputs = starts.iter().map(|start| at(*start)).collect();
+        Compiled { starts, outputs, before: at(0) }
+    }
+
+    /// The outputs at a position: a byte a program, bit i for cam i. The same as [`Program::outputs`] of each.
+    pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
+        let begun = self.starts.partition_point(|start| *start <= position.get());
+        let stretch = begun.checked_sub(1).and_then(|at| self.outputs.get(at));
+        stretch.unwrap_or(&self.before).to_le_bytes()
+    }
+}

@@ -1,0 +1,69 @@
+//! What the four lamps of an encoder say (reference 1).
+
+/// A lamp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Lamp {
+    /// Dark.
+    Off,
+    /// Lit.
+    On,
+    /// On and off.
+    Blinking,
+}
+
+/// The lamps by their names at the encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Leds {
+    /// UL.
+    pub ul: Lamp,
+    /// BA.
+    pub ba: Lamp,
+    /// RC.
+    pub rc: Lamp,
+    /// RBDA.
+    pub rbda: Lamp,
+}
+
+/// What lamps say, and what to do.
+#[derive(Clone, Copy, Debug)]
+pub struct LedRow {
+    /// What is lit.
+    pub leds: Leds,
+    /// What it says, as the manual has it.
+    pub meaning: &'static str,
+    /// What to do; the manual says nothing of it (`U`).
+    pub remedy: &'static str,
+}
+
+use Lamp::{Blinking, Off, On};
+
+const fn leds(ul: Lamp, ba: Lamp, rc: Lamp, rbda: Lamp) -> Leds {
+    Leds { ul, ba, rc, rbda }
+}
+
+/// What the manual has, in its order.
+pub const LEDS: [LedRow; 4] = [
+    LedRow {
+        leds: leds(On, Off, On, Off),
+        meaning: "no run",
+        remedy: "start the bus master: the encoder has its supply and the incoming cable, and no data come",
+    },
+    LedRow {
+        leds: leds(On, Blinking, On, Off),
+        meaning: "configured",
+        remedy: "let the bus master run: it knows the encoder and exchanges no data with it yet",
+    },
+    LedRow { leds: leds(On, On, On, On), meaning: "run", remedy: "nothing: data are exchanged" },
+    LedRow {
+        leds: leds(On, Off, Off, On),
+        meaning: "bus error",
+        remedy: "check the bus cables and plugs before and behind the encoder, then ask the master's diagnosis",
+    },
+];
+
+impl Leds {
+    /// The row of the table; `None` for what the manual does not have.
+    pub fn row(self) -> Option<&'static LedRow> {
+        LEDS.iter().find(|row| row.leds == self)
+    }
+}

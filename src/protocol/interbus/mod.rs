@@ -1,0 +1,44 @@
+//! INTERBUS: the words of POSITAL OCD-IB encoders (ENCOM profile 71, classes K1, K2 and K3) on the process data.
+//!
+//! Source: POSITAL, manual UME-IB ("the manual" below; the project's reference of it where a section is named so). What the
+//! manual leaves open is marked `U`; where it contradicts itself, reference 6 says what is taken.
+//!
+//! ```text
+//! bit  31               30                      29            28..25                   24..0
+//! OUT  run              set preset              manufacturer  parameter code           data
+//! IN   error, invalid   parameterisation        manufacturer  parameter or error code  position, value
+//! ```
+//!
+//! The same OUT word means different things in different modes: [`Command::readings`] has all of them, and
+//! [`Command::in_mode`] the one that an encoder in a [`Mode`] takes it for.
+
+mod cam;
+mod cam_output;
+mod class;
+mod command;
+mod compiled;
+mod gear;
+mod leds;
+mod mode;
+mod parameter;
+mod read_out;
+mod reply;
+mod value;
+#[cfg(test)]
+mod vectors;
+
+/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+pub const KIND: &str = "interbus";
+
+pub use cam::{Cam, CamNumber, Program, ProgramNumber};
+pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};
+pub use class::{Class, Interface, Single, class_of_id, id_code};
+pub use command::{Command, Refused};
+pub use compiled::Compiled;
+pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};
+pub use leds::{LEDS, Lamp, LedRow, Leds};
+pub use mode::Mode;
+pub use parameter::{OutOfRange, PARAMETERS, Parameter, ParameterRow};
+pub use read_out::{Flags, READ_OUTS, ReadOut, ReadOutRow, ReadOutValue, StartupMode};
+pub use reply::{ErrorWord, Reply};
+pub use value::{Code, Value};

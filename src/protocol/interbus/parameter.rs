@@ -1,0 +1,132 @@
+//! The parameters: codes, units and limits in one table (reference 3).
+
+use std::ops::RangeInclusive;
+
+use super::gear::{Gear, TURNS};
+use super::value::{Code, Value};
+
+/// A parameter that an encoder is set with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// Steps over all programmed turns.
+    Steps,
+    /// Turns.
+    Turns,
+    /// 3 clockwise, 4 counterclockwise.
+    Direction,
+    /// The position that the encoder is to have when the preset is fired.
+    Preset,
+    /// Zero point shifting. It does not fire the preset, as manual 5.4.1 has it (reference 6.2).
+    ZeroShift,
+    /// Back to what was delivered. Only in the appendix of the manual (reference 6.10): experimental.
+    Default,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct ParameterRow {
+    /// Which one.
+    pub parameter: Parameter,
+    /// Bits 28..25 of its word.
+    pub code: u8,
+    /// As the command line spells it.
+    pub name: &'static str,
+    /// Of its number; empty where it has none.
+    pub unit: &'static str,
+    limit: Limit,
+}
+
+/// What its number may be.
+#[derive(Clone, Copy, Debug)]
+enum Limit {
+    /// Always the same.
+    Fixed(u32, u32),
+    /// From 1 to what the turns have.
+    StepsOfTurns,
+    /// From 0 to one step before the range's end.
+    WithinRange,
+}
+
+/// A parameter's number beyond its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {value} is not within {low} to {high}", parameter.name())]
+pub struct OutOfRange {
+    /// Which one.
+    pub parameter: Parameter,
+    /// As given.
+    pub value: u32,
+    /// The least.
+    pub low: u32,
+    /// The greatest.
+    pub high: u32,
+}
+
+use Parameter::{Default, Direction, Preset, Steps, Turns, ZeroShift};
+
+/// All parameters, in the manual's order.
+pub const PARAMETERS: [ParameterRow; 6] = [
+    row(Steps, 1, "steps", "steps", Limit::StepsOfTurns),
+    row(Turns, 2, "revolutions", "turns", Limit::Fixed(1, TURNS)),
+    row(Direction, 3, "direction", "", Limit::Fixed(3, 4)),
+    row(Preset, 4, "preset", "steps", Limit::WithinRange),
+    row(ZeroShift, 5, "zero-shift", "steps", Limit::Fixed(0, Value::MAX.get())),
+    row(Default, 7, "default", "", Limit::Fixed(0, 0)),
+];
+
+const fn row(parameter: Parameter, code: u8, name: &'static str, unit: &'static str, limit: Limit) -> ParameterRow {
+    ParameterRow { parameter, code, name, unit, limit }
+}
+
+impl Parameter {
+    /// Its row of the table.
+    pub const fn row(self) -> &'static ParameterRow {
+        let [steps, turns, direction, preset, zero_shift, default] = &PARAMETERS;
+        match self {
+            Steps => steps,
+            Turns => turns,
+            Direction => direction,
+            Preset => preset,
+            ZeroShift => zero_shift,
+            Default => default,
+        }
+    }
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The parameter of a code; `None` for codes that the manual does not have.
+    pub fn of_code(code: Code) -> Option<Self> {
+        PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
+    }
+
+    /// What its number may be in an encoder with this gear.
+    pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
+        match self.row().limit {
+            Limit::Fixed(low, high) => low..=high,
+            Limit::StepsOfTurns => 1..=Gear::most_steps(gear.turns()),
+            Limit::WithinRange => 0..=gear.steps() - 1,
+        }
+    }
+
+    /// What its number may be in an encoder with any gear.
+    pub const fn widest_range(self) -> RangeInclusive<u32> {
+        match self.row().limit {
+            Limit::Fixed(low, high) => low..=high,
+            Limit::StepsOfTurns => 1..=Value::MAX.get(),
+            Limit::WithinRange => 0..=Value::MAX.get() - 1,
+        }
+    }
+
+    /// A number for this parameter.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] with the limits of this gear.
+    pub fn check(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
+        let range = self.range(gear);
+        let (low, high) = (*range.start(), *range.end());
+        let refused = OutOfRange { parameter: self, value, low, high };
+        Value::new(value).filter(|_| range.contains(&value)).ok_or(refused)
+    }
+}

@@ -1,0 +1,142 @@
+//! IN words of a K3 encoder (reference 2). What a position or a value means, the mode tells:
+//! [`CamOutput`](super::CamOutput), [`ReadOut::value`](super::ReadOut::value).
+
+use super::command::Command;
+use super::mode::Mode;
+use super::value::{Code, Value};
+
+/// What an IN word says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Reply {
+    /// Bit 31 is clear: the encoder runs. A position; in velocity mode a speed, in cam mode the cam output word.
+    Run {
+        /// Bits 24..0.
+        value: Value,
+        /// Bits 30..25, which should be 0: what stands in them deserves a warning.
+        stray: u8,
+    },
+    /// 110 or 111 in front, code 0: at work on a parameter; of cam 0 it may be the echo.
+    Busy {
+        /// Bit 29.
+        manufacturer: bool,
+        /// What stands beside it.
+        data: Value,
+    },
+    /// 110 or 111 in front: this has been received. Not yet that it was taken.
+    Echo {
+        /// Bit 29.
+        manufacturer: bool,
+        /// Of the parameter, or the cam; never 0.
+        code: Code,
+        /// As it was sent.
+        data: Value,
+    },
+    /// 101 in front, code 0: a value that was read out.
+    ReadOut(Value),
+    /// 101 in front, code 2: no such read-out.
+    UnknownReadOut(Value),
+    /// 101 in front, another code: nothing that the manual has.
+    Unknown {
+        /// Neither 0 nor 2.
+        code: Code,
+        /// Bits 24..0.
+        data: Value,
+    },
+    /// 100 in front.
+    Error(ErrorWord),
+}
+
+/// An error word: 100 in front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ErrorWord {
+    /// Bits 28..25.
+    pub code: Code,
+    /// Bits 24..0.
+    pub data: Value,
+}
+
+const ERROR: u32 = 0b100 << 29;
+const READ_OUT: u32 = 0b101 << 29;
+const ECHO: u32 = 0b110 << 29;
+const MANUFACTURER: u32 = 1 << 29;
+
+impl Reply {
+    /// Reads a word. Every word is one.
+    pub fn parse(word: u32) -> Self {
+        let (code, data) = (Code::of_word(word), Value::of_word(word));
+        let manufacturer = word & MANUFACTURER != 0;
+        match (word >> 29, code.get()) {
+            (0b110 | 0b111, 0) => Reply::Busy { manufacturer, data },
+            (0b110 | 0b111, _) => Reply::Echo { manufacturer, code, data },
+            (0b101, 0) => Reply::ReadOut(data),
+            (0b101, 2) => Reply::UnknownReadOut(data),
+            (0b101, _) => Reply::Unknown { code, data },
+            (0b100, _) => Reply::Error(ErrorWord { code, data }),
+            _ => Reply::Run { value: data, stray: (word >> Value::BITS) as u8 },
+        }
+    }
+
+    /// The word. Of stray bits what has room in them.
+    pub fn emit(self) -> u32 {
+        let echo = |manufacturer: bool| if manufacturer { ECHO | MANUFACTURER } else { ECHO };
+        match self {
+            Reply::Run { value, stray } => u32::from(stray & 0x3F) << Value::BITS | value.get(),
+            Reply::Busy { manufacturer, data } => echo(manufacturer) | data.get(),
+            Reply::Echo { manufacturer, code, data } => echo(manufacturer) | code.in_word() | data.get(),
+            Reply::ReadOut(value) => READ_OUT | value.get(),
+            Reply::UnknownReadOut(data) => READ_OUT | 2 << Value::BITS | data.get(),
+            Reply::Unknown { code, data } => READ_OUT | code.in_word() | data.get(),
+            Reply::Error(error) => ERROR | error.code.in_word() | error.data.get(),
+        }
+    }
+
+    /// The echo of a command: its word with bits 31 and 30 set, the data as they were sent (for cams `U`). Compare all of
+    /// it: an older reply may have the same code (reference 4).
+    pub fn echo_of(command: Command) -> Self {
+        Reply::parse(command.emit() | ECHO)
+    }
+
+    /// What it echoes, if a parameter or a cam was set in this mode.
+    pub fn echoed(self, mode: Mode) -> Option<Command> {
+        let sets = |command: &Command| {
+            use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};
+            matches!(command, Set(..) | Cams(_) | Activate(_) | Shift(_) | CamStart(..) | CamStop(..))
+        };
+        if !matches!(self, Reply::Echo { .. } | Reply::Busy { .. }) {
+            return None;
+        }
+        let plain = self.emit() & !ECHO;
+        let sent = [plain, plain | 1 << 30];
+        let commands = sent.into_iter().filter_map(|word| Command::in_mode(word, mode).ok());
+        commands.into_iter().find(sets)
+    }
+}
+
+impl ErrorWord {
+    /// The manufacturer's error of a cam's edge beyond the measuring range, in `data` of code Ch.
+    pub const CAM_BEYOND_RANGE: u32 = 4;
+
+    /// What it says, in the manual's words.
+    pub const fn meaning(self) -> &'static str {
+        match (self.code.get(), self.data.get()) {
+            (1, _) => "wrong parameter data",
+            (2, _) => "unknown parameter code",
+            (3, _) => "parameters lost",
+            (0xC, ErrorWord::CAM_BEYOND_RANGE) => "start or stop of a cam beyond the measuring range",
+            (0xC, _) => "manufacturer's error",
+            _ => "position or cam value not valid",
+        }
+    }
+
+    /// What to do; the manual says little of it (`U`).
+    pub const fn remedy(self) -> &'static str {
+        match (self.code.get(), self.data.get()) {
+            (1, _) => "send a number within its limits, then run",
+            (2, _) => "send a parameter that the encoder has, then run",
+            (3, _) => "set all parameters anew, then run",
+            (0xC, ErrorWord::CAM_BEYOND_RANGE) => "send an edge below the steps of the measuring range",
+            (0xC, _) => "send run, and ask the maker where it comes back",
+            _ => "send run, then normal running; take no position or cam output until then",
+        }
+    }
+}

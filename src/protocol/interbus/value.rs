@@ -1,0 +1,53 @@
+//! The two number fields of a word (reference 2).
+
+/// Bits 24..0 of a word: a position, a parameter's data, a cam's edge. 0 to 1FFFFFFh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Value(u32);
+
+/// Bits 28..25 of a word: which parameter, cam or error it is about. 0 to 15.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Code(u8);
+
+impl Value {
+    /// Bits of the field.
+    pub const BITS: u32 = 25;
+    /// 1FFFFFFh.
+    pub const MAX: Value = Value((1 << Value::BITS) - 1);
+
+    /// `None` beyond 25 bits.
+    pub const fn new(number: u32) -> Option<Self> {
+        if number <= Value::MAX.0 { Some(Value(number)) } else { None }
+    }
+
+    /// Its number.
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+
+    /// The field of a word.
+    pub const fn of_word(word: u32) -> Self {
+        Value(word & Value::MAX.0)
+    }
+}
+
+impl Code {
+    /// `None` beyond 4 bits.
+    pub const fn new(code: u8) -> Option<Self> {
+        if code < 16 { Some(Code(code)) } else { None }
+    }
+
+    /// Its number.
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+
+    /// The field of a word.
+    pub const fn of_word(word: u32) -> Self {
+        Code((word >> Value::BITS & 0xF) as u8)
+    }
+
+    /// In its place in a word.
+    pub const fn in_word(self) -> u32 {
+        (self.0 as u32) << Value::BITS
+    }
+}
