@@ -1,6 +1,7 @@
 //! What can be written on the command line.
 
 mod analyse;
+mod decode;
 mod ssi;
 
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(super) use analyse::Analyse;
+pub(super) use decode::{Decode, Direction, Words};
 pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
 
 use super::Failure;
@@ -34,7 +36,7 @@ pub(super) struct Arguments {
 const KINDS: &str = "\
 Kinds of device: hiperface, biss and ssi; diff, verify and restore find it in the profile. find is for hiperface alone; do
 has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its frame is
-made, and ssi explains frames offline. Without hardware: --link sim:, as in
+made, and ssi explains frames offline. Of interbus there is decode alone. Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -109,6 +111,8 @@ pub(super) enum DeviceKind {
     Biss,
     /// SSI encoder; it sends its position and nothing else: --layout says how its frame is made.
     Ssi,
+    /// INTERBUS encoder (K1, K2, K3); its words are explained offline (decode), and it is not reached over a link.
+    Interbus,
 }
 
 #[derive(Args)]
@@ -331,18 +335,6 @@ pub(super) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
 /// An option that is for another kind of device.
 pub(super) fn no_option(option: &str, kind: &str) -> Failure {
     Failure::Usage(format!("{option} is not for {kind} devices"))
-}
-
-#[derive(Args)]
-pub(super) struct Decode {
-    pub(super) protocol: DeviceKind,
-    /// A frame as hex bytes; several frames as one argument each.
-    ///
-    /// biss: UBICOM frames, bridge packets (up to their 00), position frames of the kit encoder (41 bits right-justified:
-    /// 16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as "position"
-    /// prints them (0x024698000, or raw=610893824 from JSON or a table).
-    #[arg(required = true)]
-    pub(super) hex: Vec<String>,
 }
 
 #[derive(Args)]

@@ -1,10 +1,10 @@
 //! What the command line does with a kind of device, one function a command. What a kind does not have is refused as
 //! wrong usage.
 
-use super::args::{Common, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Status, Write};
+use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, biss, hiperface, ssi};
+use super::{Failure, Result, biss, hiperface, interbus, ssi};
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.
@@ -19,7 +19,7 @@ pub(super) struct Kind {
     pub(super) save: fn(&Common, &Output, &Save) -> Result,
     pub(super) write: fn(&Common, &Output, &Write) -> Result,
     pub(super) act: fn(&Common, &Output, &Do) -> Result,
-    pub(super) decode: fn(&Output, &[String]) -> Result,
+    pub(super) decode: fn(&Output, &Decode) -> Result,
     pub(super) restore: fn(&Common, &Output, &Restore, Body) -> Result,
     /// The virtual device that is to be served.
     pub(super) simulated: fn(&Simulate) -> Result<Box<dyn Simulated>>,
@@ -41,6 +41,7 @@ pub(super) fn of(device: DeviceKind) -> &'static Kind {
         DeviceKind::Hiperface => &hiperface::COMMANDS,
         DeviceKind::Biss => &biss::COMMANDS,
         DeviceKind::Ssi => &ssi::COMMANDS,
+        DeviceKind::Interbus => &interbus::COMMANDS,
     }
 }
 

@@ -8,6 +8,7 @@ mod check;
 mod consent;
 mod decode;
 mod hiperface;
+mod interbus;
 mod kind;
 mod number;
 mod output;
@@ -23,7 +24,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, Common, DeviceKind};
+use args::{Arguments, Command, Common, DeviceKind, Words};
 use output::Output;
 
 use crate::link::LinkUrl;
@@ -152,7 +153,10 @@ fn dispatch(common: &Common, command: Command) -> Result {
         }
         Command::Write(write) => (kind::of(write.device).write)(common, &output, &write),
         Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),
-        Command::Decode(decode) => (kind::of(decode.protocol).decode)(&output, &decode.hex),
+        Command::Decode(decode) => {
+            no_words(&decode.words, decode.protocol)?;
+            (kind::of(decode.protocol).decode)(&output, &decode)
+        }
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
         Command::Ssi(command) => ssi::ssi(&output, &command),
         Command::Simulate(simulate) => {
@@ -169,6 +173,16 @@ fn dispatch(common: &Common, command: Command) -> Result {
 fn no_layout(layout: Option<&String>, device: DeviceKind) -> Result<()> {
     match layout {
         Some(_) if device != DeviceKind::Ssi => Err(usage("--layout is for ssi devices; others tell that themselves")),
+        _ => Ok(()),
+    }
+}
+
+/// What other devices send says itself which way it went.
+fn no_words(words: &Words, device: DeviceKind) -> Result<()> {
+    match words.given() {
+        Some(option) if device != DeviceKind::Interbus => {
+            Err(Failure::Usage(format!("{option} is for the words of interbus devices")))
+        }
         _ => Ok(()),
     }
 }

@@ -25,6 +25,7 @@ mod cli_simulate;
 mod cli_ssi;
 mod cli_status;
 mod foreign;
+mod interbus_offline;
 mod source;
 mod ssi_export;
 mod ssi_live;

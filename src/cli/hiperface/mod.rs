@@ -28,7 +28,7 @@ pub(super) const COMMANDS: Kind = Kind {
     save: profiles::save,
     write: write::write,
     act: act::act,
-    decode: decode::decode,
+    decode: |output, arguments| decode::decode(output, &arguments.hex),
     restore: profiles::restore,
     simulated,
     present: profiles::present,
