@@ -195,7 +195,7 @@ impl Record {
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
-    /// How many [`words`](Self::words) there are.
+    /// How many words are kept with so many clocks, the newest run of them without a gap.
     pub fn count(&self, clocks: u8) -> usize {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
