@@ -59,7 +59,7 @@ macro_rules! each_with_memory {
 
 impl AnyDevice {
     /// At a link that is being opened; `None` for a tab that shows no device.
-    pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl, services: &Services) -> Option<Self> {
+    pub(super) fn at_link(tab: Tab, id: SessionId, url: LinkUrl, services: &mut Services) -> Option<Self> {
         match tab {
             Tab::Hiperface => Some(AnyDevice::Hiperface(Box::new(hiperface::Encoder::at_link(id, url)))),
             Tab::Biss => Some(AnyDevice::Biss(Box::new(biss::Encoder::at_link(id, url)))),

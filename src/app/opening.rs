@@ -47,7 +47,7 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let Some(device) = AnyDevice::at_link(tab, id, url.clone(), &self.services) else { return };
+                let Some(device) = AnyDevice::at_link(tab, id, url.clone(), &mut self.services) else { return };
                 self.devices.push(device);
                 id
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use jiff::Zoned;
 
-use super::action::FileQuestion;
+use super::action::{Action, Done, FileQuestion};
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
@@ -109,13 +109,22 @@ pub struct Services {
     pub(super) drafts_on_their_way: usize,
     /// Families of SSI encoders: the built-in ones, until the user's own were read.
     pub(super) families: Arc<Families>,
+    /// The user's own are being read, or were.
+    families_asked: bool,
 }
 
 impl Services {
     const JOBS: usize = 500;
 
-    /// Families of SSI encoders.
-    pub(in crate::app) fn ssi_families(&self) -> Arc<Families> {
+    /// Families of SSI encoders. Whoever wants them first has the user's own read beside the built-in ones, as a task.
+    pub(in crate::app) fn ssi_families(&mut self) -> Arc<Families> {
+        if !std::mem::replace(&mut self.families_asked, true) {
+            let store = self.world.store.clone();
+            self.tasks.run("families", move || {
+                let (families, broken) = store.ssi_families();
+                Action::Done(Done::Families(Arc::new(families), broken))
+            });
+        }
         self.families.clone()
     }
 
@@ -134,6 +143,7 @@ impl Services {
             opening_files,
             drafts_on_their_way: 0,
             families,
+            families_asked: false,
         }
     }
 

@@ -48,7 +48,7 @@ impl Studio {
     pub fn new(world: World, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let (settings, keeper) = Keeper::load(&mut services);
-        let studio = Studio {
+        Studio {
             signals: Signals::at(settings.links(Tab::Signals)),
             settings,
             connect: None,
@@ -61,9 +61,7 @@ impl Studio {
             closing: false,
             waited: None,
             path_question: None,
-        };
-        studio.read_families();
-        studio
+        }
     }
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::ssi::strip::Handle;
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
-use encoder_studio::app::{Action, AnyDevice, FileQuestion, Tab, Wish};
+use encoder_studio::app::{Action, AnyDevice, FileQuestion, Severity, Tab, Wish};
 use encoder_studio::device::ssi::check::Verdict;
 use encoder_studio::protocol::ssi::{Code, Place, Range};
 
@@ -376,4 +376,20 @@ fn a_boundary_is_dragged_as_the_family_is_set() {
     let own = encoder(&desk).design();
     assert_eq!(own.profile.descriptor.errors[0].clock, 13);
     assert_eq!(own.settings.as_ref().unwrap().emit("ahs36"), "ahs36,st=12,err=following");
+}
+
+#[test]
+fn families_of_the_users_own_are_known_and_broken_ones_told() {
+    let mut desk = Desk::fresh("");
+    let folder = desk.outside.store().ssi_families_path();
+    std::fs::create_dir_all(&folder).unwrap();
+    let source = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/devices/ssi/ahm36.ron");
+    let text = std::fs::read_to_string(source).unwrap();
+    std::fs::write(folder.join("mine.ron"), text.replace("key: \"ahm36\"", "key: \"mine\"")).unwrap();
+    std::fs::write(folder.join("broken.ron"), "(key: ").unwrap();
+    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.until("it is known", |studio| studio.ssi().unwrap().designer.families().named("mine").is_some());
+    edit(&mut desk, Edit::Family("mine".to_owned()));
+    assert_eq!(encoder(&desk).designer.family().unwrap().key, "mine");
+    assert_eq!(desk.told(Severity::Warning), ["store.ssi_family"]);
 }

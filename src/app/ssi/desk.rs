@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::action::Action;
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::action::{Action as StudioAction, Done};
 use crate::app::services::Services;
 use crate::app::session::Source;
 use crate::app::studio::{SessionId, Studio};
@@ -39,7 +38,7 @@ impl Studio {
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
         let Some(name) = names.find(|name| !taken(name)) else { return };
         let id = self.new_id();
-        let layout = Encoder::new_layout(id, name, &self.services);
+        let layout = Encoder::new_layout(id, name, &mut self.services);
         self.devices.push(AnyDevice::Ssi(Box::new(layout)));
         self.show(Tab::Ssi, id);
     }
@@ -73,15 +72,6 @@ impl Studio {
             if let Some(encoder) = device.ssi_mut() {
                 act(encoder, services);
             }
-        });
-    }
-
-    /// Reads the families of the user's own beside the built-in ones, as a task.
-    pub(in crate::app) fn read_families(&self) {
-        let store = self.services.world.store.clone();
-        self.services.tasks.run("families", move || {
-            let (families, broken) = store.ssi_families();
-            StudioAction::Done(Done::Families(Arc::new(families), broken))
         });
     }
 

@@ -53,14 +53,14 @@ pub struct Encoder {
 
 impl Encoder {
     /// An encoder at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl, services: &Services) -> Self {
+    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
         let families = services.ssi_families();
         let designer = Designer::at_link(&url, families);
         Encoder::with(Session::at_link(id, url), designer)
     }
 
     /// A layout that is in no file yet, and a name for one: a family's as delivered.
-    pub(in crate::app) fn new_layout(id: SessionId, suggested: PathBuf, services: &Services) -> Self {
+    pub(in crate::app) fn new_layout(id: SessionId, suggested: PathBuf, services: &mut Services) -> Self {
         let designer = Designer::delivered(services.ssi_families());
         let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
         encoder.load_draft(services);
@@ -72,7 +72,7 @@ impl Encoder {
         id: SessionId,
         (path, key): (PathBuf, String),
         document: Document,
-        services: &Services,
+        services: &mut Services,
     ) -> Self {
         let families = services.ssi_families();
         let mut designer = Designer::delivered(families);
