@@ -5,6 +5,7 @@ pub mod biss;
 mod difference;
 mod document;
 pub mod hiperface;
+pub mod interbus;
 mod plan;
 mod ron_text;
 pub mod ssi;

@@ -30,6 +30,11 @@ pub struct Program {
 }
 
 impl CamNumber {
+    /// All of them, rising.
+    pub fn all() -> impl Iterator<Item = CamNumber> {
+        (0..8).map(CamNumber)
+    }
+
     /// `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
@@ -44,6 +49,11 @@ impl CamNumber {
 impl ProgramNumber {
     /// How many there are.
     pub const COUNT: usize = 8;
+
+    /// All of them, rising.
+    pub fn all() -> impl Iterator<Item = ProgramNumber> {
+        (1..=8).map(ProgramNumber)
+    }
 
     /// `None` where it is not 1 to 8.
     pub const fn new(number: u8) -> Option<Self> {
