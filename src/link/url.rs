@@ -17,15 +17,18 @@ pub enum Scheme {
     Replay,
     /// The open adapter for clocked buses, at a serial port or a TCP address.
     Bridge,
+    /// A Modbus/TCP gateway to process data.
+    Modbus,
 }
 
 impl Scheme {
-    const ALL: [(Scheme, &'static str); 5] = [
+    const ALL: [(Scheme, &'static str); 6] = [
         (Scheme::Sim, "sim"),
         (Scheme::Serial, "serial"),
         (Scheme::Tcp, "tcp"),
         (Scheme::Replay, "replay"),
         (Scheme::Bridge, "bridge"),
+        (Scheme::Modbus, "modbus"),
     ];
 
     /// The word before the colon.
@@ -39,7 +42,8 @@ impl Scheme {
 pub struct LinkUrl {
     /// Kind of wire.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`.
+    /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`; of `modbus:`
+    /// always with its port, which is 502 where none is written.
     pub target: String,
     /// The parameters after the question mark.
     pub query: Query,
@@ -66,7 +70,7 @@ pub struct Query(Vec<(String, String)>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// No colon, or a word before it that names no kind of link.
-    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:")]
+    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:")]
     Scheme(String),
     /// A link that cannot lead to the device that is meant.
     #[error("{scheme}: links do not lead to this device; those that do are {known}")]
@@ -122,7 +126,11 @@ impl FromStr for LinkUrl {
         let (scheme, _) =
             Scheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
         let (target, query) = rest.split_once('?').unwrap_or((rest, ""));
-        let url = LinkUrl { scheme, target: target.to_owned(), query: query.parse()? };
+        let mut target = target.to_owned();
+        if scheme == Scheme::Modbus && has_no_port(&target) {
+            target.push_str(MODBUS_PORT);
+        }
+        let url = LinkUrl { scheme, target, query: query.parse()? };
         url.check_target()?;
         Ok(url)
     }
@@ -140,7 +148,7 @@ impl LinkUrl {
         match (self.scheme, target.strip_prefix("tcp:")) {
             (Scheme::Sim, _) => Wire::Inside,
             (Scheme::Replay, _) => Wire::File(target),
-            (Scheme::Tcp, _) => Wire::Host(target),
+            (Scheme::Tcp | Scheme::Modbus, _) => Wire::Host(target),
             (Scheme::Bridge, Some(host)) => Wire::Host(host),
             (Scheme::Serial, _) | (Scheme::Bridge, None) => Wire::Port(target),
         }
@@ -157,12 +165,21 @@ impl LinkUrl {
         };
         let what = match self.scheme {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
+            Scheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
             Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
             Scheme::Replay => "a file, as in replay:capture.trace",
             Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
         };
         if is_there { Ok(()) } else { Err(UrlError::Target { scheme: self.scheme.word(), what }) }
     }
+}
+
+/// Where Modbus/TCP is served unless something else is said.
+const MODBUS_PORT: &str = ":502";
+
+/// A host alone, which may be an IPv6 address in brackets.
+fn has_no_port(target: &str) -> bool {
+    !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }
 
 fn has_host_and_port(target: &str) -> bool {
@@ -257,6 +274,7 @@ mod tests {
             "replay:captures/monday.trace",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:192.168.0.7:4001",
+            "modbus:192.168.0.7:502?unit=1&input=0&output=0&order=high-first",
         ] {
             assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), text);
         }
@@ -268,9 +286,12 @@ mod tests {
     #[test]
     fn what_is_no_link_is_told_why() {
         let cases = [
-            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
-            ("/dev/ttyUSB0", "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
-            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, replay: or bridge:"),
+            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:"),
+            (
+                "/dev/ttyUSB0",
+                "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:",
+            ),
+            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:"),
             ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
             ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
             ("tcp:host:99999", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
@@ -283,11 +304,25 @@ mod tests {
                 "bridge:tcp:host",
                 "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
             ),
+            ("modbus:", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
+            ("modbus:plc:many", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
             ("serial:x?baud", "\"baud\" is not of the form name=value"),
             ("serial:x?baud=1&baud=2", "baud stands twice"),
         ];
         for (text, message) in cases {
             assert_eq!(text.parse::<LinkUrl>().unwrap_err().to_string(), message);
+        }
+    }
+
+    #[test]
+    fn a_gateway_has_the_port_of_modbus_where_none_is_written() {
+        for (text, whole) in [
+            ("modbus:plc", "modbus:plc:502"),
+            ("modbus:[::1]?unit=3", "modbus:[::1]:502?unit=3"),
+            ("modbus:[::1]:1502", "modbus:[::1]:1502"),
+            ("modbus:plc:1502", "modbus:plc:1502"),
+        ] {
+            assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), whole);
         }
     }
 

@@ -63,7 +63,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     Ok((station, Simulated::new(way, &url.query.without(&LINE_ONLY))?))
 }
 
-fn way(url: &LinkUrl) -> Result<Way, UrlError> {
+fn way(url: &LinkUrl) -> Result<Way, OpenError> {
     let by_word = |text: &str| match text {
         "on" => Some(Way::Adapter),
         "off" => Some(Way::ConfigPin),
@@ -72,6 +72,10 @@ fn way(url: &LinkUrl) -> Result<Way, UrlError> {
     match url.scheme {
         Scheme::Bridge => Ok(Way::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
+        Scheme::Modbus => {
+            let known = "sim:, serial:, tcp:, bridge:, replay:";
+            Err(UrlError::Device { scheme: url.scheme.word(), known }.into())
+        }
         Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, "on or off", by_word)?.unwrap_or(Way::ConfigPin)),
     }
 }

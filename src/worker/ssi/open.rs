@@ -45,7 +45,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             check_parameters(&url.query, url.scheme, &PARAMETERS)?;
             Config::default()
         }
-        Scheme::Serial | Scheme::Tcp => {
+        Scheme::Serial | Scheme::Tcp | Scheme::Modbus => {
             let known = "sim:, bridge:, replay:";
             return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
         }
@@ -74,6 +74,7 @@ mod tests {
                 "serial:/dev/ttyUSB0",
                 "serial: links do not lead to this device; those that do are sim:, bridge:, replay:",
             ),
+            ("modbus:host", "modbus: links do not lead to this device; those that do are sim:, bridge:, replay:"),
             ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim:, bridge:, replay:"),
             ("bridge:/dev/x?rpm=1", "rpm is not a parameter of bridge: links; known are margin, clock, pause, voltage"),
             ("bridge:/dev/x?layout=atm60", "layout is not a parameter of bridge: links"),
