@@ -12,6 +12,7 @@ mod edits;
 pub mod explain;
 mod files;
 pub mod hiperface;
+pub mod interbus;
 mod keep;
 mod leaving;
 mod line;

@@ -86,6 +86,16 @@ impl Program {
     /// Cams of a program.
     pub const CAMS: usize = 8;
 
+    /// Whether a cam works.
+    pub const fn is_on(&self, cam: CamNumber) -> bool {
+        self.mask >> cam.0 & 1 == 1
+    }
+
+    /// Lets a cam work, or not.
+    pub const fn set_on(&mut self, cam: CamNumber, on: bool) {
+        self.mask = self.mask & !(1 << cam.0) | (on as u8) << cam.0;
+    }
+
     /// The outputs at a position: bit i for cam i.
     pub fn outputs(&self, position: Value) -> u8 {
         let on = |cam: &Option<Cam>| cam.is_some_and(|cam| cam.is_on(position));
