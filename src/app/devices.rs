@@ -68,15 +68,15 @@ impl AnyDevice {
         }
     }
 
-    /// A profile.
+    /// A profile; `None` of a kind that no tab shows.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Self {
-        match &document.body {
+    ) -> Option<Self> {
+        Some(match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -85,7 +85,8 @@ impl AnyDevice {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
             Body::Ssi(_) => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
-        }
+            Body::Interbus(_) => return None,
+        })
     }
 
     /// Its number in the studio.

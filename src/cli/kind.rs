@@ -51,5 +51,6 @@ pub(super) fn of_profile(body: &Body) -> &'static Kind {
         Body::Hiperface(_) => &hiperface::COMMANDS,
         Body::Biss(_) => &biss::COMMANDS,
         Body::Ssi(_) => &ssi::COMMANDS,
+        Body::Interbus(_) => &interbus::COMMANDS,
     }
 }

@@ -5,11 +5,12 @@ use ron::error::SpannedError;
 
 use super::biss::BissProfile;
 use super::hiperface::HiperfaceProfile;
+use super::interbus::InterbusProfile;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::ssi::SsiProfile;
 use super::unique_names::UniqueNames;
 use crate::protocol::ssi::LayoutError;
-use crate::protocol::{biss, hiperface, ssi};
+use crate::protocol::{biss, hiperface, interbus, ssi};
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -36,6 +37,8 @@ pub enum Body {
     Biss(BissProfile),
     /// An SSI encoder.
     Ssi(SsiProfile),
+    /// An INTERBUS encoder.
+    Interbus(Box<InterbusProfile>),
 }
 
 /// Why a text is not a profile.
@@ -139,6 +142,7 @@ impl Document {
             hiperface::KIND => Body::Hiperface(HiperfaceProfile::read(&mut entries)?),
             biss::KIND => Body::Biss(BissProfile::read(&mut entries)?),
             ssi::KIND => Body::Ssi(SsiProfile::read(&mut entries)?),
+            interbus::KIND => Body::Interbus(Box::new(InterbusProfile::read(&mut entries)?)),
             _ => return Err(ProfileError::Device { found: device }),
         };
         Ok(Document { saved, note, body, unknown: entries.rest() })
@@ -160,6 +164,7 @@ impl Document {
             Body::Hiperface(profile) => profile.write(&mut writer),
             Body::Biss(profile) => profile.write(&mut writer),
             Body::Ssi(profile) => profile.write(&mut writer),
+            Body::Interbus(profile) => profile.write(&mut writer),
         }
         writer.unknown(&self.unknown);
         writer.close(')');
@@ -174,7 +179,7 @@ impl Document {
 
 impl Body {
     /// Kinds of devices that this program saves, by their words on the command line.
-    pub const KINDS: [&'static str; 3] = [hiperface::KIND, biss::KIND, ssi::KIND];
+    pub const KINDS: [&'static str; 4] = [hiperface::KIND, biss::KIND, ssi::KIND, interbus::KIND];
 
     /// The word for the kind of device.
     pub fn kind(&self) -> &'static str {
@@ -182,6 +187,7 @@ impl Body {
             Body::Hiperface(_) => hiperface::KIND,
             Body::Biss(_) => biss::KIND,
             Body::Ssi(_) => ssi::KIND,
+            Body::Interbus(_) => interbus::KIND,
         }
     }
 
@@ -223,11 +229,22 @@ impl Body {
         }
     }
 
+    /// The profile of an INTERBUS encoder.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_interbus(self) -> Result<InterbusProfile, ProfileError> {
+        match self {
+            Body::Interbus(profile) => Ok(*profile),
+            other => Err(other.is_not(interbus::KIND)),
+        }
+    }
+
     /// The profile of a HIPERFACE encoder; `None` of another device.
     pub fn hiperface(&self) -> Option<&HiperfaceProfile> {
         match self {
             Body::Hiperface(profile) => Some(profile),
-            Body::Biss(_) | Body::Ssi(_) => None,
+            Body::Biss(_) | Body::Ssi(_) | Body::Interbus(_) => None,
         }
     }
 
@@ -235,7 +252,7 @@ impl Body {
     pub fn biss(&self) -> Option<&BissProfile> {
         match self {
             Body::Biss(profile) => Some(profile),
-            Body::Hiperface(_) | Body::Ssi(_) => None,
+            Body::Hiperface(_) | Body::Ssi(_) | Body::Interbus(_) => None,
         }
     }
 
@@ -243,7 +260,15 @@ impl Body {
     pub fn ssi(&self) -> Option<&SsiProfile> {
         match self {
             Body::Ssi(profile) => Some(profile),
-            Body::Hiperface(_) | Body::Biss(_) => None,
+            Body::Hiperface(_) | Body::Biss(_) | Body::Interbus(_) => None,
+        }
+    }
+
+    /// The profile of an INTERBUS encoder; `None` of another device.
+    pub fn interbus(&self) -> Option<&InterbusProfile> {
+        match self {
+            Body::Interbus(profile) => Some(profile),
+            Body::Hiperface(_) | Body::Biss(_) | Body::Ssi(_) => None,
         }
     }
 }

@@ -1,8 +1,9 @@
-//! The commands for INTERBUS encoders: words of the process data in words of a person, offline. The encoder itself is not
-//! reached.
+//! The commands for INTERBUS encoders: words of the process data in words of a person, and profiles, both offline. The
+//! encoder itself is not reached.
 
 mod decode;
 mod meaning;
+mod profiles;
 
 use super::kind::Kind;
 use super::{Failure, Result};
@@ -23,9 +24,8 @@ pub(super) const COMMANDS: Kind = Kind {
     restore: |_, _, _, _| lacking("restore"),
     simulated: |_| lacking("simulate"),
     present: |_, _| lacking("reading from a link"),
-    // There are no profiles of them: whatever is compared is of another kind.
-    compare: |left, _| Err(left.is_not(KIND)),
-    other_device: |_, _| None,
+    compare: profiles::compare,
+    other_device: profiles::other_device,
 };
 
 /// A command that needs the encoder, and what there is.

@@ -1,7 +1,24 @@
 //! INTERBUS: what a K3 encoder holds, what is saved of it, how two differ, and what a write would do.
 
+mod compare;
+mod edit;
+mod error;
 mod image;
+mod item;
+mod note;
 mod plan;
+mod record;
+mod restore;
+#[cfg(test)]
+mod test_profiles;
+mod text;
 
+pub use compare::compare;
+pub use edit::{plan_default, plan_edits, plan_preset};
+pub use error::PlanError;
 pub use image::{Direction, DirectionError, Image, Parameters};
+pub use item::{Item, ItemError, ItemValue};
+pub use note::Step;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
+pub use record::{InterbusProfile, Kept, MountingMark, Names, ProfileIdentity, Recorded};
+pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore, programs_needed};

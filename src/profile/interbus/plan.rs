@@ -1,6 +1,8 @@
 //! The operations that change an encoder, what they cost, and what they rest upon.
 
-use super::Parameters;
+use std::fmt;
+
+use super::{Item, Parameters};
 use crate::profile::{Operation, Plan};
 use crate::protocol::interbus::{CamNumber, Parameter, Program, ProgramNumber, Value, WindowShift};
 
@@ -87,5 +89,60 @@ impl Operation for Op {
             Op::Parameterise(_) | Op::Program(_) | Op::Default => 1,
             Op::FirePreset { .. } => 0,
         }
+    }
+}
+
+impl Op {
+    /// What it changes, as `read` names it; a cam once, whether one of its edges changes or both. Of the default nobody
+    /// knows.
+    pub fn items(&self) -> Vec<Item> {
+        match self {
+            Op::Parameterise(changes) => {
+                changes.iter().filter_map(|change| Item::of_parameter(change.parameter)).collect()
+            }
+            Op::Program(change) => change.items(),
+            Op::FirePreset { .. } | Op::Default => Vec::new(),
+        }
+    }
+
+    /// Names of what it changes, as `read` takes them where they can be read.
+    pub fn item(&self) -> String {
+        match self {
+            Op::FirePreset { .. } => "position".to_owned(),
+            Op::Default => "default".to_owned(),
+            op => op.items().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+        }
+    }
+
+    /// Things it changes, counted as a comparison counts them.
+    pub fn weight(&self) -> u64 {
+        match self {
+            Op::FirePreset { .. } | Op::Default => 1,
+            op => op.items().len() as u64,
+        }
+    }
+}
+
+impl ProgramChange {
+    /// Nothing changes.
+    pub fn is_empty(&self) -> bool {
+        self.cams.is_empty() && self.mask.is_none() && self.shift.is_none()
+    }
+
+    fn items(&self) -> Vec<Item> {
+        let mut items: Vec<Item> = self.mask.iter().map(|_| Item::CamMask(self.program)).collect();
+        items.extend(self.cams.iter().map(|change| Item::Cam(self.program, change.cam)));
+        items.extend(self.shift.iter().map(|_| Item::Shift));
+        items.dedup();
+        items
+    }
+}
+
+impl fmt::Display for Edge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Edge::Start => "start",
+            Edge::Stop => "stop",
+        })
     }
 }

@@ -96,6 +96,18 @@ impl Program {
         self.mask = self.mask & !(1 << cam.0) | (on as u8) << cam.0;
     }
 
+    /// A cam; `None` where there is none.
+    pub fn cam(&self, number: CamNumber) -> Option<Cam> {
+        self.cams.get(usize::from(number.0)).copied().flatten()
+    }
+
+    /// Puts a cam in its place, or takes it away. The mask stays as it is.
+    pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
+        if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
+            *place = cam;
+        }
+    }
+
     /// The outputs at a position: bit i for cam i.
     pub fn outputs(&self, position: Value) -> u8 {
         let on = |cam: &Option<Cam>| cam.is_some_and(|cam| cam.is_on(position));

@@ -1,0 +1,114 @@
+//! What restoring a profile would do: only what differs, in the fewest stores, and nothing that belongs to another
+//! encoder's mounting. A preset is stored and never fired.
+
+use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, plan_edits};
+use crate::protocol::interbus::{OutOfRange, ProgramNumber};
+
+/// What a restore may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RestoreOptions {
+    /// The profile may go onto an encoder with another serial number, or one that counts its steps otherwise.
+    pub allow_other_device: bool,
+    /// Values of the mounting may go onto another encoder.
+    pub with_mounting: bool,
+}
+
+/// An encoder as it is, as far as a plan needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceState {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps: the programs that were read are at least [`programs_needed`], with the shift where there are any.
+    pub image: Image,
+}
+
+/// What a restore would do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restore {
+    /// The operations.
+    pub plan: InterbusPlan,
+    /// Items that are already as the profile says.
+    pub unchanged: u64,
+    /// Items of the profile that the encoder does not have: left alone.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<Item>,
+}
+
+/// The programs that have to be read before a restore of this profile can be planned. The shift of the window is read with
+/// one of them: with the first program where the profile has nothing but the shift.
+pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
+    let of_cams = profile.image.known().map(|(number, _)| number);
+    let all: Vec<ProgramNumber> = of_cams.collect();
+    match profile.image.shift {
+        Some(_) if all.is_empty() => ProgramNumber::all().take(1).collect(),
+        _ => all,
+    }
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &InterbusProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    if !options.allow_other_device {
+        check_device(profile, &device.identity)?;
+    }
+    let keep_mounting = !is_same_device(profile, &device.identity) && !options.with_mounting;
+    let mut wanted = Image::of(device.image.parameters);
+    let (mut unchanged, mut missing, mut mounting_left) = (0, Vec::new(), Vec::new());
+    for item in profile.items() {
+        let (Some(to), Some(from)) = (profile.image.item(item), device.image.item(item)) else {
+            missing.push(item.to_string());
+            continue;
+        };
+        if to == from {
+            unchanged += 1;
+        } else if keep_mounting && profile.is_mounting(item) {
+            mounting_left.push(item);
+        }
+        wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
+    }
+    let plan = plan_edits(&device.image, &wanted).map_err(|error| match error {
+        PlanError::OutOfRange(refused) => match Item::of_parameter(refused.parameter) {
+            Some(item) if mounting_left.contains(&item) => {
+                let OutOfRange { value, low, high, .. } = refused;
+                PlanError::MountingLeft { item, value, low, high }
+            }
+            _ => PlanError::OutOfRange(refused),
+        },
+        other => other,
+    })?;
+    Ok(Restore { plan, unchanged, missing, mounting_left })
+}
+
+/// Refuses an encoder that the profile was not read from. A profile without a serial number is of no encoder, so that it is
+/// refused by none.
+///
+/// # Errors
+/// [`PlanError::OtherSteps`], [`PlanError::OtherDevice`].
+pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    if let (Some(of_profile), Some(of_device)) = (profile.identity.flags, device.flags)
+        && of_profile.steps_minus_one() != of_device.steps_minus_one()
+    {
+        return Err(PlanError::OtherSteps { profile: of_profile.steps_minus_one() });
+    }
+    if profile.identity.serial_number.is_empty() || is_same_device(profile, device) {
+        return Ok(());
+    }
+    Err(PlanError::OtherDevice {
+        profile: profile.identity.serial_number.clone(),
+        device: device.serial_number.clone(),
+    })
+}
+
+fn is_same_device(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
+    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
+}
+
+#[cfg(test)]
+mod tests;
