@@ -2,6 +2,7 @@
 
 pub mod biss;
 pub mod bridge;
+pub mod ethernet_ip;
 pub mod hiperface;
 pub mod interbus;
 pub mod ssi;

@@ -1,0 +1,91 @@
+//! Which packets of a cyclic connection count: none twice, and none that a newer one has overtaken.
+
+/// What has come of one connection.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Arrivals {
+    newest: Option<u32>,
+    lost: u64,
+    stale: u64,
+}
+
+/// What becomes of a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// Its data count.
+    New {
+        /// Packets before it that have not come (they may still, and are stale then).
+        missing: u32,
+    },
+    /// Newer ones, or itself, have come before.
+    Stale,
+}
+
+impl Arrivals {
+    /// A packet with this sequence number. Numbers wrap: newer is what lies less than half of them ahead.
+    pub fn take(&mut self, sequence: u32) -> Arrival {
+        let ahead = match self.newest {
+            None => 1,
+            Some(newest) => sequence.wrapping_sub(newest),
+        };
+        if ahead == 0 || ahead > u32::MAX / 2 {
+            self.stale += 1;
+            return Arrival::Stale;
+        }
+        self.newest = Some(sequence);
+        let missing = ahead - 1;
+        self.lost += u64::from(missing);
+        Arrival::New { missing }
+    }
+
+    /// Packets that did not come, or too late.
+    pub const fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Packets that did not count.
+    pub const fn stale(&self) -> u64 {
+        self.stale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn packets_in_any_order() {
+        const NEXT: Arrival = Arrival::New { missing: 0 };
+        let mut arrivals = Arrivals::default();
+        for (sequence, expected) in [
+            (u32::MAX - 1, NEXT),
+            (u32::MAX, NEXT),
+            (u32::MAX, Arrival::Stale),
+            (0, NEXT),
+            (u32::MAX, Arrival::Stale),
+            (4, Arrival::New { missing: 3 }),
+            (2, Arrival::Stale),
+            (5, NEXT),
+        ] {
+            assert_eq!(arrivals.take(sequence), expected, "{sequence}");
+        }
+        assert_eq!((arrivals.lost(), arrivals.stale()), (3, 3));
+    }
+
+    proptest! {
+        /// However packets come, what counts never goes back.
+        #[test]
+        fn what_counts_only_goes_ahead(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
+            let mut arrivals = Arrivals::default();
+            let mut counted: Vec<u32> = Vec::new();
+            for at in &order {
+                if matches!(arrivals.take(start.wrapping_add(*at)), Arrival::New { .. }) {
+                    counted.push(*at);
+                }
+            }
+            prop_assert!(counted.is_sorted_by(|one, other| one < other));
+            prop_assert_eq!(counted.last(), order.iter().max());
+            prop_assert_eq!(counted.len() as u64 + arrivals.stale(), order.len() as u64);
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! The frame around every explicit message: command, session, status, context (reference 7).
+
+use super::fields::{Fields, PacketError};
+use super::items::{Item, Items};
+use super::status::EncapsulationStatus;
+
+/// What a frame is for. Commands that are not known are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Command(u16);
+
+/// A frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// What it is for; the same in the reply.
+    pub command: Command,
+    /// Given by the target with the reply to RegisterSession; 0 before and without one.
+    pub session: u32,
+    /// 0 in a request.
+    pub status: EncapsulationStatus,
+    /// Chosen by the originator and repeated in the reply.
+    pub context: [u8; 8],
+    /// 0.
+    pub options: u32,
+    /// What follows the header, at most [`Frame::MAX_DATA`] bytes: [`Frame::emit`] cuts what is longer.
+    pub data: Vec<u8>,
+}
+
+/// What a frame carries.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// Nothing: a list that is asked for, the end of a session, a reply that says no.
+    Empty,
+    /// RegisterSession, both ways.
+    Register {
+        /// 1.
+        version: u16,
+        /// 0.
+        options: u16,
+    },
+    /// A list that was asked for.
+    List(Items),
+    /// SendRRData and SendUnitData, both ways.
+    Data {
+        /// 0: CIP.
+        interface: u32,
+        /// Seconds; 0 where CIP has a time-out of its own.
+        timeout_s: u16,
+        /// Whom it is for, and what.
+        items: Items,
+    },
+    /// Of a command that is not known.
+    Other(Vec<u8>),
+}
+
+/// The known commands.
+const NAMES: [(Command, &str); 8] = [
+    (Command::NOP, "NOP"),
+    (Command::LIST_SERVICES, "ListServices"),
+    (Command::LIST_IDENTITY, "ListIdentity"),
+    (Command::LIST_INTERFACES, "ListInterfaces"),
+    (Command::REGISTER_SESSION, "RegisterSession"),
+    (Command::UNREGISTER_SESSION, "UnRegisterSession"),
+    (Command::SEND_RR_DATA, "SendRRData"),
+    (Command::SEND_UNIT_DATA, "SendUnitData"),
+];
+
+impl Command {
+    /// Nothing is asked for.
+    pub const NOP: Command = Command(0x00);
+    /// Which services there are.
+    pub const LIST_SERVICES: Command = Command(0x04);
+    /// Who is there; also by broadcast.
+    pub const LIST_IDENTITY: Command = Command(0x63);
+    /// Which interfaces beside CIP there are.
+    pub const LIST_INTERFACES: Command = Command(0x64);
+    /// A session begins.
+    pub const REGISTER_SESSION: Command = Command(0x65);
+    /// A session ends.
+    pub const UNREGISTER_SESSION: Command = Command(0x66);
+    /// A request or a reply.
+    pub const SEND_RR_DATA: Command = Command(0x6F);
+    /// A message of an explicit connection.
+    pub const SEND_UNIT_DATA: Command = Command(0x70);
+
+    /// Any number is a command.
+    pub const fn new(number: u16) -> Self {
+        Command(number)
+    }
+
+    /// Its number.
+    pub const fn number(self) -> u16 {
+        self.0
+    }
+
+    /// As ODVA calls it; `None` for what is not known.
+    pub fn name(self) -> Option<&'static str> {
+        NAMES.iter().find(|(command, _)| *command == self).map(|(_, name)| *name)
+    }
+}
+
+impl Frame {
+    /// Bytes of the header.
+    pub const HEADER: usize = 24;
+    /// The most that may follow it.
+    pub const MAX_DATA: usize = 65511;
+    /// The version of the protocol.
+    pub const VERSION: u16 = 1;
+
+    /// A request outside of any session.
+    fn request(command: Command, context: [u8; 8], body: &Body) -> Self {
+        Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
+    }
+
+    /// Who is there.
+    pub fn list_identity(context: [u8; 8]) -> Self {
+        Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
+    }
+
+    /// A session begins.
+    pub fn register(context: [u8; 8]) -> Self {
+        let body = Body::Register { version: Frame::VERSION, options: 0 };
+        Frame::request(Command::REGISTER_SESSION, context, &body)
+    }
+
+    /// A session ends. There is no reply.
+    pub fn unregister(session: u32) -> Self {
+        Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
+    }
+
+    /// A CIP message in a session.
+    pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
+        let items = Items(vec![Item::Null, Item::UnconnectedData(message)]);
+        Frame {
+            session,
+            ..Frame::request(Command::SEND_RR_DATA, context, &Body::Data { interface: 0, timeout_s: 0, items })
+        }
+    }
+
+    /// The reply to this frame, in its session.
+    pub fn reply(&self, body: &Body) -> Self {
+        Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
+    }
+
+    /// The reply that says no.
+    pub fn refusal(&self, status: EncapsulationStatus) -> Self {
+        Frame { status, options: 0, data: Vec::new(), ..self.clone() }
+    }
+
+    /// Whether it is a reply to that request, and not one to an earlier one: command and context are the same, and so is the
+    /// session once there is one.
+    pub fn answers(&self, request: &Frame) -> bool {
+        let session = request.session == 0 || request.session == self.session;
+        self.command == request.command && self.context == request.context && session
+    }
+
+    /// Bytes of the frame that begins like this; `None` where the header is not whole.
+    ///
+    /// # Errors
+    /// [`PacketError::Value`]: longer than any frame.
+    pub fn length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
+        let Some(header) = bytes.first_chunk::<{ Frame::HEADER }>() else { return Ok(None) };
+        let [_, _, low, high, ..] = header;
+        let length = u16::from_le_bytes([*low, *high]);
+        match usize::from(length) {
+            data if data <= Frame::MAX_DATA => Ok(Some(Frame::HEADER + data)),
+            _ => Err(PacketError::Value { what: WHAT, field: "length", got: length.into() }),
+        }
+    }
+
+    /// Reads a whole frame.
+    ///
+    /// # Errors
+    /// [`PacketError`] where the bytes are not one frame.
+    pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        Frame::length(bytes)?;
+        let mut fields = Fields::new(WHAT, bytes);
+        let command = Command(fields.u16()?);
+        let length = fields.u16()?;
+        let session = fields.u32()?;
+        let status = EncapsulationStatus::new(fields.u32()?);
+        let context = fields.array()?;
+        let options = fields.u32()?;
+        let data = fields.bytes(length.into())?.to_vec();
+        fields.end(Frame { command, session, status, context, options, data })
+    }
+
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
+        let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
+        bytes.extend(self.command.0.to_le_bytes());
+        // At most 65511.
+        bytes.extend((data.len() as u16).to_le_bytes());
+        bytes.extend(self.session.to_le_bytes());
+        bytes.extend(self.status.code().to_le_bytes());
+        bytes.extend(self.context);
+        bytes.extend(self.options.to_le_bytes());
+        bytes.extend(data);
+        bytes
+    }
+
+    /// What it carries.
+    ///
+    /// # Errors
+    /// [`PacketError`] where the data are not those of its command.
+    pub fn body(&self) -> Result<Body, PacketError> {
+        if self.data.is_empty() {
+            return Ok(Body::Empty);
+        }
+        match self.command {
+            Command::REGISTER_SESSION => {
+                let mut fields = Fields::new("RegisterSession", &self.data);
+                let body = Body::Register { version: fields.u16()?, options: fields.u16()? };
+                fields.end(body)
+            }
+            Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => {
+                Ok(Body::List(Items::parse(&self.data)?))
+            }
+            Command::SEND_RR_DATA | Command::SEND_UNIT_DATA => {
+                let mut fields = Fields::new("SendRRData", &self.data);
+                let (interface, timeout_s) = (fields.u32()?, fields.u16()?);
+                Ok(Body::Data { interface, timeout_s, items: Items::parse(fields.tail())? })
+            }
+            _ => Ok(Body::Other(self.data.clone())),
+        }
+    }
+}
+
+const WHAT: &str = "the encapsulation frame";
+
+impl Body {
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        match self {
+            Body::Empty => Vec::new(),
+            Body::Register { version, options } => [version.to_le_bytes(), options.to_le_bytes()].concat(),
+            Body::List(items) => items.emit(),
+            Body::Data { interface, timeout_s, items } => {
+                let mut bytes = interface.to_le_bytes().to_vec();
+                bytes.extend(timeout_s.to_le_bytes());
+                bytes.extend(items.emit());
+                bytes
+            }
+            Body::Other(bytes) => bytes.clone(),
+        }
+    }
+
+    /// The CIP message in it.
+    pub fn message(&self) -> Option<&[u8]> {
+        match self {
+            Body::Data { items, .. } => items.unconnected_data(),
+            _ => None,
+        }
+    }
+}

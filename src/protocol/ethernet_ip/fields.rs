@@ -1,0 +1,115 @@
+//! Packets field by field.
+
+/// Why bytes are not what they should be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PacketError {
+    /// They end too early.
+    #[error("{what} is cut off: there are {got} bytes of it")]
+    Short {
+        /// What was read.
+        what: &'static str,
+        /// Bytes there were.
+        got: usize,
+    },
+    /// Something is left.
+    #[error("{what} is followed by {left} bytes that do not belong to it")]
+    Long {
+        /// What was read.
+        what: &'static str,
+        /// Bytes left over.
+        left: usize,
+    },
+    /// A value that its field cannot have.
+    #[error("{what}: {field} cannot be 0x{got:X}")]
+    Value {
+        /// What was read.
+        what: &'static str,
+        /// Which field.
+        field: &'static str,
+        /// What stood there.
+        got: u32,
+    },
+}
+
+/// What is left to be read.
+#[derive(Clone)]
+pub(super) struct Fields<'a> {
+    what: &'static str,
+    whole: usize,
+    rest: &'a [u8],
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(what: &'static str, bytes: &'a [u8]) -> Self {
+        Fields { what, whole: bytes.len(), rest: bytes }
+    }
+
+    pub(super) fn u8(&mut self) -> Result<u8, PacketError> {
+        self.array().map(|[byte]| byte)
+    }
+
+    pub(super) fn u16(&mut self) -> Result<u16, PacketError> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    pub(super) fn u32(&mut self) -> Result<u32, PacketError> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], PacketError> {
+        let (array, rest) = self.rest.split_first_chunk::<N>().ok_or(self.short())?;
+        self.rest = rest;
+        Ok(*array)
+    }
+
+    pub(super) fn bytes(&mut self, count: usize) -> Result<&'a [u8], PacketError> {
+        let (bytes, rest) = self.rest.split_at_checked(count).ok_or(self.short())?;
+        self.rest = rest;
+        Ok(bytes)
+    }
+
+    /// Everything that is left.
+    pub(super) fn tail(&mut self) -> &'a [u8] {
+        std::mem::take(&mut self.rest)
+    }
+
+    /// Nothing is left.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// Nothing may be left.
+    pub(super) fn end<T>(self, value: T) -> Result<T, PacketError> {
+        match self.rest.len() {
+            0 => Ok(value),
+            left => Err(PacketError::Long { what: self.what, left }),
+        }
+    }
+
+    pub(super) fn value(&self, field: &'static str, got: impl Into<u32>) -> PacketError {
+        PacketError::Value { what: self.what, field, got: got.into() }
+    }
+
+    const fn short(&self) -> PacketError {
+        PacketError::Short { what: self.what, got: self.whole }
+    }
+}
+
+/// A text of a length that one byte holds: SHORT_STRING. Bytes that are no ASCII become question marks, both ways; what is
+/// longer than 255 is cut.
+pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
+    let ascii: Vec<u8> = ascii(text).take(0xFF).collect();
+    // At most 255.
+    bytes.push(ascii.len() as u8);
+    bytes.extend(ascii);
+}
+
+/// The characters of a text as they are sent.
+pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
+    text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
+}
+
+/// Characters as they came.
+pub(super) fn text(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| if byte.is_ascii() { char::from(*byte) } else { '?' }).collect()
+}

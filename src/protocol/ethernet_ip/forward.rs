@@ -1,0 +1,297 @@
+//! ForwardOpen and ForwardClose: a cyclic connection begins and ends (reference 7). The target chooses the number of what
+//! comes to it, the originator of what comes back.
+
+use std::time::Duration;
+
+use super::connection::{ConnectionTimeout, NetworkParameters, RequestTimeout, Transport};
+use super::fields::{Fields, PacketError};
+use super::message::{Reply, Request, Service};
+use super::path::Path;
+
+/// Who has opened a connection, and which: the same in every message about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Owner {
+    /// Chosen by the originator, another for each connection.
+    pub connection_serial: u16,
+    /// The originator's maker.
+    pub vendor: u16,
+    /// The originator's serial number.
+    pub serial_number: u32,
+}
+
+/// A connection is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForwardOpen {
+    /// How long the request may take.
+    pub timeout: RequestTimeout,
+    /// 0: the target chooses.
+    pub to_target_id: u32,
+    /// What packets to the originator are to carry.
+    pub to_originator_id: u32,
+    /// Who asks, and which connection it is.
+    pub owner: Owner,
+    /// When it has ended without data.
+    pub connection_timeout: ConnectionTimeout,
+    /// Microseconds between two packets to the target.
+    pub to_target_interval_us: u32,
+    /// What goes to the target.
+    pub to_target: NetworkParameters,
+    /// Microseconds between two packets to the originator.
+    pub to_originator_interval_us: u32,
+    /// What goes to the originator.
+    pub to_originator: NetworkParameters,
+    /// When data are sent.
+    pub transport: Transport,
+    /// The assemblies.
+    pub path: Path,
+}
+
+/// A connection has begun.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForwardOpened {
+    /// What packets to the target have to carry.
+    pub to_target_id: u32,
+    /// What packets to the originator carry.
+    pub to_originator_id: u32,
+    /// Whose connection it is.
+    pub owner: Owner,
+    /// Microseconds between two packets to the target, as they are expected.
+    pub to_target_interval_us: u32,
+    /// Microseconds between two packets to the originator, as they will come.
+    pub to_originator_interval_us: u32,
+    /// What the application adds.
+    pub application: Vec<u16>,
+}
+
+/// A connection has not begun, or not ended; the reply's status says why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ForwardRefused {
+    /// Whose connection it would be.
+    pub owner: Owner,
+    /// Words of the path that were left when it went wrong.
+    pub remaining_path_words: u8,
+}
+
+/// A connection is to end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForwardClose {
+    /// How long the request may take.
+    pub timeout: RequestTimeout,
+    /// Whose connection it is.
+    pub owner: Owner,
+    /// The assemblies.
+    pub path: Path,
+}
+
+/// A connection has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForwardClosed {
+    /// Whose connection it was.
+    pub owner: Owner,
+    /// What the application adds.
+    pub application: Vec<u16>,
+}
+
+impl Owner {
+    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+        Ok(Owner { connection_serial: fields.u16()?, vendor: fields.u16()?, serial_number: fields.u32()? })
+    }
+
+    fn push_to(self, bytes: &mut Vec<u8>) {
+        bytes.extend([self.connection_serial, self.vendor].into_iter().flat_map(u16::to_le_bytes));
+        bytes.extend(self.serial_number.to_le_bytes());
+    }
+}
+
+impl RequestTimeout {
+    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+        Ok(RequestTimeout { priority_and_tick: fields.u8()?, ticks: fields.u8()? })
+    }
+}
+
+impl ForwardOpen {
+    /// Without data for so long, the target ends the connection.
+    pub fn to_target_timeout(&self) -> Duration {
+        self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
+    }
+
+    /// Reads what follows the path of the request.
+    ///
+    /// # Errors
+    /// [`PacketError`] where it is cut off, too long, or its time-out is a number that there is not.
+    pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("ForwardOpen", data);
+        let timeout = RequestTimeout::take(&mut fields)?;
+        let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
+        let owner = Owner::take(&mut fields)?;
+        let multiplier = fields.u8()?;
+        let connection_timeout =
+            ConnectionTimeout::new(multiplier).ok_or(fields.value("connection time-out multiplier", multiplier))?;
+        // Reserved.
+        fields.array::<3>()?;
+        let to_target_interval_us = fields.u32()?;
+        let to_target = NetworkParameters::of_word(fields.u16()?);
+        let to_originator_interval_us = fields.u32()?;
+        let to_originator = NetworkParameters::of_word(fields.u16()?);
+        let transport = Transport::of_byte(fields.u8()?);
+        let path = Path::take(&mut fields)?;
+        fields.end(ForwardOpen {
+            timeout,
+            to_target_id,
+            to_originator_id,
+            owner,
+            connection_timeout,
+            to_target_interval_us,
+            to_target,
+            to_originator_interval_us,
+            to_originator,
+            transport,
+            path,
+        })
+    }
+
+    /// The request.
+    pub fn request(&self) -> Request {
+        let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
+        data.extend([self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes));
+        self.owner.push_to(&mut data);
+        data.extend([self.connection_timeout.number(), 0, 0, 0]);
+        data.extend(self.to_target_interval_us.to_le_bytes());
+        data.extend(self.to_target.word().to_le_bytes());
+        data.extend(self.to_originator_interval_us.to_le_bytes());
+        data.extend(self.to_originator.word().to_le_bytes());
+        data.push(self.transport.byte());
+        self.path.push_to(&mut data);
+        Request::of_connections(Service::FORWARD_OPEN, data)
+    }
+}
+
+impl ForwardOpened {
+    /// Reads the data of the reply.
+    ///
+    /// # Errors
+    /// [`PacketError`] where they are cut off or too long.
+    pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the reply to ForwardOpen", data);
+        let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
+        let owner = Owner::take(&mut fields)?;
+        let (to_target_interval_us, to_originator_interval_us) = (fields.u32()?, fields.u32()?);
+        let application = application(&mut fields)?;
+        fields.end(ForwardOpened {
+            to_target_id,
+            to_originator_id,
+            owner,
+            to_target_interval_us,
+            to_originator_interval_us,
+            application,
+        })
+    }
+
+    /// The data of the reply.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut data: Vec<u8> =
+            [self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes).collect();
+        self.owner.push_to(&mut data);
+        data.extend(
+            [self.to_target_interval_us, self.to_originator_interval_us].into_iter().flat_map(u32::to_le_bytes),
+        );
+        push_application(&self.application, &mut data);
+        data
+    }
+}
+
+impl ForwardRefused {
+    /// Reads the data of a reply that says no.
+    ///
+    /// # Errors
+    /// [`PacketError`] where they are cut off or too long; many devices send none.
+    pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the refusal of a connection", data);
+        let owner = Owner::take(&mut fields)?;
+        let remaining_path_words = fields.u8()?;
+        // Reserved.
+        fields.u8()?;
+        fields.end(ForwardRefused { owner, remaining_path_words })
+    }
+
+    /// The data of the reply.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut data = Vec::new();
+        self.owner.push_to(&mut data);
+        data.extend([self.remaining_path_words, 0]);
+        data
+    }
+
+    /// The reply to `request` with an extended status.
+    pub fn reply(&self, request: &Request, extended: u16) -> Reply {
+        Reply {
+            extended: vec![extended],
+            data: self.emit(),
+            ..request.refused(super::status::GeneralStatus::CONNECTION)
+        }
+    }
+}
+
+impl ForwardClose {
+    /// Reads what follows the path of the request.
+    ///
+    /// # Errors
+    /// [`PacketError`] where it is cut off or too long.
+    pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("ForwardClose", data);
+        let timeout = RequestTimeout::take(&mut fields)?;
+        let owner = Owner::take(&mut fields)?;
+        let words = fields.u8()?;
+        // Reserved.
+        fields.u8()?;
+        let path = Path::parse(fields.bytes(usize::from(words) * 2)?)?;
+        fields.end(ForwardClose { timeout, owner, path })
+    }
+
+    /// The request.
+    pub fn request(&self) -> Request {
+        let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
+        self.owner.push_to(&mut data);
+        let mut path = Vec::new();
+        self.path.push_to(&mut path);
+        // Between the length of the path and the path, unlike everywhere else.
+        path.insert(1, 0);
+        data.extend(path);
+        Request::of_connections(Service::FORWARD_CLOSE, data)
+    }
+}
+
+impl ForwardClosed {
+    /// Reads the data of the reply.
+    ///
+    /// # Errors
+    /// [`PacketError`] where they are cut off or too long.
+    pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the reply to ForwardClose", data);
+        let owner = Owner::take(&mut fields)?;
+        let application = application(&mut fields)?;
+        fields.end(ForwardClosed { owner, application })
+    }
+
+    /// The data of the reply.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut data = Vec::new();
+        self.owner.push_to(&mut data);
+        push_application(&self.application, &mut data);
+        data
+    }
+}
+
+/// The length in words, a reserved byte, words.
+fn application(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
+    let words = fields.u8()?;
+    fields.u8()?;
+    (0..words).map(|_| fields.u16()).collect()
+}
+
+fn push_application(words: &[u16], data: &mut Vec<u8>) {
+    let words = words.get(..usize::from(u8::MAX)).unwrap_or(words);
+    // At most 255.
+    data.extend([words.len() as u8, 0]);
+    data.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+}

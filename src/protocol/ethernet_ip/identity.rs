@@ -1,0 +1,122 @@
+//! Who a device is: the identity object (class 1) and the item with which ListIdentity is answered (`P ODVA`).
+
+use super::fields::{Fields, PacketError, push_short_text, text};
+use super::items::SocketAddress;
+
+/// What the identity object says, attributes 1 to 7.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// The maker, of ODVA's list. Halstrup-Walcher is 1010.
+    pub vendor: u16,
+    /// What kind of device.
+    pub device_type: u16,
+    /// Which product, of the maker's list.
+    pub product_code: u16,
+    /// Of the device.
+    pub revision: Revision,
+    /// The device's state bit by bit.
+    pub status: u16,
+    /// Different for every device of a maker.
+    pub serial_number: u32,
+    /// Up to 32 ASCII characters.
+    pub product_name: String,
+}
+
+/// Major and minor revision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Revision {
+    /// Major.
+    pub major: u8,
+    /// Minor.
+    pub minor: u8,
+}
+
+/// Item 000Ch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IdentityItem {
+    /// The version of the encapsulation protocol: 1.
+    pub version: u16,
+    /// Where explicit messages are taken.
+    pub socket: SocketAddress,
+    /// Who it is.
+    pub identity: Identity,
+    /// Attribute 8: 3 is operational, 255 unknown.
+    pub state: u8,
+}
+
+impl Identity {
+    /// The class of the object.
+    pub const CLASS: u16 = 0x01;
+
+    /// Reads what Get_Attributes_All has of it: attributes 1 to 7, and what a device puts behind them.
+    ///
+    /// # Errors
+    /// [`PacketError`] where they are cut off.
+    pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
+        Identity::take(&mut Fields::new("the identity object", bytes))
+    }
+
+    /// Attributes 1 to 7, as Get_Attributes_All has them.
+    pub fn emit_all(&self) -> Vec<u8> {
+        (1..=7).filter_map(|attribute| self.attribute(attribute)).flatten().collect()
+    }
+
+    /// An attribute as Get_Attribute_Single has it; `None` for one that there is not.
+    pub fn attribute(&self, number: u16) -> Option<Vec<u8>> {
+        let bytes = match number {
+            1 => self.vendor.to_le_bytes().to_vec(),
+            2 => self.device_type.to_le_bytes().to_vec(),
+            3 => self.product_code.to_le_bytes().to_vec(),
+            4 => vec![self.revision.major, self.revision.minor],
+            5 => self.status.to_le_bytes().to_vec(),
+            6 => self.serial_number.to_le_bytes().to_vec(),
+            7 => {
+                let mut name = Vec::new();
+                push_short_text(&mut name, &self.product_name);
+                name
+            }
+            _ => return None,
+        };
+        Some(bytes)
+    }
+
+    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+        Ok(Identity {
+            vendor: fields.u16()?,
+            device_type: fields.u16()?,
+            product_code: fields.u16()?,
+            revision: Revision { major: fields.u8()?, minor: fields.u8()? },
+            status: fields.u16()?,
+            serial_number: fields.u32()?,
+            product_name: {
+                let length = fields.u8()?;
+                text(fields.bytes(length.into())?)
+            },
+        })
+    }
+}
+
+impl IdentityItem {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the identity item", bytes);
+        let version = fields.u16()?;
+        let socket = SocketAddress::parse(fields.bytes(SocketAddress::LENGTH)?)?;
+        let identity = Identity::take(&mut fields)?;
+        let state = fields.u8()?;
+        fields.end(IdentityItem { version, socket, identity, state })
+    }
+
+    pub(super) fn emit(&self) -> Vec<u8> {
+        let mut bytes = self.version.to_le_bytes().to_vec();
+        bytes.extend(self.socket.emit());
+        bytes.extend(self.identity.emit_all());
+        bytes.push(self.state);
+        bytes
+    }
+}
+
+impl std::fmt::Display for Revision {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}.{:03}", self.major, self.minor)
+    }
+}

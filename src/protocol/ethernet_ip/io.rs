@@ -1,0 +1,96 @@
+//! Packets of a cyclic connection of class 1, over UDP (reference 7).
+
+use super::fields::{Fields, PacketError};
+use super::items::{Item, Items};
+
+/// A packet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IoPacket {
+    /// Of the connection, as its receiver has chosen it.
+    pub connection: u32,
+    /// Higher by one with every packet.
+    pub sequence: u32,
+    /// Higher by one with new data (`U`: with every packet).
+    pub count: u16,
+    /// Before the data, in packets that have one.
+    pub header: Option<RunIdle>,
+    /// Process data.
+    pub data: Vec<u8>,
+}
+
+/// What stands before the data: the device's description (EDS) says it (`U`: a header to the target, none back).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RealTimeFormat {
+    /// 32 bits.
+    Header,
+    /// Nothing.
+    Modeless,
+}
+
+/// 32 bits before the data; those that are not known are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RunIdle(u32);
+
+impl RunIdle {
+    /// Bit 0 is set: the data count.
+    pub const RUN: RunIdle = RunIdle(1);
+    /// Bit 0 is clear: the program at the other end does not run, and its data do not count.
+    pub const IDLE: RunIdle = RunIdle(0);
+
+    /// As it came.
+    pub const fn of_word(word: u32) -> Self {
+        RunIdle(word)
+    }
+
+    /// As it is sent.
+    pub const fn word(self) -> u32 {
+        self.0
+    }
+
+    /// The data count.
+    pub const fn runs(self) -> bool {
+        self.0 & 1 == 1
+    }
+}
+
+impl IoPacket {
+    /// Bytes that a connection's size counts beside the data: the sequence count, and the header.
+    pub const fn overhead(format: RealTimeFormat) -> u16 {
+        match format {
+            RealTimeFormat::Header => 6,
+            RealTimeFormat::Modeless => 2,
+        }
+    }
+
+    /// Reads a packet. Addresses of sockets may stand beside.
+    ///
+    /// # Errors
+    /// [`PacketError`] where it is not a sequenced address and connected data, or something is cut off.
+    pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
+        const WHAT: &str = "the cyclic packet";
+        let items = Items::parse(bytes)?;
+        let (connection, sequence, data) = match items.0.as_slice() {
+            [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
+                (*connection, *sequence, data)
+            }
+            // No more than a packet of UDP holds.
+            other => return Err(PacketError::Value { what: WHAT, field: "list of items", got: other.len() as u32 }),
+        };
+        let mut fields = Fields::new(WHAT, data);
+        let count = fields.u16()?;
+        let header = match format {
+            RealTimeFormat::Header => Some(RunIdle(fields.u32()?)),
+            RealTimeFormat::Modeless => None,
+        };
+        Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
+    }
+
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut data = self.count.to_le_bytes().to_vec();
+        data.extend(self.header.iter().flat_map(|header| header.0.to_le_bytes()));
+        data.extend(&self.data);
+        let address = Item::SequencedAddress { connection: self.connection, sequence: self.sequence };
+        Items(vec![address, Item::ConnectedData(data)]).emit()
+    }
+}

@@ -1,0 +1,196 @@
+//! The common packet format: a list of items, each with its type and length (reference 7).
+
+use core::net::Ipv4Addr;
+
+use super::fields::{Fields, PacketError};
+use super::identity::IdentityItem;
+
+/// A list of items. An address comes before the data that are for it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Items(pub Vec<Item>);
+
+/// An item. Types that are not known are kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// 0000h: the address of an unconnected message.
+    Null,
+    /// 000Ch: who is there.
+    Identity(IdentityItem),
+    /// 00A1h: the address of a message of an explicit connection.
+    ConnectedAddress(u32),
+    /// 00B1h: data of a connection.
+    ConnectedData(Vec<u8>),
+    /// 00B2h: a CIP message outside of any connection.
+    UnconnectedData(Vec<u8>),
+    /// 8000h: where what goes from the originator to the target is to be sent.
+    SocketToTarget(SocketAddress),
+    /// 8001h: where what goes from the target to the originator is to be sent.
+    SocketToOriginator(SocketAddress),
+    /// 8002h: the address of cyclic data.
+    SequencedAddress {
+        /// Of the connection, as its receiver has chosen it.
+        connection: u32,
+        /// Higher by one with every packet, also with one whose data are old.
+        sequence: u32,
+    },
+    /// Another type.
+    Unknown {
+        /// Its number.
+        kind: u16,
+        /// As it came.
+        data: Vec<u8>,
+    },
+}
+
+/// A socket address, in the order of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SocketAddress {
+    /// 2: IP, version 4.
+    pub family: u16,
+    /// Its port.
+    pub port: u16,
+    /// Its address; 0.0.0.0 for the one the frame comes from.
+    pub address: Ipv4Addr,
+}
+
+const NULL: u16 = 0x0000;
+const IDENTITY: u16 = 0x000C;
+const CONNECTED_ADDRESS: u16 = 0x00A1;
+const CONNECTED_DATA: u16 = 0x00B1;
+const UNCONNECTED_DATA: u16 = 0x00B2;
+const SOCKET_TO_TARGET: u16 = 0x8000;
+const SOCKET_TO_ORIGINATOR: u16 = 0x8001;
+const SEQUENCED_ADDRESS: u16 = 0x8002;
+
+impl Items {
+    /// Reads a list that fills the bytes.
+    ///
+    /// # Errors
+    /// [`PacketError`] where an item is cut off, is not of its type's length, or bytes are left.
+    pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the list of items", bytes);
+        let count = fields.u16()?;
+        let mut items = Vec::new();
+        for _ in 0..count {
+            let (kind, length) = (fields.u16()?, fields.u16()?);
+            items.push(Item::parse(kind, fields.bytes(length.into())?)?);
+        }
+        fields.end(Items(items))
+    }
+
+    /// Its bytes. Of an item what is beyond 65535 bytes is cut.
+    pub fn emit(&self) -> Vec<u8> {
+        let most = usize::from(u16::MAX);
+        // A frame holds fewer than that many.
+        let mut bytes = (self.0.len().min(most) as u16).to_le_bytes().to_vec();
+        for item in self.0.iter().take(most) {
+            let (kind, data) = item.emit();
+            let data = data.get(..most).unwrap_or(&data);
+            bytes.extend(kind.to_le_bytes());
+            bytes.extend((data.len() as u16).to_le_bytes());
+            bytes.extend(data);
+        }
+        bytes
+    }
+
+    /// The CIP message in it.
+    pub fn unconnected_data(&self) -> Option<&[u8]> {
+        self.0.iter().find_map(|item| match item {
+            Item::UnconnectedData(data) => Some(data.as_slice()),
+            _ => None,
+        })
+    }
+
+    /// Where to send what goes to the target.
+    pub fn socket_to_target(&self) -> Option<SocketAddress> {
+        self.0.iter().find_map(|item| match item {
+            Item::SocketToTarget(address) => Some(*address),
+            _ => None,
+        })
+    }
+
+    /// Where to send what goes to the originator.
+    pub fn socket_to_originator(&self) -> Option<SocketAddress> {
+        self.0.iter().find_map(|item| match item {
+            Item::SocketToOriginator(address) => Some(*address),
+            _ => None,
+        })
+    }
+
+    /// Who is there.
+    pub fn identity(&self) -> Option<&IdentityItem> {
+        self.0.iter().find_map(|item| match item {
+            Item::Identity(identity) => Some(identity),
+            _ => None,
+        })
+    }
+}
+
+impl Item {
+    fn parse(kind: u16, data: &[u8]) -> Result<Self, PacketError> {
+        let item = match kind {
+            NULL => Fields::new("the null address", data).end(Item::Null)?,
+            IDENTITY => Item::Identity(IdentityItem::parse(data)?),
+            CONNECTED_ADDRESS => {
+                let mut fields = Fields::new("the connected address", data);
+                let connection = fields.u32()?;
+                fields.end(Item::ConnectedAddress(connection))?
+            }
+            CONNECTED_DATA => Item::ConnectedData(data.to_vec()),
+            UNCONNECTED_DATA => Item::UnconnectedData(data.to_vec()),
+            SOCKET_TO_TARGET => Item::SocketToTarget(SocketAddress::parse(data)?),
+            SOCKET_TO_ORIGINATOR => Item::SocketToOriginator(SocketAddress::parse(data)?),
+            SEQUENCED_ADDRESS => {
+                let mut fields = Fields::new("the sequenced address", data);
+                let item = Item::SequencedAddress { connection: fields.u32()?, sequence: fields.u32()? };
+                fields.end(item)?
+            }
+            _ => Item::Unknown { kind, data: data.to_vec() },
+        };
+        Ok(item)
+    }
+
+    fn emit(&self) -> (u16, Vec<u8>) {
+        match self {
+            Item::Null => (NULL, Vec::new()),
+            Item::Identity(identity) => (IDENTITY, identity.emit()),
+            Item::ConnectedAddress(connection) => (CONNECTED_ADDRESS, connection.to_le_bytes().to_vec()),
+            Item::ConnectedData(data) => (CONNECTED_DATA, data.clone()),
+            Item::UnconnectedData(data) => (UNCONNECTED_DATA, data.clone()),
+            Item::SocketToTarget(address) => (SOCKET_TO_TARGET, address.emit().to_vec()),
+            Item::SocketToOriginator(address) => (SOCKET_TO_ORIGINATOR, address.emit().to_vec()),
+            Item::SequencedAddress { connection, sequence } => {
+                (SEQUENCED_ADDRESS, [connection.to_le_bytes(), sequence.to_le_bytes()].concat())
+            }
+            Item::Unknown { kind, data } => (*kind, data.clone()),
+        }
+    }
+}
+
+impl SocketAddress {
+    /// The family of IP, version 4.
+    pub const INTERNET: u16 = 2;
+    pub(super) const LENGTH: usize = 16;
+
+    /// An address of IP, version 4.
+    pub const fn new(address: Ipv4Addr, port: u16) -> Self {
+        SocketAddress { family: SocketAddress::INTERNET, port, address }
+    }
+
+    /// Reads 16 bytes; the last eight say nothing.
+    pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the socket address", bytes);
+        let family = u16::from_be_bytes(fields.array()?);
+        let port = u16::from_be_bytes(fields.array()?);
+        let address = Ipv4Addr::from(fields.array::<4>()?);
+        fields.array::<8>()?;
+        fields.end(SocketAddress { family, port, address })
+    }
+
+    pub(super) fn emit(&self) -> [u8; SocketAddress::LENGTH] {
+        let [f0, f1] = self.family.to_be_bytes();
+        let [p0, p1] = self.port.to_be_bytes();
+        let [a, b, c, d] = self.address.octets();
+        [f0, f1, p0, p1, a, b, c, d, 0, 0, 0, 0, 0, 0, 0, 0]
+    }
+}

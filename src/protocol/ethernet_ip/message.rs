@@ -1,0 +1,174 @@
+//! CIP requests and their replies (reference 7).
+
+use super::fields::{Fields, PacketError};
+use super::path::{LogicalKind, Path};
+use super::status::GeneralStatus;
+
+/// What is asked of an object. Services that are not known are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Service(u8);
+
+/// A request.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// What is asked.
+    pub service: Service,
+    /// Of whom.
+    pub path: Path,
+    /// What the service takes.
+    pub data: Vec<u8>,
+}
+
+/// A reply.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    /// What was asked.
+    pub service: Service,
+    /// Whether it was done.
+    pub status: GeneralStatus,
+    /// Words that say more, as a service has them; up to 255.
+    pub extended: Vec<u16>,
+    /// What was asked for.
+    pub data: Vec<u8>,
+}
+
+/// The services that objects have in common.
+const NAMES: [(Service, &str); 5] = [
+    (Service::GET_ALL, "Get_Attributes_All"),
+    (Service::SET_ALL, "Set_Attributes_All"),
+    (Service::RESET, "Reset"),
+    (Service::GET, "Get_Attribute_Single"),
+    (Service::SET, "Set_Attribute_Single"),
+];
+/// Those of the connection manager.
+const CONNECTION_NAMES: [(Service, &str); 4] = [
+    (Service::FORWARD_OPEN, "ForwardOpen"),
+    (Service::FORWARD_CLOSE, "ForwardClose"),
+    (Service(0x52), "Unconnected_Send"),
+    (Service(0x5B), "Large_ForwardOpen"),
+];
+
+impl Service {
+    /// All attributes are read.
+    pub const GET_ALL: Service = Service(0x01);
+    /// All attributes are set.
+    pub const SET_ALL: Service = Service(0x02);
+    /// The device starts anew.
+    pub const RESET: Service = Service(0x05);
+    /// An attribute is read.
+    pub const GET: Service = Service(0x0E);
+    /// An attribute is set.
+    pub const SET: Service = Service(0x10);
+    /// Of the connection manager: a connection ends.
+    pub const FORWARD_CLOSE: Service = Service(0x4E);
+    /// Of the connection manager: a connection begins.
+    pub const FORWARD_OPEN: Service = Service(0x54);
+
+    const REPLY_BIT: u8 = 0x80;
+
+    /// `None` from 80h on, where replies begin.
+    pub const fn new(code: u8) -> Option<Self> {
+        if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
+    }
+
+    /// Its number in a request.
+    pub const fn code(self) -> u8 {
+        self.0
+    }
+
+    /// As ODVA calls it. From 4Bh on a number means something else for every class: only of the connection manager's
+    /// numbers is something known.
+    pub fn name(self, class: Option<u16>) -> Option<&'static str> {
+        let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
+        let names = NAMES.iter().chain(connections.into_iter().flatten());
+        names.into_iter().find(|(service, _)| *service == self).map(|(_, name)| *name)
+    }
+}
+
+impl Request {
+    /// The class of the connection manager.
+    pub const CONNECTION_MANAGER: u16 = 0x06;
+
+    /// An attribute is read.
+    pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
+        Request { service: Service::GET, path: Path::attribute(class, instance, attribute), data: Vec::new() }
+    }
+
+    /// An attribute is set.
+    pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
+        Request { service: Service::SET, path: Path::attribute(class, instance, attribute), data }
+    }
+
+    /// All attributes of an object are read.
+    pub fn get_all(class: u16, instance: u16) -> Self {
+        Request { service: Service::GET_ALL, path: Path::instance(class, instance), data: Vec::new() }
+    }
+
+    /// Something of the connection manager.
+    pub(super) fn of_connections(service: Service, data: Vec<u8>) -> Self {
+        Request { service, path: Path::instance(Request::CONNECTION_MANAGER, 1), data }
+    }
+
+    /// Whose service it is.
+    pub fn class(&self) -> Option<u16> {
+        self.path.number(LogicalKind::Class)
+    }
+
+    /// Reads a request.
+    ///
+    /// # Errors
+    /// [`PacketError`] where it is a reply, or its path is cut off.
+    pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the CIP request", bytes);
+        let code = fields.u8()?;
+        let service = Service::new(code).ok_or(fields.value("service", code))?;
+        let path = Path::take(&mut fields)?;
+        Ok(Request { service, path, data: fields.tail().to_vec() })
+    }
+
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut bytes = vec![self.service.0];
+        self.path.push_to(&mut bytes);
+        bytes.extend(&self.data);
+        bytes
+    }
+
+    /// The reply that it was done.
+    pub fn done(&self, data: Vec<u8>) -> Reply {
+        Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
+    }
+
+    /// The reply that it was not.
+    pub fn refused(&self, status: GeneralStatus) -> Reply {
+        Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
+    }
+}
+
+impl Reply {
+    /// Reads a reply.
+    ///
+    /// # Errors
+    /// [`PacketError`] where it is a request, or is cut off.
+    pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new("the CIP reply", bytes);
+        let code = fields.u8()?;
+        let service = code.checked_sub(Service::REPLY_BIT).ok_or(fields.value("service", code))?;
+        // Reserved.
+        fields.u8()?;
+        let status = GeneralStatus::new(fields.u8()?);
+        let words = fields.u8()?;
+        let extended = (0..words).map(|_| fields.u16()).collect::<Result<_, _>>()?;
+        Ok(Reply { service: Service(service), status, extended, data: fields.tail().to_vec() })
+    }
+
+    /// Its bytes. Nothing of extended status beyond 255 words.
+    pub fn emit(&self) -> Vec<u8> {
+        let extended = self.extended.get(..usize::from(u8::MAX)).unwrap_or(&self.extended);
+        // At most 255.
+        let mut bytes = vec![self.service.0 | Service::REPLY_BIT, 0, self.status.code(), extended.len() as u8];
+        bytes.extend(extended.iter().flat_map(|word| word.to_le_bytes()));
+        bytes.extend(&self.data);
+        bytes
+    }
+}

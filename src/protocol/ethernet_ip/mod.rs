@@ -1,0 +1,50 @@
+//! EtherNet/IP: encapsulation, common packet format and CIP messages, as far as a plain adapter with one cyclic connection
+//! needs them. Both sides; what is unknown is kept.
+//!
+//! Source: the project's reference of HIPERDRIVE, section 7, and ODVA's public parts of the CIP networks library as it quotes
+//! them (`P ODVA`). Integers have their low byte first, except in socket addresses.
+//!
+//! ```text
+//! TCP  encapsulation header (24) │ interface, time-out │ items: null, unconnected data ( CIP request or reply )
+//! UDP  items: sequenced address, connected data ( count │ run/idle header where there is one │ process data )
+//! ```
+
+mod arrivals;
+mod connection;
+mod encapsulation;
+mod fields;
+mod forward;
+mod identity;
+mod io;
+mod items;
+mod message;
+mod path;
+mod receiver;
+mod status;
+mod tcp_ip;
+#[cfg(test)]
+mod vectors;
+
+pub use arrivals::{Arrival, Arrivals};
+pub use connection::{
+    ConnectionTimeout, NetworkParameters, NetworkPriority, NetworkType, RequestTimeout, Transport, Trigger,
+};
+pub use encapsulation::{Body, Command, Frame};
+pub use fields::PacketError;
+pub use forward::{ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, Owner};
+pub use identity::{Identity, IdentityItem, Revision};
+pub use io::{IoPacket, RealTimeFormat, RunIdle};
+pub use items::{Item, Items, SocketAddress};
+pub use message::{Reply, Request, Service};
+pub use path::{ElectronicKey, LogicalKind, Path, Segment, Width};
+pub use receiver::Receiver;
+pub use status::{
+    ENCAPSULATION_STATUS, EXTENDED_STATUS, EncapsulationStatus, ExtendedStatusRow, GENERAL_STATUS, GeneralStatus,
+    StatusRow, extended_row,
+};
+pub use tcp_ip::{AddressSource, ConfigurationControl, InterfaceConfiguration};
+
+/// TCP: explicit messages; UDP: ListIdentity.
+pub const EXPLICIT_PORT: u16 = 44818;
+/// UDP: cyclic data, where nothing else was said when the connection was opened.
+pub const IMPLICIT_PORT: u16 = 2222;

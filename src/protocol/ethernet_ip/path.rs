@@ -1,0 +1,213 @@
+//! Where a CIP request goes: segments of class, instance, attribute and connection point, of 8 or 16 bits (reference 7).
+
+use super::fields::{Fields, PacketError};
+
+/// A path. Its segments fill whole words.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Path(pub Vec<Segment>);
+
+/// A part of a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Segment {
+    /// A number.
+    Logical {
+        /// Of what.
+        kind: LogicalKind,
+        /// Which one.
+        number: u16,
+        /// How it is sent. A number above 255 is always sent wide.
+        width: Width,
+    },
+    /// 34h: what device it has to be.
+    Key(ElectronicKey),
+    /// 80h: words for whom the path leads to, up to 255.
+    Data(Vec<u16>),
+    /// Another segment, with all that follows it: of an unknown one nobody knows where it ends.
+    Unknown(Vec<u8>),
+}
+
+/// What the number of a logical segment is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LogicalKind {
+    /// 20h.
+    Class,
+    /// 24h.
+    Instance,
+    /// 2Ch.
+    ConnectionPoint,
+    /// 30h.
+    Attribute,
+}
+
+/// How a number is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Width {
+    /// In the byte behind the segment's type.
+    Byte,
+    /// In a word behind a byte that is 0.
+    Word,
+}
+
+/// What a device is compared with before a connection is opened; 0 fits all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElectronicKey {
+    /// As in the identity object.
+    pub vendor: u16,
+    /// As in the identity object.
+    pub device_type: u16,
+    /// As in the identity object.
+    pub product_code: u16,
+    /// Major revision; bit 7: a compatible one will do.
+    pub major: u8,
+    /// Minor revision.
+    pub minor: u8,
+}
+
+const KINDS: [(u8, LogicalKind); 4] = [
+    (0x20, LogicalKind::Class),
+    (0x24, LogicalKind::Instance),
+    (0x2C, LogicalKind::ConnectionPoint),
+    (0x30, LogicalKind::Attribute),
+];
+/// The only format of an electronic key, and how it begins: type, format.
+const KEY: [u8; 2] = [0x34, 0x04];
+const DATA: u8 = 0x80;
+const WHAT: &str = "the path";
+
+impl Path {
+    /// An object.
+    pub fn instance(class: u16, instance: u16) -> Self {
+        Path(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
+    }
+
+    /// An attribute of an object.
+    pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
+        let Path(mut segments) = Path::instance(class, instance);
+        segments.push(Segment::new(LogicalKind::Attribute, attribute));
+        Path(segments)
+    }
+
+    /// Assemblies of a cyclic connection: configuration, from originator to target, and back.
+    pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
+        const ASSEMBLY: u16 = 0x04;
+        let Path(mut segments) = Path::instance(ASSEMBLY, configuration);
+        segments.extend([to_target, to_originator].map(|point| Segment::new(LogicalKind::ConnectionPoint, point)));
+        Path(segments)
+    }
+
+    /// The first number of a kind.
+    pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
+        self.numbers(wanted).next()
+    }
+
+    /// All numbers of a kind.
+    pub fn numbers(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
+        self.0.iter().filter_map(move |segment| match segment {
+            Segment::Logical { kind, number, .. } if *kind == wanted => Some(*number),
+            _ => None,
+        })
+    }
+
+    /// Reads a path that fills the bytes.
+    ///
+    /// # Errors
+    /// [`PacketError`] where a segment is cut off.
+    pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
+        let mut fields = Fields::new(WHAT, bytes);
+        let mut segments = Vec::new();
+        while !fields.is_empty() {
+            segments.push(Segment::take(&mut fields)?);
+        }
+        Ok(Path(segments))
+    }
+
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        self.0.iter().flat_map(Segment::emit).collect()
+    }
+
+    /// Reads the length in words, then the path.
+    pub(super) fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+        let words = fields.u8()?;
+        Path::parse(fields.bytes(usize::from(words) * 2)?)
+    }
+
+    /// Appends the length in words, then the path. Nothing of a path beyond 255 words.
+    pub(super) fn push_to(&self, bytes: &mut Vec<u8>) {
+        let mut path = self.emit();
+        path.truncate(usize::from(u8::MAX) * 2);
+        // At most 255.
+        bytes.push(path.len().div_ceil(2) as u8);
+        let odd = path.len() % 2 == 1;
+        bytes.extend(path);
+        bytes.extend(odd.then_some(0));
+    }
+}
+
+impl Segment {
+    /// A number, as narrow as it can be sent.
+    pub const fn new(kind: LogicalKind, number: u16) -> Self {
+        let width = if number > 0xFF { Width::Word } else { Width::Byte };
+        Segment::Logical { kind, number, width }
+    }
+
+    fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
+        let whole = fields.clone();
+        let first = fields.u8()?;
+        let wide = first & 1 == 1;
+        let kind = KINDS.iter().find(|(code, _)| *code == first & !1).map(|(_, kind)| *kind);
+        let segment = match (kind, first) {
+            (Some(kind), _) if wide => match fields.u8()? {
+                0 => Segment::Logical { kind, number: fields.u16()?, width: Width::Word },
+                got => return Err(fields.value("the byte before a wide number", got)),
+            },
+            (Some(kind), _) => Segment::Logical { kind, number: fields.u8()?.into(), width: Width::Byte },
+            (None, first) if [first, fields.clone().u8().unwrap_or(0)] == KEY => {
+                fields.u8()?;
+                Segment::Key(ElectronicKey {
+                    vendor: fields.u16()?,
+                    device_type: fields.u16()?,
+                    product_code: fields.u16()?,
+                    major: fields.u8()?,
+                    minor: fields.u8()?,
+                })
+            }
+            (None, DATA) => {
+                let words = fields.u8()?;
+                Segment::Data((0..words).map(|_| fields.u16()).collect::<Result<_, _>>()?)
+            }
+            (None, _) => {
+                *fields = whole;
+                Segment::Unknown(fields.tail().to_vec())
+            }
+        };
+        Ok(segment)
+    }
+
+    fn emit(&self) -> Vec<u8> {
+        match self {
+            Segment::Logical { kind, number, width } => {
+                let code = KINDS.iter().find(|(_, known)| known == kind).map_or(0, |(code, _)| *code);
+                let [low, high] = number.to_le_bytes();
+                match (width, high) {
+                    (Width::Byte, 0) => vec![code, low],
+                    _ => vec![code | 1, 0, low, high],
+                }
+            }
+            Segment::Key(key) => {
+                let mut bytes = KEY.to_vec();
+                bytes.extend([key.vendor, key.device_type, key.product_code].into_iter().flat_map(u16::to_le_bytes));
+                bytes.extend([key.major, key.minor]);
+                bytes
+            }
+            Segment::Data(words) => {
+                let words = words.get(..usize::from(u8::MAX)).unwrap_or(words);
+                // At most 255.
+                let mut bytes = vec![DATA, words.len() as u8];
+                bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+                bytes
+            }
+            Segment::Unknown(bytes) => bytes.clone(),
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Frames out of the bytes of a TCP connection, in whatever portions they come.
+
+use super::encapsulation::Frame;
+use super::fields::PacketError;
+
+/// What has come and is no whole frame yet.
+#[derive(Clone, Debug, Default)]
+pub struct Receiver {
+    bytes: Vec<u8>,
+    broken: Option<PacketError>,
+}
+
+impl Receiver {
+    /// Bytes that have come.
+    pub fn push(&mut self, bytes: &[u8]) {
+        if self.broken.is_none() {
+            self.bytes.extend(bytes);
+        }
+    }
+
+    /// The next whole frame.
+    ///
+    /// # Errors
+    /// [`PacketError`], from then on always: where a header is wrong nobody can tell where the next one begins, and the
+    /// connection has to be closed.
+    pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
+        if let Some(why) = self.broken {
+            return Err(why);
+        }
+        self.take().inspect_err(|why| {
+            self.broken = Some(*why);
+            self.bytes = Vec::new();
+        })
+    }
+
+    /// Bytes of a frame that is not whole. Where a connection ends with some, it was cut.
+    pub const fn pending(&self) -> usize {
+        self.bytes.len()
+    }
+
+    fn take(&mut self) -> Result<Option<Frame>, PacketError> {
+        let Some(whole) = Frame::length(&self.bytes)?.and_then(|length| self.bytes.get(..length)) else {
+            return Ok(None);
+        };
+        let (frame, length) = (Frame::parse(whole)?, whole.len());
+        self.bytes.drain(..length);
+        Ok(Some(frame))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Command, EncapsulationStatus};
+    use super::*;
+    use proptest::prelude::*;
+
+    fn frame(context: u8, length: usize) -> Frame {
+        Frame {
+            command: Command::SEND_RR_DATA,
+            session: 0x1234_5678,
+            status: EncapsulationStatus::OK,
+            context: [context; 8],
+            options: 0,
+            data: vec![context; length],
+        }
+    }
+
+    #[test]
+    fn frames_are_found_in_any_portions() {
+        let sent = [frame(1, 0), frame(2, 16), frame(3, 600), frame(4, 1), frame(5, Frame::MAX_DATA)];
+        let bytes: Vec<u8> = sent.iter().flat_map(Frame::emit).collect();
+        for size in [1, 7, 23, 24, 25, 1460, bytes.len()] {
+            let mut receiver = Receiver::default();
+            let mut found = Vec::new();
+            for portion in bytes.chunks(size) {
+                receiver.push(portion);
+                found.extend(std::iter::from_fn(|| receiver.next_frame().unwrap()));
+            }
+            assert_eq!(found, sent, "portions of {size}");
+            assert_eq!(receiver.pending(), 0);
+        }
+    }
+
+    #[test]
+    fn a_wrong_length_breaks_the_connection_once_and_for_all() {
+        let mut receiver = Receiver::default();
+        let mut bytes = frame(1, 4).emit();
+        // 65512 is one more than a frame may have.
+        bytes.splice(2..4, [0xE8, 0xFF]);
+        receiver.push(&bytes);
+        let broken = PacketError::Value { what: "the encapsulation frame", field: "length", got: 65512 };
+        assert_eq!(receiver.next_frame(), Err(broken));
+        receiver.push(&frame(2, 0).emit());
+        assert_eq!((receiver.next_frame(), receiver.pending()), (Err(broken), 0));
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(portions: Vec<Vec<u8>>) {
+            let mut receiver = Receiver::default();
+            for portion in portions {
+                receiver.push(&portion);
+                while let Ok(Some(_)) = receiver.next_frame() {}
+            }
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! The packets of the reference, both ways; and packets that it does not have, put together by hand from the tables of
+//! fields. What is expected is never what the code under test has made.
+
+use core::net::Ipv4Addr;
+use std::time::Duration;
+
+use super::*;
+use crate::bits::{hex, parse_hex};
+
+mod any;
+
+const SESSION: u32 = 0x1234_5678;
+const OWNER: Owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0x0000_ABCD };
+
+fn bytes(text: &str) -> Vec<u8> {
+    parse_hex(text).unwrap()
+}
+
+/// Reference 9: RegisterSession, its reply, a request in a session, ListIdentity.
+#[test]
+fn the_published_frames() {
+    let zeros = "00 ".repeat(20);
+    let register = format!("65 00 04 00 {zeros} 01 00 00 00");
+    let get = format!(
+        "6F 00 18 00 78 56 34 12 {} 00 00 00 00 00 00 02 00 00 00 00 00 B2 00 08 00 0E 03 20 65 24 01 30 6B",
+        "00 ".repeat(16)
+    );
+    let asked = Request::get(0x65, 1, 0x6B);
+    let cases = [
+        ("register", register.clone(), Frame::register([0; 8])),
+        ("list identity", format!("63 00 00 00 {zeros}"), Frame::list_identity([0; 8])),
+        ("get 107", get, Frame::unconnected(SESSION, [0; 8], asked.emit())),
+    ];
+    for (label, text, frame) in cases {
+        assert_eq!(hex(&frame.emit()), hex(&bytes(&text)), "{label}");
+        assert_eq!(Frame::parse(&bytes(&text)), Ok(frame), "{label}");
+    }
+    let request = Frame::parse(&bytes(&register)).unwrap();
+    assert_eq!(request.body(), Ok(Body::Register { version: 1, options: 0 }));
+    let reply = bytes(&register.replacen("00 04 00 00 00 00 00", "00 04 00 78 56 34 12", 1));
+    let given = Frame { session: SESSION, ..request.reply(&request.body().unwrap()) };
+    assert_eq!(hex(&given.emit()), hex(&reply));
+    assert!(Frame::parse(&reply).unwrap().answers(&request));
+    assert_eq!(
+        Request::parse(Frame::unconnected(1, [0; 8], asked.emit()).body().unwrap().message().unwrap()),
+        Ok(asked)
+    );
+}
+
+/// A reply to an earlier request, to another session or command is none to this one.
+#[test]
+fn what_answers_a_frame() {
+    let request = Frame::unconnected(SESSION, [7; 8], vec![0x0E]);
+    assert!(request.refusal(EncapsulationStatus::NO_SESSION).answers(&request));
+    let other = |change: fn(&mut Frame)| {
+        let mut frame = request.clone();
+        change(&mut frame);
+        frame.answers(&request)
+    };
+    assert!(!other(|frame| frame.context = [6; 8]));
+    assert!(!other(|frame| frame.session = 1));
+    assert!(!other(|frame| frame.command = Command::REGISTER_SESSION));
+    assert_eq!(Frame::unregister(SESSION).emit()[..8], bytes("66 00 00 00 78 56 34 12"));
+}
+
+/// Reference 9, CIP.
+#[test]
+fn the_published_requests() {
+    let cases = [
+        ("get 107", "0E 03 20 65 24 01 30 6B", Request::get(0x65, 1, 107)),
+        ("get 47", "0E 03 20 64 24 01 30 2F", Request::get(0x64, 1, 47)),
+        ("get 207", "0E 03 20 66 24 01 30 6B", Request::get(0x66, 1, 0x6B)),
+        ("set 158", "10 03 20 65 24 01 30 9E 00 00 01 FE", Request::set(0x65, 1, 0x9E, bytes("00 00 01 FE"))),
+        ("set 101", "10 03 20 65 24 01 30 65 00 04", Request::set(0x65, 1, 101, bytes("00 04"))),
+        ("set 152", "10 03 20 65 24 01 30 98 01", Request::set(0x65, 1, 152, vec![1])),
+        ("set 47", "10 03 20 64 24 01 30 2F 01 00", Request::set(0x64, 1, 47, vec![1, 0])),
+        ("control", "0E 03 20 F5 24 01 30 03", Request::get(ConfigurationControl::CLASS, 1, 3)),
+        // By hand: segments of a class and an attribute above 255 are wide, 21 00 and 31 00 before the number.
+        ("wide", "0E 05 21 00 2C 01 24 01 31 00 34 12", Request::get(0x012C, 1, 0x1234)),
+        ("all", "01 02 20 01 24 01", Request::get_all(Identity::CLASS, 1)),
+    ];
+    for (label, text, request) in cases {
+        assert_eq!(hex(&request.emit()), text, "{label}");
+        assert_eq!(Request::parse(&bytes(text)), Ok(request), "{label}");
+    }
+    let position = Reply::parse(&bytes("8E 00 00 00 00 80 02 00")).unwrap();
+    assert_eq!(position, Request::get(0x65, 1, 107).done(bytes("00 80 02 00")));
+    assert_eq!(hex(&position.emit()), "8E 00 00 00 00 80 02 00");
+    let set = Request::set(0x65, 1, 0x9E, Vec::new());
+    for (text, reply) in
+        [("90 00 00 00", set.done(Vec::new())), ("90 00 09 00", set.refused(GeneralStatus::INVALID_VALUE))]
+    {
+        assert_eq!((Reply::parse(&bytes(text)), hex(&reply.emit())), (Ok(reply), text.to_owned()));
+    }
+    assert!(matches!(Request::parse(&[0x8E, 0]), Err(PacketError::Value { got: 0x8E, .. })));
+    assert!(matches!(Reply::parse(&[0x0E, 0, 0, 0]), Err(PacketError::Value { got: 0x0E, .. })));
+}
+
+/// A number may be sent wider than it has to be, and survives that; segments that are not known survive as they came.
+#[test]
+fn every_path_survives() {
+    for (label, text, segments) in [
+        ("wide small", "21 00 04 00 24 01", 2),
+        ("key", "34 04 F2 03 0C 00 01 00 81 02 20 04 24 68", 3),
+        ("data", "20 04 24 68 80 02 01 02 03 04", 3),
+        ("port", "01 00 20 06 24 01", 1),
+        ("wide instance", "20 06 26 00 01 00 00 00", 2),
+    ] {
+        let path = Path::parse(&bytes(text)).unwrap();
+        assert_eq!((path.0.len(), hex(&path.emit())), (segments, text.to_owned()), "{label}");
+    }
+    let key = ElectronicKey { vendor: 1010, device_type: 12, product_code: 1, major: 0x81, minor: 2 };
+    let path = Path::parse(&bytes("34 04 F2 03 0C 00 01 00 81 02")).unwrap();
+    assert_eq!(path, Path(vec![Segment::Key(key)]));
+    let assemblies = Path::assemblies(104, 100, 101);
+    assert_eq!(hex(&assemblies.emit()), "20 04 24 68 2C 64 2C 65");
+    assert_eq!(assemblies.numbers(LogicalKind::ConnectionPoint).collect::<Vec<_>>(), [100, 101]);
+    for cut in ["20", "21 00", "21 01 04 00", "34 04 00", "80 02 00 00"] {
+        assert!(Path::parse(&bytes(cut)).is_err(), "{cut}");
+    }
+    assert_eq!(
+        Request::parse(&bytes("0E 03 20 65 24 01")),
+        Err(PacketError::Short { what: "the CIP request", got: 6 })
+    );
+}
+
+fn open() -> ForwardOpen {
+    let parameters =
+        |size| NetworkParameters::new(NetworkType::PointToPoint, NetworkPriority::Scheduled, size).unwrap();
+    ForwardOpen {
+        timeout: RequestTimeout::TWO_SECONDS,
+        to_target_id: 0,
+        to_originator_id: 0x0001_0001,
+        owner: OWNER,
+        connection_timeout: ConnectionTimeout::new(1).unwrap(),
+        to_target_interval_us: 10_000,
+        to_target: parameters(22),
+        to_originator_interval_us: 10_000,
+        to_originator: parameters(18),
+        transport: Transport::CYCLIC,
+        path: Path::assemblies(104, 100, 101),
+    }
+}
+
+/// Reference 9: 50 bytes; its reply; ForwardClose.
+#[test]
+fn the_published_connection() {
+    let text = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \
+                10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
+    assert_eq!(hex(&open().request().emit()), text);
+    let request = Request::parse(&bytes(text)).unwrap();
+    assert_eq!((request.service, request.class()), (Service::FORWARD_OPEN, Some(6)));
+    let parsed = ForwardOpen::parse(&request.data).unwrap();
+    assert_eq!(parsed, open());
+    assert_eq!(parsed.timeout.duration(), Duration::from_secs(2));
+    // 10 ms, multiplier 1: 4 · 2 intervals.
+    assert_eq!(parsed.to_target_timeout(), Duration::from_millis(80));
+
+    let text = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
+    let opened = ForwardOpened {
+        to_target_id: 0x0002_0001,
+        to_originator_id: 0x0001_0001,
+        owner: OWNER,
+        to_target_interval_us: 10_000,
+        to_originator_interval_us: 10_000,
+        application: Vec::new(),
+    };
+    assert_eq!(hex(&request.done(opened.emit()).emit()), text);
+    assert_eq!(ForwardOpened::parse(&Reply::parse(&bytes(text)).unwrap().data), Ok(opened));
+
+    let text = "4E 02 20 06 24 01 03 FA 01 00 34 12 CD AB 00 00 04 00 20 04 24 68 2C 64 2C 65";
+    let close =
+        ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner: OWNER, path: Path::assemblies(104, 100, 101) };
+    assert_eq!(hex(&close.request().emit()), text);
+    assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
+}
+
+/// By hand, from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh; then 0 words and a reserved
+/// byte, or the words of the path that are left and a reserved byte. Status 01, one word behind it, 0106h.
+#[test]
+fn a_connection_ends_or_is_refused() {
+    let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
+    let closed = ForwardClosed { owner: OWNER, application: Vec::new() };
+    let reply = Reply::parse(&bytes(text)).unwrap();
+    assert_eq!((ForwardClosed::parse(&reply.data), reply.service), (Ok(closed.clone()), Service::FORWARD_CLOSE));
+    assert_eq!(closed.emit(), reply.data);
+
+    let text = "D4 00 01 01 06 01 01 00 34 12 CD AB 00 00 04 00";
+    let refused = ForwardRefused { owner: OWNER, remaining_path_words: 4 };
+    assert_eq!(hex(&refused.reply(&open().request(), 0x0106).emit()), text);
+    let reply = Reply::parse(&bytes(text)).unwrap();
+    assert_eq!(ForwardRefused::parse(&reply.data), Ok(refused));
+    let row = extended_row(reply.service, reply.status, reply.extended[0]).unwrap();
+    assert_eq!(row.meaning, "another master owns the outputs");
+    assert!(extended_row(Service::GET, reply.status, 0x0106).is_none());
+    let mut wrong = open().request().data;
+    wrong[18] = 8;
+    let field = "connection time-out multiplier";
+    assert_eq!(ForwardOpen::parse(&wrong), Err(PacketError::Value { what: "ForwardOpen", field, got: 8 }));
+}
+
+/// Reference 7: the sizes of the table, bit by bit, and the variant with multicast.
+#[test]
+fn the_published_network_parameters() {
+    use NetworkType::{Multicast, PointToPoint};
+    for (kind, size, word) in [
+        (PointToPoint, 22, 0x4816),
+        (PointToPoint, 18, 0x4812),
+        (PointToPoint, 14, 0x480E),
+        (PointToPoint, 10, 0x480A),
+        (Multicast, 18, 0x2812),
+    ] {
+        let parameters = NetworkParameters::new(kind, NetworkPriority::Scheduled, size).unwrap();
+        assert_eq!(parameters.word(), word);
+        assert_eq!((parameters.kind(), parameters.priority()), (kind, NetworkPriority::Scheduled), "{word:04X}");
+        assert_eq!((parameters.size(), parameters.is_variable(), parameters.redundant_owner()), (size, false, false));
+    }
+    // 16 and 8 bytes of process data: 2 + 4 beside them to the target, 2 back.
+    assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Header)), [22, 14]);
+    assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Modeless)), [18, 10]);
+    assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
+    let odd = NetworkParameters::of_word(0xFE05);
+    assert_eq!((odd.kind(), odd.priority()), (NetworkType::Reserved, NetworkPriority::Urgent));
+    assert!(odd.is_variable() && odd.redundant_owner() && odd.word() == 0xFE05);
+    let intervals: Vec<u32> = (0..=8).filter_map(ConnectionTimeout::new).map(ConnectionTimeout::intervals).collect();
+    assert_eq!(intervals, [4, 8, 16, 32, 64, 128, 256, 512]);
+    assert_eq!(
+        (Transport::CYCLIC.class(), Transport::CYCLIC.trigger(), Transport::CYCLIC.server()),
+        (1, Trigger::Cyclic, false)
+    );
+    let other = Transport::of_byte(0xA3);
+    assert_eq!((other.class(), other.trigger(), other.server()), (3, Trigger::Application, true));
+}
+
+/// Reference 9, UDP both ways.
+#[test]
+fn the_published_cyclic_packets() {
+    let to_target = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 \
+                     00 00 00 00 00 00";
+    let back =
+        "02 00 02 80 08 00 01 00 01 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 00 00 00 00 00 00 00 00";
+    let cases = [
+        (to_target, RealTimeFormat::Header, 0x0002_0001, Some(RunIdle::RUN), "39 04 64 64 00 80 02 00"),
+        (back, RealTimeFormat::Modeless, 0x0001_0001, None, "37 2A 00 00 00 80 02 00"),
+    ];
+    for (text, format, connection, header, data) in cases {
+        let data = [bytes(data), vec![0; 8]].concat();
+        let packet = IoPacket { connection, sequence: 1, count: 1, header, data };
+        assert_eq!(hex(&packet.emit()), text);
+        assert_eq!(IoPacket::parse(&bytes(text), format), Ok(packet));
+    }
+    assert!(RunIdle::RUN.runs() && !RunIdle::IDLE.runs());
+    let short = Items(vec![Item::SequencedAddress { connection: 1, sequence: 1 }, Item::ConnectedData(vec![1, 0, 1])]);
+    let cut = Err(PacketError::Short { what: "the cyclic packet", got: 3 });
+    assert_eq!(IoPacket::parse(&short.emit(), RealTimeFormat::Header), cut);
+    let Items(items) = short;
+    let turned = Items(items.into_iter().rev().collect()).emit();
+    assert!(IoPacket::parse(&turned, RealTimeFormat::Modeless).is_err(), "the address comes first");
+}
+
+/// By hand, from the fields of the identity item: version 1; socket AF_INET, port 44818 = AF12h, 192.168.1.5, eight zeros;
+/// vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a text of 10, state 3.
+/// 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes in the item, 2 + 4 + 44 = 50 = 32h in the frame.
+#[test]
+fn a_device_says_who_it_is() {
+    let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
+                45 52 44 52 49 56 45 03";
+    let text = format!("63 00 32 00 {} 01 00 0C 00 2C 00 {item}", "00 ".repeat(20));
+    let frame = Frame::parse(&bytes(&text)).unwrap();
+    let Body::List(items) = frame.body().unwrap() else { panic!("no list") };
+    let expected = IdentityItem {
+        version: 1,
+        socket: SocketAddress::new(Ipv4Addr::new(192, 168, 1, 5), EXPLICIT_PORT),
+        identity: Identity {
+            vendor: 1010,
+            device_type: 12,
+            product_code: 1,
+            revision: Revision { major: 1, minor: 2 },
+            status: 0x30,
+            serial_number: 4711,
+            product_name: "HIPERDRIVE".to_owned(),
+        },
+        state: 3,
+    };
+    assert_eq!(items.identity(), Some(&expected));
+    let reply = Frame::list_identity([0; 8]).reply(&Body::List(Items(vec![Item::Identity(expected.clone())])));
+    assert_eq!(hex(&reply.emit()), hex(&bytes(&text)));
+    // The object's attributes are the same, from the vendor on and without the state.
+    let all = bytes(item)[18..43].to_vec();
+    assert_eq!((Identity::parse_all(&all), expected.identity.emit_all()), (Ok(expected.identity.clone()), all));
+    assert_eq!(expected.identity.attribute(6), Some(bytes("67 12 00 00")));
+    assert_eq!(expected.identity.attribute(8), None);
+}
+
+/// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte that
+/// fills the word. The low four bits of the control are the source.
+#[test]
+fn where_the_address_comes_from() {
+    let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";
+    let configuration = InterfaceConfiguration {
+        address: Ipv4Addr::new(192, 168, 1, 5),
+        mask: Ipv4Addr::new(255, 255, 255, 0),
+        gateway: Ipv4Addr::new(192, 168, 1, 1),
+        name_servers: [Ipv4Addr::UNSPECIFIED; 2],
+        domain: "lan".to_owned(),
+    };
+    assert_eq!(hex(&configuration.emit()), text);
+    assert_eq!(InterfaceConfiguration::parse(&bytes(text)), Ok(configuration));
+    let control = ConfigurationControl::parse(&bytes("12 00 00 00")).unwrap();
+    assert_eq!(control.source(), AddressSource::Dhcp);
+    assert_eq!(control.with(AddressSource::Stored).emit(), [0x10, 0, 0, 0]);
+    for number in 0..16 {
+        let control = ConfigurationControl::parse(&[number, 0, 0, 0]).unwrap();
+        assert_eq!(control.with(control.source()), control);
+    }
+    assert!(ConfigurationControl::parse(&[2]).is_err());
+}
+
+#[test]
+fn items_say_where_to_send() {
+    // By hand: 8000h, 16 bytes; family 2, port 2222 = 08AEh, 10.0.0.7, all high byte first.
+    let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
+                00 00 00 00 00 00 00";
+    let items = Items::parse(&bytes(text)).unwrap();
+    let socket = |address| Some(SocketAddress::new(address, IMPLICIT_PORT));
+    assert_eq!(items.socket_to_target(), socket(Ipv4Addr::new(10, 0, 0, 7)));
+    assert_eq!(items.socket_to_originator(), socket(Ipv4Addr::new(239, 1, 2, 3)));
+    assert_eq!(hex(&items.emit()), hex(&bytes(text)));
+    for wrong in ["01 00 00 00 01 00 00", "01 00 02 80 04 00 01 00 00 00", "00 00 00", "01 00 B2 00 05 00 01"] {
+        assert!(Items::parse(&bytes(wrong)).is_err(), "{wrong}");
+    }
+}
+
+/// Codes are told once each, and what is not in a table is said to be unknown.
+#[test]
+fn the_tables_of_status() {
+    for (code, meaning) in [(0x05, "path unknown"), (0x09, "invalid value"), (0x0E, "attribute cannot be set")] {
+        assert_eq!(GeneralStatus::new(code).row().map(|row| row.meaning), Some(meaning));
+    }
+    assert!(GENERAL_STATUS.is_sorted_by_key(|row| row.code.code()));
+    assert!(ENCAPSULATION_STATUS.is_sorted_by_key(|row| row.code.code()));
+    assert!(EXTENDED_STATUS.is_sorted_by_key(|row| row.code));
+    assert_eq!(GeneralStatus::new(0xAA).to_string(), "0xAA unknown status");
+    assert_eq!(EncapsulationStatus::NO_SESSION.to_string(), "0x00000064 no such session");
+    assert_eq!(Command::new(0x6F).name(), Some("SendRRData"));
+    assert_eq!(Service::FORWARD_OPEN.name(Some(6)), Some("ForwardOpen"));
+    assert_eq!(Service::FORWARD_OPEN.name(Some(0x65)), None);
+}
