@@ -8,11 +8,14 @@ pub mod biss;
 pub mod bridge;
 mod fault;
 pub mod hiperface;
+pub mod interbus;
 mod line;
+mod motor;
 mod setting;
 pub mod sine_cosine;
 
 pub use fault::{Carried, FaultError, Faults, Passage};
+pub use motor::Motor;
 pub use setting::ConfigError;
 
 use crate::units::CharacterFormat;

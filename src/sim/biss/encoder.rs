@@ -16,14 +16,14 @@ use super::calibration::{Calibration, Conditions, Ended};
 use super::config::Config;
 use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
 use super::flash::Flash;
-use super::motor::{Drive, Motor};
+use super::motor::Drive;
 use super::shaft::{FINE, Shaft};
 use super::wiegand::{Pulses, Wiegand};
 use crate::protocol::biss::{
     CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress,
     WiegandCommand, WiegandStatus,
 };
-use crate::sim::Faults;
+use crate::sim::{Faults, Motor};
 use crate::units::Moment;
 
 /// A virtual encoder.

@@ -28,5 +28,6 @@ mod wiegand;
 pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;
-pub use motor::Motor;
 pub use ubicom::Port;
+
+pub use super::Motor;

@@ -1,33 +1,6 @@
-//! What turns the shaft: a handle that anybody may hold, and the end of it in the encoder. A handle has no clock: the
-//! shaft follows from the next moment on in which the encoder is asked for anything.
+//! What turns the shaft, as the encoder has it.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// The motor of a virtual encoder. Clones are the same motor.
-#[derive(Clone, Debug)]
-pub struct Motor(Arc<AtomicU64>);
-
-impl Motor {
-    /// Revolutions a minute at most, either way.
-    pub const MAX_RPM: f64 = 12_000.0;
-
-    fn at(rpm: f64) -> Self {
-        Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
-    }
-
-    /// Revolutions a minute; above 0 it turns clockwise, and the position rises.
-    pub fn rpm(&self) -> f64 {
-        f64::from_bits(self.0.load(Ordering::SeqCst))
-    }
-
-    /// Turns at another speed, at most [`MAX_RPM`](Self::MAX_RPM); what is no number changes nothing.
-    pub fn set_rpm(&self, rpm: f64) {
-        if !rpm.is_nan() {
-            self.0.store(rpm.clamp(-Self::MAX_RPM, Self::MAX_RPM).to_bits(), Ordering::SeqCst);
-        }
-    }
-}
+use crate::sim::Motor;
 
 /// The motor as its encoder has it. A copy of the encoder gets a motor of its own.
 #[derive(Debug)]

@@ -1,0 +1,117 @@
+//! One Modbus/TCP request and its reply (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application
+//! Protocol V1.1b3*): functions 3, 4, 6 and 16. What is read and written by them is the registers' matter.
+
+use rmodbus::ModbusProto;
+use rmodbus::consts::ModbusFunction;
+use rmodbus::server::{ModbusFrame, Read};
+
+/// Why a request is refused: the codes of exceptions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Exception {
+    /// No such function here.
+    Function = 0x01,
+    /// No such registers.
+    Address = 0x02,
+    /// A length or a count that cannot be.
+    Value = 0x03,
+    /// The device behind the gateway does not answer: it is another unit, or has no power.
+    NoAnswer = 0x0B,
+}
+
+/// Registers that can be read and written.
+pub(super) trait Registers {
+    fn inputs(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
+    fn holdings(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
+    fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
+}
+
+/// Bytes in front of the unit: transaction, protocol, length.
+const PREFIX: usize = 6;
+/// A frame's length counts from the unit on: unit and function at least, and a PDU of 253 bytes.
+const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
+
+/// Takes a whole frame off what was received; `None`: it is not whole yet. What is no Modbus at all is thrown away, as
+/// nothing in the stream says where the next frame begins.
+pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
+    let [_, _, protocol_high, protocol_low, high, low, ..] = *received.as_slice() else { return None };
+    let length = usize::from(u16::from_be_bytes([high, low]));
+    if (protocol_high, protocol_low) != (0, 0) || !LENGTHS.contains(&length) {
+        received.clear();
+        return None;
+    }
+    (received.len() >= PREFIX + length).then(|| received.drain(..PREFIX + length).collect())
+}
+
+/// The reply to a whole frame.
+pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
+    match carry_out(request, unit, registers) {
+        Ok(reply) => reply,
+        Err(exception) => refuse(request, exception),
+    }
+}
+
+/// The reply that refuses a request.
+pub(super) fn refuse(request: &[u8], exception: Exception) -> Vec<u8> {
+    let [high, low, _, _, _, _, unit, function, ..] = *request else { return Vec::new() };
+    vec![high, low, 0, 0, 0, 3, unit, function | 0x80, exception as u8]
+}
+
+fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result<Vec<u8>, Exception> {
+    let [_, _, _, _, _, _, own, function, ref rest @ ..] = *request else { return Err(Exception::Value) };
+    if own != unit {
+        return Err(Exception::NoAnswer);
+    }
+    let function = ModbusFunction::try_from(function).map_err(|_| Exception::Function)?;
+    let data = check(function, rest)?;
+    let mut reply = Vec::new();
+    let mut frame = ModbusFrame::new(unit, request, ModbusProto::TcpUdp, &mut reply).with_broadcast_units(&[]);
+    frame.parse().map_err(|_| Exception::Value)?;
+    let (first, count) = (frame.reg, frame.count);
+    let done = match function {
+        ModbusFunction::GetInputs => fill(&mut frame, &registers.inputs(first, count)?),
+        ModbusFunction::GetHoldings => fill(&mut frame, &registers.holdings(first, count)?),
+        _ => {
+            registers.write(first, &data)?;
+            frame.process_external_write(Ok(()))
+        }
+    };
+    done.and_then(|()| frame.finalize_response()).map_err(|_| Exception::Value)?;
+    Ok(reply)
+}
+
+/// That what stands behind the function is as long as it says, and the values that it writes.
+fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
+    let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
+    match (function, rest) {
+        (ModbusFunction::GetInputs | ModbusFunction::GetHoldings, [_, _, high, low]) => {
+            match u16::from_be_bytes([*high, *low]) {
+                1..=125 => Ok(Vec::new()),
+                _ => Err(Exception::Value),
+            }
+        }
+        (ModbusFunction::SetHolding, [_, _, value @ ..]) if value.len() == 2 => Ok(words(value)),
+        (ModbusFunction::SetHoldingsBulk, [_, _, high, low, bytes, values @ ..]) => {
+            let count = usize::from(u16::from_be_bytes([*high, *low]));
+            let fits = (1..=123).contains(&count) && usize::from(*bytes) == 2 * count && values.len() == 2 * count;
+            if fits { Ok(words(values)) } else { Err(Exception::Value) }
+        }
+        (
+            ModbusFunction::GetInputs
+            | ModbusFunction::GetHoldings
+            | ModbusFunction::SetHolding
+            | ModbusFunction::SetHoldingsBulk,
+            _,
+        ) => Err(Exception::Value),
+        _ => Err(Exception::Function),
+    }
+}
+
+fn fill(frame: &mut ModbusFrame<'_, Vec<u8>>, registers: &[u16]) -> Result<(), rmodbus::ErrorKind> {
+    if let Read::Words(read) = frame.get_external_read()? {
+        read.buf
+            .iter_mut()
+            .zip(registers.iter().flat_map(|register| register.to_be_bytes()))
+            .for_each(|(to, from)| *to = from);
+    }
+    Ok(())
+}

@@ -1,0 +1,171 @@
+//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once, as
+//! with a real one, and every encoder then does what was said last, whoever said it. Chosen here: a reply takes two
+//! milliseconds; another unit, and an encoder without power, is exception 0Bh.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::config::Config;
+use super::encoder::Encoder;
+use super::frame::{self, Exception, Registers};
+use super::registers::{Encoders, Map};
+use crate::sim::line::Queue;
+use crate::sim::{ByteDevice, Faults, Motor};
+use crate::units::{CharacterFormat, Moment};
+
+/// A client's connection to a virtual gateway. Made of a [`Config`]; [`connection`](Self::connection) gives another
+/// client's.
+#[derive(Clone)]
+pub struct Gateway {
+    shared: Arc<Mutex<Shared>>,
+    /// Bytes of a frame that is not whole yet.
+    received: Vec<u8>,
+    to_host: Queue<Vec<u8>>,
+}
+
+/// What all clients have in common.
+struct Shared {
+    unit: u8,
+    map: Map,
+    encoders: Encoders,
+    faults: Faults,
+    exceptions: f64,
+    rng: Rng,
+    requests: u32,
+    now: Moment,
+}
+
+impl Gateway {
+    const REPLY: Duration = Duration::from_millis(2);
+
+    /// The virtual gateway as `config` wants it, with its encoders.
+    pub fn new(config: &Config) -> Self {
+        let shared = Shared {
+            unit: config.unit,
+            map: Map::new(config),
+            encoders: Encoders::new(config),
+            faults: config.faults.clone(),
+            exceptions: config.exceptions,
+            rng: Rng::with_seed(config.seed),
+            requests: 0,
+            now: Moment::START,
+        };
+        Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: Queue::default() }
+    }
+
+    /// Another client's connection to the same gateway and the same encoders.
+    pub fn connection(&self) -> Self {
+        Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
+    }
+
+    /// What turns the shaft of the first encoder.
+    pub fn shaft(&self) -> Motor {
+        self.with_encoder(|encoder| encoder.motor())
+    }
+
+    /// Looks into the first encoder, or does something to it that no bus can.
+    pub fn with_encoder<T>(&self, work: impl FnOnce(&mut Encoder) -> T) -> T {
+        work(&mut self.lock().encoders.first)
+    }
+
+    /// Other faults from now on: a cable that was mended, or one that breaks only now. Requests and stores are counted on.
+    pub fn set_faults(&self, faults: &Faults) {
+        let mut shared = self.lock();
+        shared.faults = faults.clone();
+        shared.encoders.iter_mut().for_each(|encoder| encoder.set_faults(faults));
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shared> {
+        // A virtual device left behind by a panicking test is still a device.
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The registers as they are at a moment.
+struct At<'a>(&'a mut Shared);
+
+impl Registers for At<'_> {
+    fn inputs(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception> {
+        self.0.map.inputs(&mut self.0.encoders, self.0.now, first, count)
+    }
+
+    fn holdings(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception> {
+        self.0.map.outputs(&mut self.0.encoders, first, count)
+    }
+
+    fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception> {
+        self.0.map.write(&mut self.0.encoders, self.0.now, first, values)
+    }
+}
+
+impl Shared {
+    /// Carries a request out; its reply as it comes back to the host, if it does.
+    fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
+        let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
+        self.requests = self.requests.saturating_add(1);
+        if silent {
+            return None;
+        }
+        // f64() is below 1, so that 1 always happens and 0 never does.
+        let reply = if self.rng.f64() < self.exceptions {
+            frame::refuse(request, Exception::NoAnswer)
+        } else {
+            let unit = self.unit;
+            frame::answer(request, unit, &mut At(self))
+        };
+        self.carry(reply)
+    }
+
+    /// TCP brings bytes or none: what happens to a byte of a serial line happens to a reply as a whole.
+    fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
+        let passage = self.faults.passage(&mut self.rng, 0);
+        let carried = passage.carried?;
+        if passage.inserted.is_some() {
+            reply.iter_mut().for_each(|byte| *byte = self.rng.u8(..));
+        } else if carried.flipped
+            && let Some(byte) = self.rng.choice(&mut reply)
+        {
+            *byte ^= carried.byte;
+        }
+        Some(reply)
+    }
+}
+
+impl ByteDevice for Gateway {
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
+        self.received.extend(bytes);
+        while let Some(request) = frame::next(&mut self.received) {
+            let mut shared = self.lock();
+            shared.now = shared.now.max(now);
+            let due = shared.now + Self::REPLY + shared.faults.delay();
+            let reply = shared.take(&request);
+            drop(shared);
+            if let Some(reply) = reply {
+                self.to_host.insert(due, reply);
+            }
+        }
+    }
+
+    fn poll(&mut self, now: Moment) -> Vec<u8> {
+        std::iter::from_fn(|| self.to_host.pop_until(now)).flatten().collect()
+    }
+
+    fn poll_at(&self) -> Option<Moment> {
+        self.to_host.due()
+    }
+
+    /// There is no serial line.
+    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
+
+    /// What another connection asked for has no reader; encoders that lost their power get it back.
+    fn connect(&mut self, now: Moment) {
+        self.received.clear();
+        self.to_host = Queue::default();
+        let mut shared = self.lock();
+        shared.now = shared.now.max(now);
+        let now = shared.now;
+        shared.encoders.iter_mut().for_each(|encoder| encoder.connect(now));
+    }
+}

@@ -1,0 +1,30 @@
+//! What turns a virtual shaft: a handle that anybody may hold. It has no clock: the shaft follows from the next moment on
+//! in which its encoder is asked for anything.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The motor of a virtual encoder. Clones are the same motor.
+#[derive(Clone, Debug)]
+pub struct Motor(Arc<AtomicU64>);
+
+impl Motor {
+    /// Revolutions a minute at most, either way.
+    pub const MAX_RPM: f64 = 12_000.0;
+
+    pub(super) fn at(rpm: f64) -> Self {
+        Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
+    }
+
+    /// Revolutions a minute; above 0 it turns clockwise, and the position rises.
+    pub fn rpm(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::SeqCst))
+    }
+
+    /// Turns at another speed, at most [`MAX_RPM`](Self::MAX_RPM); what is no number changes nothing.
+    pub fn set_rpm(&self, rpm: f64) {
+        if !rpm.is_nan() {
+            self.0.store(rpm.clamp(-Self::MAX_RPM, Self::MAX_RPM).to_bits(), Ordering::SeqCst);
+        }
+    }
+}
