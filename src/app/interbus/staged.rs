@@ -21,18 +21,16 @@ pub use draft::Kept;
 pub use edit::{Edit, EditError, Filled, LONGEST_NAME};
 pub use mark::Mark;
 
-use crate::profile::interbus::{Image, Parameters};
+use crate::profile::interbus::{Image, Names, Parameters};
 use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
-
-/// What cams are called, by program and cam, the first at 0. No encoder keeps it: profiles and drafts do.
-pub type Names = [[Option<String>; Program::CAMS]; ProgramNumber::COUNT];
 
 /// All that can be edited, as it is wanted.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Wanted {
     /// What is written into an encoder.
     pub image: Image,
-    /// What the cams are called. Two with the same name in a program are pulses on one track.
+    /// What programs and cams are called, which no encoder keeps. Two cams of a program with the same name are pulses on
+    /// one track.
     pub names: Names,
 }
 
@@ -85,11 +83,7 @@ impl Wanted {
 
     /// What a cam is called.
     pub fn name(&self, program: ProgramNumber, cam: CamNumber) -> Option<&str> {
-        self.names.get(usize::from(program.get() - 1))?.get(usize::from(cam.get()))?.as_deref()
-    }
-
-    fn names_of(&mut self, program: ProgramNumber) -> Option<&mut [Option<String>; Program::CAMS]> {
-        self.names.get_mut(usize::from(program.get() - 1))
+        Some(self.names.cam(program, cam)).filter(|name| !name.is_empty())
     }
 }
 

@@ -9,6 +9,7 @@ mod note;
 mod plan;
 mod record;
 mod restore;
+mod scale;
 #[cfg(test)]
 mod test_profiles;
 mod text;
@@ -22,3 +23,4 @@ pub use note::Step;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
 pub use record::{InterbusProfile, Kept, MountingMark, Names, ProfileIdentity, Recorded};
 pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore, programs_needed};
+pub use scale::{Outside, Placed, Scale, ScaleError, Unit};

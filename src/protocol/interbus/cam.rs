@@ -31,8 +31,20 @@ pub struct Program {
 
 impl CamNumber {
     /// All of them, rising.
+    pub const EACH: [CamNumber; Program::CAMS] = [
+        CamNumber(0),
+        CamNumber(1),
+        CamNumber(2),
+        CamNumber(3),
+        CamNumber(4),
+        CamNumber(5),
+        CamNumber(6),
+        CamNumber(7),
+    ];
+
+    /// All of them, rising.
     pub fn all() -> impl Iterator<Item = CamNumber> {
-        (0..8).map(CamNumber)
+        CamNumber::EACH.into_iter()
     }
 
     /// `None` beyond 7.

@@ -1,6 +1,5 @@
 //! What is wanted otherwise than the encoder, or the profile, has it.
 
-use super::edit::names;
 use super::{Staged, Wanted};
 use crate::profile::interbus::Edge;
 use crate::protocol::interbus::{CamNumber, Parameter, ProgramNumber};
@@ -72,17 +71,17 @@ impl Staged {
         Place::all().filter_map(|place| self.differs(place)).collect()
     }
 
-    /// Anything of a cam is wanted otherwise; not its name.
+    /// A cam is wanted otherwise; not its name. One that a profile did not mention and that does not work is not.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
-        let places =
-            [Place::Edge(program, cam, Edge::Start), Place::Edge(program, cam, Edge::Stop), Place::On(program, cam)];
-        places.into_iter().any(|place| self.differs(place).is_some())
+        let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
+        base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)
     }
 
     /// Anything of a program is wanted otherwise; a profile's names too.
     pub fn is_program_edited(&self, program: ProgramNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
-        let is_renamed = names(&base.names, program) != names(&wanted.names, program);
+        let is_renamed = base.names.program(program) != wanted.names.program(program)
+            || CamNumber::all().any(|cam| base.name(program, cam) != wanted.name(program, cam));
         base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_encoder()
     }
 

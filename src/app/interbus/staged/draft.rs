@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::edit::{self, names};
+use super::edit;
 use super::{Ground, Staged, Wanted};
 use crate::profile::interbus::Direction;
-use crate::protocol::interbus::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value, WindowShift};
+use crate::protocol::interbus::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
 /// An edit that is kept: what is wanted, whatever led to it. Numbers as the manual has them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,6 +28,8 @@ pub enum Kept {
     On(u8, u8, bool),
     /// Program, cam, and its name, which may be empty.
     Name(u8, u8, String),
+    /// Program and its name, which may be empty.
+    ProgramName(u8, String),
 }
 
 impl Staged {
@@ -83,10 +85,11 @@ fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<Kept>) {
 
 fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &mut Vec<Kept>) {
     let number = program.get();
-    let none = <[Option<String>; Program::CAMS]>::default();
-    let was_names = names(&base.names, program).unwrap_or(&none);
-    let is_names = names(&wanted.names, program).unwrap_or(&none);
-    for ((cam, was), is) in CamNumber::all().zip(was_names).zip(is_names) {
+    let name = |names: &Wanted| names.names.program(program).to_owned();
+    if name(base) != name(wanted) {
+        kept.push(Kept::ProgramName(number, name(wanted)));
+    }
+    for cam in CamNumber::all() {
         let now = wanted.cam(program, cam);
         if now != base.cam(program, cam) {
             kept.push(match now {
@@ -98,8 +101,9 @@ fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &m
         if on != base.is_on(program, cam) {
             kept.push(Kept::On(number, cam.get(), on));
         }
-        if was != is {
-            kept.push(Kept::Name(number, cam.get(), is.clone().unwrap_or_default()));
+        if base.name(program, cam) != wanted.name(program, cam) {
+            let name = wanted.name(program, cam).unwrap_or_default();
+            kept.push(Kept::Name(number, cam.get(), name.to_owned()));
         }
     }
 }
@@ -143,10 +147,14 @@ impl Kept {
                 }
             }
             Kept::Name(_, cam, ref name) => {
-                let own = self.program().and_then(|number| wanted.names_of(number));
-                let own = own.and_then(|own| own.get_mut(usize::from(cam)));
-                if let Some((own, name)) = own.zip(edit::checked_name(name).ok()) {
-                    *own = name;
+                let place = self.program().zip(CamNumber::new(cam));
+                if let Some(((program, cam), name)) = place.zip(edit::checked_name(name).ok()) {
+                    wanted.names.set_cam(program, cam, name);
+                }
+            }
+            Kept::ProgramName(_, ref name) => {
+                if let Some((program, name)) = self.program().zip(edit::checked_name(name).ok()) {
+                    wanted.names.set_program(program, name);
                 }
             }
         }
@@ -154,9 +162,11 @@ impl Kept {
 
     fn program(&self) -> Option<ProgramNumber> {
         match self {
-            Kept::Cam(program, ..) | Kept::NoCam(program, _) | Kept::On(program, ..) | Kept::Name(program, ..) => {
-                ProgramNumber::new(*program)
-            }
+            Kept::Cam(program, ..)
+            | Kept::NoCam(program, _)
+            | Kept::On(program, ..)
+            | Kept::Name(program, ..)
+            | Kept::ProgramName(program, _) => ProgramNumber::new(*program),
             Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) | Kept::Shift(_) => None,
         }
     }
@@ -169,7 +179,8 @@ impl Kept {
                 Kept::Cam(..) | Kept::NoCam(..) | Kept::On(..) => {
                     self.program().is_some_and(|program| wanted.image.program(program).is_none())
                 }
-                Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) | Kept::Name(..) => false,
+                Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) => false,
+                Kept::Name(..) | Kept::ProgramName(..) => false,
             }
     }
 }

@@ -1,6 +1,6 @@
 //! The edits: what each makes of what is wanted, and why it may not be.
 
-use super::{Ground, Names, Wanted};
+use super::{Ground, Wanted};
 use crate::profile::interbus::{Direction, Edge};
 use crate::protocol::interbus::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
@@ -73,7 +73,14 @@ pub enum Edit {
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// A program becomes as another is, with its names.
+    /// What a program is called; nothing where that is empty.
+    ProgramName {
+        /// Which one.
+        program: ProgramNumber,
+        /// At most [`LONGEST_NAME`] characters.
+        name: String,
+    },
+    /// A program becomes as another is, with the names of its cams.
     Copy {
         /// What is copied.
         from: ProgramNumber,
@@ -102,8 +109,8 @@ pub struct Filled {
     pub program: ProgramNumber,
     /// Its cams.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// What they are called.
-    pub names: [Option<String>; Program::CAMS],
+    /// What they are called; empty where they have no name.
+    pub names: [String; Program::CAMS],
 }
 
 /// Why something cannot be changed. Nothing is, then.
@@ -199,18 +206,13 @@ pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wan
             }
             own.set_on(cam, on);
         }
-        Edit::Name { program, cam, ref name } => {
-            let name = checked_name(name)?;
-            if let Some(own) = after.names_of(program).and_then(|own| own.get_mut(usize::from(cam.get()))) {
-                *own = name;
-            }
-        }
+        Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, checked_name(name)?),
+        Edit::ProgramName { program, ref name } => after.names.set_program(program, checked_name(name)?),
         Edit::Copy { from, to } => {
             let copied = *wanted.image.program(from).ok_or(EditError::NotRead(from))?;
             *program_mut(&mut after, to, ground)? = copied;
-            let names = wanted.names.get(usize::from(from.get() - 1)).cloned().unwrap_or_default();
-            if let Some(own) = after.names_of(to) {
-                *own = names;
+            for cam in CamNumber::all() {
+                after.names.set_cam(to, cam, wanted.names.cam(from, cam).to_owned());
             }
         }
         Edit::Mirror(program) => {
@@ -291,9 +293,8 @@ fn fill(after: &mut Wanted, filled: &Filled, ground: Ground) -> Result<(), EditE
         position(Edge::Start, cam.start.get(), after)?;
         position(Edge::Stop, cam.stop.get(), after)?;
     }
-    let mut names = <[Option<String>; Program::CAMS]>::default();
-    for (own, name) in names.iter_mut().zip(&filled.names) {
-        *own = checked_name(name.as_deref().unwrap_or_default())?;
+    for (cam, name) in CamNumber::all().zip(&filled.names) {
+        after.names.set_cam(filled.program, cam, checked_name(name)?);
     }
     let own = program_mut(after, filled.program, ground)?;
     own.mask = 0;
@@ -303,22 +304,14 @@ fn fill(after: &mut Wanted, filled: &Filled, ground: Ground) -> Result<(), EditE
             own.mask |= 1 << number.get();
         }
     }
-    if let Some(own) = after.names_of(filled.program) {
-        *own = names;
-    }
     Ok(())
 }
 
-/// A name without blanks around it; `None` where nothing is left.
-pub(super) fn checked_name(name: &str) -> Result<Option<String>, EditError> {
+/// A name without blanks around it.
+pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
         return Err(EditError::Name);
     }
-    Ok(Some(name.to_owned()).filter(|name| !name.is_empty()))
-}
-
-/// The names of a program, where there is such a place.
-pub(super) fn names(names: &Names, program: ProgramNumber) -> Option<&[Option<String>; Program::CAMS]> {
-    names.get(usize::from(program.get() - 1))
+    Ok(name.to_owned())
 }

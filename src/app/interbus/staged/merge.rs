@@ -2,7 +2,7 @@
 
 use super::Wanted;
 use crate::profile::interbus::Image;
-use crate::protocol::interbus::{Cam, Program};
+use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber};
 
 /// What was read, over what was known: what it does not have stays.
 pub(super) fn over(known: &Image, read: Image) -> Image {
@@ -29,9 +29,15 @@ pub(super) fn rebase(own: &mut Wanted, before: &Wanted, now: &Wanted) {
             _ => follow(program, was, is),
         }
     }
-    let names = own.names.iter_mut().flatten().zip(before.names.iter().flatten()).zip(now.names.iter().flatten());
-    for ((name, was), is) in names {
-        follow(name, was, is);
+    for program in ProgramNumber::all() {
+        if own.names.program(program) == before.names.program(program) {
+            own.names.set_program(program, now.names.program(program).to_owned());
+        }
+        for cam in CamNumber::all() {
+            if own.names.cam(program, cam) == before.names.cam(program, cam) {
+                own.names.set_cam(program, cam, now.names.cam(program, cam).to_owned());
+            }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Differs, Edit, EditError, Filled, Kept, Mark, Names, Place, Staged, Wanted};
-use crate::profile::interbus::{Direction, Edge, Image, Parameters};
+use super::{Differs, Edit, EditError, Filled, Kept, Mark, Place, Staged, Wanted};
+use crate::profile::interbus::{Direction, Edge, Image, Names, Parameters};
 use crate::protocol::interbus::{Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift};
 
 fn parameters(steps: u32, revolutions: u32) -> Parameters {
@@ -144,7 +144,7 @@ fn a_table_is_one_step_and_says_which_cams_work() {
     let mut staged = staged();
     let mut filled = Filled { program: number(1), cams: [None; 8], names: Default::default() };
     filled.cams[1] = Some(edges(900, 20));
-    filled.names[1] = Some("glue".to_owned());
+    filled.names[1] = "glue".to_owned();
     staged.edit(&Edit::Table(vec![filled.clone()])).unwrap();
     let wanted = staged.wanted().unwrap();
     assert_eq!(wanted.image.program(number(1)).unwrap().mask, 0b10);
@@ -282,8 +282,13 @@ fn a_profile_can_be_made_to_say_what_it_does_not_say() {
 fn names_are_saved_and_not_written() {
     let mut encoder = staged();
     encoder.edit(&name(0, "feed")).unwrap();
+    encoder.edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
     assert!(!encoder.is_dirty() && !encoder.is_program_edited(number(1)) && encoder.can_undo());
-    assert_eq!(encoder.edits().len(), 1);
+    let kept = encoder.edits();
+    assert_eq!(kept, [Kept::ProgramName(1, "size 2".to_owned()), Kept::Name(1, 0, "feed".to_owned())]);
+    let mut other = staged();
+    other.take_draft(kept);
+    assert_eq!(other.wanted(), encoder.wanted());
     let mut profile = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
     profile.edit(&name(0, "feed")).unwrap();
     assert!(profile.is_dirty() && profile.is_program_edited(number(1)));

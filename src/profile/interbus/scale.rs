@@ -1,0 +1,251 @@
+//! Positions in the units of a machine: degrees of its turn, or millimetres of its travel, beside the steps of the encoder.
+
+/// What a machine counts in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Unit {
+    /// Steps of the encoder's position.
+    #[default]
+    Steps,
+    /// Degrees of a turn of the machine.
+    Degrees,
+    /// Millimetres of its travel.
+    Millimetres,
+}
+
+/// How a machine's positions and the encoder's belong together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    unit: Unit,
+    /// Steps in one unit.
+    steps: f64,
+    /// The encoder's position where the machine is at 0.
+    zero: u32,
+}
+
+/// A position of a machine, as the encoder can have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// The nearest step.
+    pub step: u32,
+    /// How far that is beyond what was asked for, in units.
+    pub off: f64,
+}
+
+/// Why a position is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{value} is not within {least} to {most}")]
+pub struct Outside {
+    /// As given, in units.
+    pub value: f64,
+    /// The first position of the measuring range, in units.
+    pub least: f64,
+    /// The last one.
+    pub most: f64,
+}
+
+/// Numbers that make no scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("steps in a unit are a number above 0")]
+pub struct ScaleError;
+
+/// Decimals beyond which nobody reads.
+const MOST_DECIMALS: usize = 6;
+/// Two numbers that were reckoned are the same.
+const SAME: f64 = 1e-9;
+/// More than any scale has in a unit, or any unit in a range.
+const MOST: f64 = 1e12;
+
+impl Default for Scale {
+    /// Steps, from 0 on.
+    fn default() -> Self {
+        Scale { unit: Unit::Steps, steps: 1.0, zero: 0 }
+    }
+}
+
+impl Unit {
+    /// All of them.
+    pub const ALL: [Unit; 3] = [Unit::Steps, Unit::Degrees, Unit::Millimetres];
+
+    /// As it stands behind a number; nothing for steps.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Unit::Steps => "",
+            Unit::Degrees => "°",
+            Unit::Millimetres => " mm",
+        }
+    }
+}
+
+impl Scale {
+    /// Degrees, with so many steps in a turn of the machine, and its 0 at a position of the encoder.
+    ///
+    /// # Errors
+    /// [`ScaleError`] where these steps are no number above 0.
+    pub fn degrees(steps_in_turn: f64, zero: u32) -> Result<Self, ScaleError> {
+        Scale::new(Unit::Degrees, steps_in_turn, zero)
+    }
+
+    /// Millimetres, with so many steps in one, and the machine's 0 at a position of the encoder.
+    ///
+    /// # Errors
+    /// [`ScaleError`] where these steps are no number above 0.
+    pub fn millimetres(steps_in_one: f64, zero: u32) -> Result<Self, ScaleError> {
+        Scale::new(Unit::Millimetres, steps_in_one, zero)
+    }
+
+    /// Of a unit. The steps are those of a turn, of a millimetre, and of no meaning for steps.
+    ///
+    /// # Errors
+    /// [`ScaleError`] where they have a meaning and are no number above 0.
+    pub fn new(unit: Unit, steps: f64, zero: u32) -> Result<Self, ScaleError> {
+        let steps = match unit {
+            Unit::Steps => 1.0,
+            Unit::Degrees => steps / 360.0,
+            Unit::Millimetres => steps,
+        };
+        let is_scale = steps.is_finite() && steps > 1.0 / MOST && steps < MOST;
+        if is_scale { Ok(Scale { unit, steps, zero }) } else { Err(ScaleError) }
+    }
+
+    /// What it counts in.
+    pub const fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    /// Steps in one unit.
+    pub const fn steps_in_unit(&self) -> f64 {
+        self.steps
+    }
+
+    /// The encoder's position where the machine is at 0.
+    pub const fn zero(&self) -> u32 {
+        self.zero
+    }
+
+    /// The machine is at the beginning again where the measuring range ends: so are steps, and degrees where the range
+    /// has whole turns of the machine.
+    pub fn is_round(&self, range: u32) -> bool {
+        match self.unit {
+            Unit::Steps => true,
+            Unit::Millimetres => false,
+            Unit::Degrees => {
+                let turns = f64::from(range) / (self.steps * 360.0);
+                turns > 0.5 && (turns - turns.round()).abs() < SAME * turns.max(1.0)
+            }
+        }
+    }
+
+    /// A step as the machine says it.
+    pub fn value(&self, step: u32, range: u32) -> f64 {
+        let from_zero = f64::from(step) - f64::from(self.zero);
+        self.round(from_zero, range) / self.steps
+    }
+
+    /// Units of the whole measuring range.
+    pub fn span(&self, range: u32) -> f64 {
+        f64::from(range) / self.steps
+    }
+
+    /// The step that is nearest to a position of the machine. Degrees go round where the measuring range does; steps have
+    /// to be within it, wherever 0 is.
+    ///
+    /// # Errors
+    /// [`Outside`] with the limits.
+    pub fn place(&self, value: f64, range: u32) -> Result<Placed, Outside> {
+        let outside = || {
+            let first = if self.is_round(range) { 0.0 } else { self.value(0, range) };
+            Outside { value, least: first, most: first + self.span(range) - 1.0 / self.steps }
+        };
+        if range == 0 || !value.is_finite() || value.abs() > MOST {
+            return Err(outside());
+        }
+        let from_zero = value * self.steps;
+        if self.unit == Unit::Steps && !(0.0..f64::from(range)).contains(&from_zero) {
+            return Err(outside());
+        }
+        let exact = f64::from(self.zero) + from_zero;
+        let nearest = exact.round();
+        let off = (nearest - exact) / self.steps;
+        let step = if self.is_round(range) { nearest.rem_euclid(f64::from(range)) } else { nearest };
+        if (0.0..f64::from(range)).contains(&step) {
+            // Below the range, which has 25 bits.
+            Ok(Placed { step: step as u32, off })
+        } else {
+            Err(outside())
+        }
+    }
+
+    /// Decimals that tell one step from the next.
+    pub fn decimals(&self) -> usize {
+        let one = 1.0 / self.steps;
+        let tells = |decimals: &usize| {
+            let shown = one * 10_f64.powi(*decimals as i32);
+            shown >= 2.0 || (shown - shown.round()).abs() < SAME && shown > 0.5
+        };
+        (0..MOST_DECIMALS).find(tells).unwrap_or(MOST_DECIMALS)
+    }
+
+    fn round(&self, from_zero: f64, range: u32) -> f64 {
+        if self.is_round(range) && range > 0 { from_zero.rem_euclid(f64::from(range)) } else { from_zero }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_and_millimetres_become_the_nearest_step() {
+        let degrees = |steps, zero| Scale::degrees(steps, zero).unwrap();
+        let millimetres = |steps, zero| Scale::millimetres(steps, zero).unwrap();
+        // Scale, range, value, step, how far off: 8192/360 = 22.7556; 10° are 227.56 steps, 228 steps 10.01953°.
+        for (scale, range, value, step, off) in [
+            (degrees(8192.0, 0), 8192, 10.0, 228, 0.019_531_25),
+            (degrees(8192.0, 0), 8192, 360.0, 0, 0.0),
+            (degrees(8192.0, 0), 8192, -90.0, 6144, 0.0),
+            (degrees(8192.0, 8000), 8192, 90.0, 1856, 0.0),
+            (degrees(1000.0, 0), 3000, 725.0, 2014, 0.04),
+            (degrees(1000.0, 0), 2500, 800.0, 2222, -0.08),
+            (millimetres(10.0, 500), 10_000, -50.0, 0, 0.0),
+            (millimetres(10.0, 500), 10_000, 12.34, 623, -0.04),
+            (millimetres(0.5, 0), 100, 3.0, 2, 1.0),
+            (Scale::default(), 1000, 999.0, 999, 0.0),
+            (Scale::new(Unit::Steps, 0.0, 900).unwrap(), 1000, 250.0, 150, 0.0),
+        ] {
+            let placed = scale.place(value, range).unwrap();
+            assert_eq!(placed.step, step, "{scale:?} {value}");
+            assert!((placed.off - off).abs() < 1e-9, "{scale:?} {value}: {}", placed.off);
+            let shown = scale.value(step, range);
+            let apart = (shown - value - off).rem_euclid(if scale.is_round(range) { scale.span(range) } else { 1e9 });
+            assert!(apart < 1e-6 || apart > scale.span(range) - 1e-6, "{scale:?} {value}: {shown}");
+        }
+    }
+
+    #[test]
+    fn what_is_outside_names_the_limits() {
+        for (scale, range, value, least, most) in [
+            (Scale::default(), 1000, 1000.0, 0.0, 999.0),
+            (Scale::new(Unit::Steps, 1.0, 10).unwrap(), 1000, -1.0, 0.0, 999.0),
+            (Scale::millimetres(10.0, 500).unwrap(), 10_000, 950.0, -50.0, 949.9),
+            (Scale::degrees(1000.0, 0).unwrap(), 2500, 900.0, 0.0, 899.64),
+            (Scale::default(), 1000, f64::NAN, 0.0, 999.0),
+            (Scale::degrees(1000.0, 0).unwrap(), 1000, f64::INFINITY, 0.0, 359.64),
+        ] {
+            let outside = scale.place(value, range).unwrap_err();
+            assert!((outside.least - least).abs() < 1e-9 && (outside.most - most).abs() < 1e-9, "{outside}");
+        }
+        for steps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Scale::degrees(steps, 0), Err(ScaleError), "{steps}");
+        }
+    }
+
+    #[test]
+    fn decimals_tell_steps_apart() {
+        for (steps, decimals) in [(360.0, 0), (3600.0, 1), (8192.0, 2), (720.0, 1), (180.0, 0), (33_554_432.0, 6)] {
+            assert_eq!(Scale::degrees(steps, 0).unwrap().decimals(), decimals, "{steps}");
+        }
+        assert_eq!(Scale::default().decimals(), 0);
+        assert_eq!(Scale::millimetres(10.0, 0).unwrap().decimals(), 1);
+        assert_eq!(Scale::millimetres(0.5, 0).unwrap().decimals(), 0);
+    }
+}
