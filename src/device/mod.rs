@@ -4,6 +4,7 @@ pub mod biss;
 pub mod bridge;
 pub mod check;
 pub mod hiperface;
+pub mod interbus;
 mod line;
 pub mod ssi;
 

@@ -11,6 +11,7 @@ mod agenda;
 pub mod biss;
 mod commit;
 pub mod hiperface;
+pub mod interbus;
 mod live;
 mod open;
 mod outbox;

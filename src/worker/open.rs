@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::link::{
-    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceFileError, UrlError,
-    Wire, read_trace,
+    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceEntry, TraceFileError,
+    UrlError, Wire, read_trace,
 };
 use crate::sim::ConfigError;
 use crate::store::{FileError, StoreError, read_text};
@@ -67,12 +67,17 @@ pub(super) fn open_bytes(
         }
         Wire::Port(path) => Box::new(SerialLink::open(path, format, clock.clone())?),
         Wire::Host(host) => Box::new(TcpLink::connect(host, clock.clone())?),
-        Wire::File(path) => {
-            let text = read_text(Path::new(path))?;
-            let entries = read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })?;
-            Box::new(ReplayLink::new(path, entries, clock.clone()))
-        }
+        Wire::File(path) => Box::new(ReplayLink::new(path, read_recording(path)?, clock.clone())),
     })
+}
+
+/// A recorded trace.
+///
+/// # Errors
+/// [`OpenError::File`], [`OpenError::Recording`].
+pub(super) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
+    let text = read_text(Path::new(path))?;
+    read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
 }
 
 /// Refuses a parameter that is not among `known`.

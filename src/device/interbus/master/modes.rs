@@ -1,0 +1,225 @@
+//! What an encoder does, what it is sent to do, and back to what it did.
+
+use std::time::Duration;
+
+use super::Master;
+use crate::device::interbus::Error;
+use crate::protocol::interbus::{Command, ReadOut, Reply, StartupMode};
+
+/// So long the value of a question about a cam may stay behind `00000000`, before `80000000` is tried (`U`).
+const VALUE_STAYS: Duration = Duration::from_millis(300);
+
+impl Master<'_> {
+    /// Does something with the encoder, and leads it back to what it did before, whatever happens.
+    ///
+    /// # Errors
+    /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
+    pub fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
+        let ended = self.begin().and_then(|()| work(self));
+        let led = match &ended {
+            // Nothing can be sent any more.
+            Err(error @ Error::Link(_)) => Err(error.clone()),
+            _ => self.shielded(Self::lead_back),
+        };
+        let Err(why) = led else { return ended };
+        let cause = ended.err().unwrap_or(why);
+        if self.is_as_found() {
+            return Err(cause);
+        }
+        Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+    }
+
+    /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then.
+    ///
+    /// # Errors
+    /// The handshake and the way.
+    pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
+        let ended = self.shielded(|master| {
+            master.run()?;
+            master.normal()?;
+            let mode = master.ask_mode()?;
+            master.found = Some(mode);
+            master.lead_back()?;
+            Ok(mode)
+        });
+        ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+    }
+
+    /// Sends the encoder into a mode, and asks whether it is there.
+    ///
+    /// # Errors
+    /// [`Error::NoMode`], [`Error::NotSelectable`]; the handshake and the way.
+    pub(in crate::device::interbus) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
+        use StartupMode::{Cams, K2, K3, Unknown, Velocity};
+        match (self.is, wanted) {
+            (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
+            (Some(is), wanted) if does_the_same(is, wanted) => Ok(()),
+            (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
+            (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
+            (Some(Cams(_)), Velocity) => {
+                self.go(K3)?;
+                self.go(wanted)
+            }
+            (_, Velocity) => self.switch(Command::Velocity(true), wanted),
+            (Some(Velocity), Cams(_)) => {
+                self.go(K3)?;
+                self.go(wanted)
+            }
+            (_, Cams(program)) => self.switch(Command::Cams(Some(program)), wanted),
+        }
+    }
+
+    /// From now on this is what the encoder is led back to.
+    pub(in crate::device::interbus) fn stay(&mut self) {
+        self.found = self.is;
+    }
+
+    /// Looks at the encoder, and asks what it does: so nothing is sent that it would take for something else.
+    fn begin(&mut self) -> Result<(), Error> {
+        let begun = self.data.now();
+        self.input = self.data.input()?;
+        while let Reply::Echo { .. } | Reply::Busy { .. } = Reply::parse(self.input) {
+            if self.data.now().since(begun) >= self.patience {
+                return Err(Error::NotRunning { input: self.input });
+            }
+            self.data.wait(Duration::from_millis(20))?;
+            self.input = self.data.input()?;
+        }
+        if let Reply::Error(_) = Reply::parse(self.input) {
+            self.found_error = Some(self.input);
+        }
+        let mode = self.ask_mode()?;
+        self.found = Some(mode);
+        let keeps = match mode {
+            StartupMode::Cams(_) => Command::Run,
+            StartupMode::Velocity => Command::Velocity(true),
+            _ => return Ok(()),
+        };
+        if self.known.kept == Some(mode) || self.known.hold.is_some_and(|(held, _)| held == mode) {
+            return Ok(());
+        }
+        // Whether this read-out has ended the mode. Words for cams do other things in another one.
+        self.rest()?;
+        if does_the_same(self.ask_mode()?, mode) {
+            self.known.kept = Some(mode);
+            return Ok(());
+        }
+        self.known.hold = Some((mode, keeps));
+        self.go(mode)
+    }
+
+    /// It was sent nothing, or nothing but normal running stands.
+    fn is_as_found(&self) -> bool {
+        let rests = matches!(self.out, None | Some(Command::Normal));
+        rests && !self.parameterising && !self.unsure && self.is == self.found
+    }
+
+    fn ask_mode(&mut self) -> Result<StartupMode, Error> {
+        let mode = StartupMode::parse(self.read_out(ReadOut::STARTUP_MODE)?);
+        (self.is, self.known.mode, self.unsure) = (Some(mode), Some(mode), false);
+        Ok(mode)
+    }
+
+    /// A word that changes the mode; `00000000` behind it where the encoder keeps the mode then, or else the word that
+    /// keeps it (`U`: the manual does not say which does). The encoder is asked which it was.
+    fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
+        let of_cams = matches!(command, Command::Cams(_));
+        let keeps = if of_cams { Command::Run } else { command };
+        let known = self.known.hold.is_some_and(|(mode, _)| mode == wanted);
+        let mut is = wanted;
+        for held in [false, true].into_iter().skip(usize::from(known)) {
+            (self.unsure, self.switched) = (true, true);
+            self.tell_to(command)?;
+            if of_cams {
+                self.run()?;
+            }
+            self.known.hold = held.then_some((wanted, keeps));
+            if !held {
+                self.normal()?;
+            }
+            is = self.ask_mode()?;
+            if does_the_same(is, wanted) {
+                if !held {
+                    self.known.kept = Some(wanted);
+                }
+                return Ok(());
+            }
+        }
+        self.known.hold = None;
+        Err(Error::NoMode { wanted, is })
+    }
+
+    /// Back to what the encoder did when it was found.
+    fn lead_back(&mut self) -> Result<(), Error> {
+        if self.out.is_none() {
+            return Ok(());
+        }
+        let reply = Reply::parse(self.input);
+        let stands = matches!(reply, Reply::Echo { .. } | Reply::Busy { .. })
+            || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
+        if self.parameterising || self.unsure || stands {
+            self.run()?;
+            self.normal()?;
+        }
+        if self.unsure {
+            self.ask_mode()?;
+        }
+        let Some(found) = self.found else { return self.rest() };
+        // A read-out may end a mode as well.
+        if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
+            self.rest()?;
+            self.ask_mode()?;
+        }
+        if !matches!(found, StartupMode::Unknown(_)) {
+            self.go(found)?;
+        }
+        self.rest()
+    }
+
+    /// The word that stands while nothing is asked of the encoder.
+    fn rest(&mut self) -> Result<(), Error> {
+        let word = self.resting_word();
+        if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
+    }
+
+    fn resting_word(&self) -> Command {
+        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| does_the_same(is, *mode)));
+        hold.map_or(Command::Normal, |(_, word)| word)
+    }
+
+    /// Waits until no value stands any more: the next one would look the same.
+    pub(super) fn leave_value(&mut self) -> Result<(), Error> {
+        let asks = self.out.is_some_and(is_question);
+        let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
+        if !asks && !stands {
+            return Ok(());
+        }
+        let word = self.resting_word();
+        let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
+        let patience = if of_cams { VALUE_STAYS.min(self.patience) } else { self.patience };
+        match self.running(word, patience) {
+            Err(Error::TimeOut { .. }) if of_cams => {
+                self.running(Command::Run, self.patience)?;
+                self.running(word, self.patience)
+            }
+            ended => ended,
+        }
+    }
+}
+
+/// Both give the position, or they are the same.
+fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
+    let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
+    is == wanted || is_plain(is) && is_plain(wanted)
+}
+
+fn is_question(command: Command) -> bool {
+    matches!(
+        command,
+        Command::ReadOut(_)
+            | Command::ReadActivation
+            | Command::ReadCamStart(_)
+            | Command::ReadCamStop(_)
+            | Command::ReadShift
+    )
+}

@@ -1,0 +1,31 @@
+//! What one does with an INTERBUS encoder (POSITAL OCD-IB, K3): its process data come over a Modbus/TCP gateway, and
+//! everything but the position over the handshake in them. Reading or setting anything replaces the position and makes cam
+//! outputs invalid for so long; another program switches them. The reference is the project's "interbus".
+//!
+//! ```text
+//! identify, survey, write ── master: the handshake, modes, back to the mode found ──▶ data: OUT ⇄ IN ◀── gateway
+//! ```
+
+pub mod check;
+mod data;
+mod error;
+mod gateway;
+mod handshake;
+mod identify;
+mod master;
+mod reading;
+mod save;
+mod station;
+pub mod write;
+
+pub use data::ProcessData;
+pub use error::{Asked, Awaited, Damage, Error, Exception, Implausible, Meddled};
+pub use gateway::{Carried, Gateway, carried};
+pub use handshake::{Handshake, Says, Standing};
+pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
+pub use master::Master;
+pub use reading::{Place, Reading};
+pub use save::{Kept, read_item, read_state, save};
+pub use station::{PARAMETERS, Station, WordOrder};
+
+use station::Known;

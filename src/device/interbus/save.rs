@@ -1,0 +1,106 @@
+//! What is read to be kept, to be planned upon, or to be shown as an item.
+
+use super::identify::{programs, read_cam, read_image, read_parameters, read_survey};
+use super::{Error, Identity, Master};
+use crate::profile::Unknown;
+use crate::profile::interbus::{DeviceState, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
+use crate::protocol::interbus::{Command, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
+
+impl Identity {
+    /// As it stands in a profile.
+    pub fn profile(&self) -> ProfileIdentity {
+        ProfileIdentity { serial_number: self.serial_number.clone(), flags: Some(self.flags), unknown: Unknown::new() }
+    }
+}
+
+/// Reads everything that can be restored; the cam programs on wish, since each switches the encoder's outputs.
+///
+/// # Errors
+/// The handshake and the way.
+pub fn save(
+    master: &mut Master<'_>,
+    with_programs: bool,
+    told: &mut dyn FnMut(u64, u64, Kept),
+) -> Result<InterbusProfile, Error> {
+    master.guarded(|master| {
+        let survey = read_survey(master, &mut |done, total, read_out| told(done, total, Kept::ReadOut(read_out)))?;
+        let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
+        let of_program = &mut |done, total, program| told(done, total, Kept::Program(program));
+        let image = read_image(master, survey.parameters, &wanted, of_program)?;
+        let recorded = Recorded {
+            software_version: Some(survey.identity.software_version),
+            operating_minutes: Some(survey.operating_minutes),
+            temperature_tenths: Some(survey.temperature_tenths),
+            mode: Some(survey.identity.mode),
+            preset_flag: Some(survey.preset_flag),
+            unknown: Unknown::new(),
+        };
+        Ok(InterbusProfile::of(survey.identity.profile(), image, recorded))
+    })
+}
+
+/// What is read at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Something that is read out.
+    ReadOut(ReadOut),
+    /// A cam program.
+    Program(ProgramNumber),
+}
+
+/// What a plan needs to know of an encoder: its parameters, and these programs of it.
+///
+/// # Errors
+/// [`Error::Implausible`] where steps and turns are no gear; the handshake and the way.
+pub fn read_state(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    programs: &[ProgramNumber],
+    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+) -> Result<DeviceState, Error> {
+    identity.gear()?;
+    master.guarded(|master| {
+        let parameters = read_parameters(master)?;
+        let image = read_image(master, parameters, programs, told)?;
+        Ok(DeviceState { identity: identity.profile(), image })
+    })
+}
+
+/// Reads an item. What lies in a cam program selects it for that.
+///
+/// # Errors
+/// The handshake and the way.
+pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
+    master.guarded(|master| {
+        if let Some(program) = item.program() {
+            master.go(StartupMode::Cams(program))?;
+        }
+        Ok(match item {
+            Item::Steps | Item::Revolutions | Item::Direction | Item::Preset | Item::ZeroShift => {
+                of_parameters(item, &read_parameters(master)?)
+            }
+            Item::Shift => {
+                let (_, shift) = programs(master, &[], &mut |_, _, _| {})?;
+                ItemValue::Number(shift.get().into())
+            }
+            Item::CamMask(_) => ItemValue::Mask(master.ask(Command::ReadActivation)?.get() as u8),
+            Item::Cam(_, cam) => ItemValue::Cam(read_cam(master, cam)?),
+            Item::Temperature | Item::OperatingTime => {
+                let read_out = if item == Item::Temperature { ReadOut::TEMPERATURE } else { ReadOut::OPERATING_TIME };
+                let value = master.read_out(read_out)?;
+                match read_out.value(value) {
+                    ReadOutValue::TenthsOfDegree(tenths) => ItemValue::TenthsOfDegree(tenths),
+                    ReadOutValue::Minutes(minutes) => ItemValue::Minutes(minutes),
+                    _ => ItemValue::Number(value.get()),
+                }
+            }
+        })
+    })
+}
+
+fn of_parameters(item: Item, parameters: &Parameters) -> ItemValue {
+    match item {
+        Item::Direction => ItemValue::Direction(parameters.direction),
+        item => ItemValue::Number(item.parameter().and_then(|own| parameters.value(own)).unwrap_or_default()),
+    }
+}

@@ -1,0 +1,99 @@
+//! What an INTERBUS encoder brings to a write.
+
+use jiff::Timestamp;
+
+use super::{Commit, Committed, Doing, Interbus, JobError, Prepared, Remark, Told, WEAR_LIMIT, device_key};
+use crate::device::interbus::write::{Confirmed, Interrupted, Written, carry_out, confirm};
+use crate::device::interbus::{Error, Master};
+use crate::profile::interbus::{Image, InterbusProfile, Op, Recorded};
+use crate::profile::{Body, Document};
+use crate::store::Outcome;
+use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
+use crate::worker::{Desk, Progress, Tell};
+
+pub(super) fn commit(
+    encoder: &mut Interbus,
+    desk: &mut Desk,
+    commit: &Commit,
+    tell: Told<'_>,
+) -> Result<Committed, JobError> {
+    let prepared = &commit.prepared;
+    let plan = &prepared.plan;
+    let store = desk.store.clone();
+    let device = device_key(&prepared.identity, desk.is_virtual);
+    // At the limit it is worn, not only beyond it; what stores nothing wears nothing.
+    let limit = if plan.write_cycles() == 0 { u64::MAX } else { WEAR_LIMIT - 1 };
+    let terms = Terms::of(device, plan, Op::note, (prepared.cycles_seen, limit), commit.force_wear);
+    let tell = std::cell::RefCell::new(tell);
+    let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+    let told = &mut |progress| (tell.borrow_mut())(Tell::Progress(progress));
+    let mut write = EncoderWrite { master, commit, told };
+    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
+        Failed::NotBegun(why) => why.into(),
+        Failed::Refused(error) => error.into(),
+        Failed::Interrupted { interrupted, backup } => {
+            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
+        }
+    })
+}
+
+struct EncoderWrite<'w, 'm> {
+    master: Master<'m>,
+    commit: &'w Commit,
+    told: &'w mut dyn FnMut(Progress<Doing>),
+}
+
+impl<'w> Write for EncoderWrite<'w, '_> {
+    type Confirmed = Confirmed<'w>;
+    type Written = Written;
+    type Refusal = Error;
+    type Interrupted = Box<Interrupted>;
+
+    fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
+        let Commit { prepared, consent, .. } = self.commit;
+        confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
+    }
+
+    fn before_image(&self) -> String {
+        before_image(&self.commit.prepared)
+    }
+
+    fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
+        let ops = &self.commit.prepared.plan.ops;
+        let told = &mut |number: usize| {
+            let item = ops.get(number).map(Op::item).unwrap_or_default();
+            let (done, total) = (number as u64, ops.len() as u64);
+            (self.told)(Progress { done, total, what: Doing::Operation(item) });
+        };
+        carry_out(&mut self.master, confirmed, told)
+    }
+
+    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
+        match ended {
+            Ok(written) => (Outcome::Done, written.write_cycles),
+            Err(interrupted) => {
+                let outcome = match &interrupted.cause {
+                    Error::Cancelled => Outcome::Cancelled,
+                    cause => Outcome::Failed(cause.to_string()),
+                };
+                (outcome, interrupted.done.write_cycles)
+            }
+        }
+    }
+}
+
+/// A profile of what the plan touches, as it was; the parameters stand in every profile.
+fn before_image(prepared: &Prepared) -> String {
+    let (base, identity) = (&prepared.plan.base, &prepared.identity);
+    let mut image = Image::of(prepared.parameters);
+    image.shift = base.shift;
+    for (number, program) in &base.programs {
+        if let Some(place) = image.program_mut(*number) {
+            *place = Some(*program);
+        }
+    }
+    let profile = InterbusProfile::of(identity.profile(), image, Recorded::default());
+    let mut document = Document::new(Timestamp::now().to_string(), Body::Interbus(Box::new(profile)));
+    document.note = Some("before-image of a write".to_owned());
+    document.emit()
+}
