@@ -1,18 +1,18 @@
 //! The text of an INTERBUS profile: written for people, read from their hands. What is wrong names its entry.
 
 use super::{
-    Direction, Image, InterbusProfile, Item, Kept, MountingMark, Names, Parameters, ProfileIdentity, Recorded,
+    Direction, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters, ProfileIdentity,
+    Recorded,
 };
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
 use crate::protocol::interbus::{Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift};
 
-const NUMBER: &str = "a whole number from 0 to 33554431";
+const NUMBER: &str = "a number from 0 to 33554431";
 const WHOLE: &str = "a whole number";
 const TEXT: &str = "a text";
-const DIRECTION: &str = "\"cw\" or \"ccw\"";
+const DIRECTION: &str = "cw or ccw";
 const SHIFT: &str = "a number from 0 to 25";
-const MASK: &str = "a number from 0 to 255 (0x00 to 0xFF), bit i for cam i";
 
 impl InterbusProfile {
     pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
@@ -41,8 +41,13 @@ impl InterbusProfile {
     }
 
     pub(in crate::profile) fn write(&self, writer: &mut Writer) {
-        self.identity.write(writer);
-        self.recorded.write(writer);
+        // A profile that was made by hand is of no encoder.
+        if self.identity != ProfileIdentity::default() {
+            self.identity.write(writer);
+        }
+        if self.recorded != Recorded::default() {
+            self.recorded.write(writer);
+        }
         if !self.mounting.is_empty() {
             writer.comment("belongs to the mounting: never restored onto another encoder by itself");
             writer.open("mounting", '[');
@@ -179,19 +184,19 @@ fn read_program(
 ) -> Result<(ProgramNumber, Program), ProfileError> {
     let path = entries.path_of("program");
     let number: u32 = entries.required("program", WHOLE)?;
-    let at = u8::try_from(number).ok().and_then(ProgramNumber::new).ok_or_else(|| ProfileError::Value {
-        path,
-        what: format!("{number} is not within 1 to {}", ProgramNumber::COUNT),
-    })?;
+    let at = u8::try_from(number)
+        .ok()
+        .and_then(ProgramNumber::new)
+        .ok_or_else(|| ProfileError::Value { path, what: ItemError::Program { number: number.into() }.to_string() })?;
     names.set_program(at, entries.optional("name", TEXT)?.unwrap_or_default());
-    let mut program = Program { mask: entries.required("mask", MASK)?, ..Program::default() };
+    let mut program = Program { mask: entries.required("mask", BYTE)?, ..Program::default() };
     for mut entries in entries.structures("cams")? {
         let path = entries.path_of("cam");
         let number: u32 = entries.required("cam", WHOLE)?;
         let cam = u8::try_from(number).ok().and_then(CamNumber::new);
         let wrong = |what: String| ProfileError::Value { path, what };
         let Some(cam) = cam else {
-            return Err(wrong(format!("{number} is not within 0 to {}", Program::CAMS - 1)));
+            return Err(wrong(ItemError::Cam { number: number.into() }.to_string()));
         };
         if program.cam(cam).is_some() {
             return Err(wrong(format!("cam {number} stands twice")));

@@ -156,6 +156,35 @@ fn a_wrong_biss_profile_is_told_in_both_languages() {
 }
 
 #[test]
+fn a_wrong_interbus_profile_is_told_in_both_languages() {
+    let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
+        zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
+        start: 1, stop: 2)])])"#;
+    assert!(Document::parse(good).is_ok());
+    let cases = [
+        ("parameters:", "parametres:"),
+        ("3600", "-1"),
+        ("\"cw\"", "\"left\""),
+        ("shift: 8", "shift: 26"),
+        ("\"preset\"", "7"),
+        ("\"preset\"", "\"operating-time\""),
+        ("\"preset\"", "\"cam:9:0\""),
+        ("\"preset\"", "\"cam:1:8\""),
+        ("\"preset\"", "\"x\""),
+        ("program: 1", "program: 0"),
+        ("mask: 1", "mask: 256"),
+        ("cam: 0", "cam: 8"),
+        ("cams: [", "cams: [(cam: 0, start: 1, stop: 2), "),
+        ("programs: [", "programs: [(program: 1, mask: 1), "),
+        ("start: 1, ", ""),
+    ];
+    for (from, to) in cases {
+        let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+        check(&document(&error), &error);
+    }
+}
+
+#[test]
 fn a_wrong_ssi_profile_is_told_in_both_languages() {
     let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
         singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",

@@ -122,6 +122,36 @@ fn what_the_encoder_does_not_have_is_named() {
     assert_eq!(restore.missing[..3], ["shift", "cam-mask:3", "cam:3:0"]);
 }
 
+/// Onto an encoder whose programs are those of the tests.
+#[test]
+fn the_ready_made_profiles_do_what_they_say() {
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        let document = crate::profile::Document::parse(&text).unwrap();
+        assert_eq!(document.emit(), text, "as this program writes it");
+        document.body.into_interbus().unwrap()
+    };
+    let machine = read("packaging-machine.ron");
+    let now = device(MINE, &[]);
+    let restore = plan_restore(&machine, &now, RestoreOptions::default()).unwrap();
+    // Three programs; steps, turns and direction are those of the tests, the preset belongs to the mounting.
+    assert_eq!((restore.plan.ops.len(), restore.plan.write_cycles()), (3, 3));
+    assert_eq!((restore.mounting_left, restore.missing), (vec![Item::Preset], Vec::<String>::new()));
+    let after = machine.image.known().map(|(number, own)| (machine.names.program(number), own.outputs(value(1500))));
+    assert_eq!(
+        after.collect::<Vec<_>>(),
+        [("carton 120 mm", 1 << 2), ("carton 180 mm", 1 << 2), ("set-up, glue off", 0)]
+    );
+    // 100 steps a millimetre over 2.5 m; the preset is not within the range that the encoder has.
+    let spindle = read("scaled-encoder.ron");
+    assert_eq!(spindle.image.parameters.gear().map(|gear| gear.steps()), Ok(250_000));
+    let with_it = RestoreOptions { with_mounting: true, ..RestoreOptions::default() };
+    let restore = plan_restore(&spindle, &now, with_it).unwrap();
+    let expected = ["revolutions: 1 → 250, steps: 3600 → 250000, direction: cw → ccw, preset: 500 → 125000"];
+    assert_eq!(operations(&restore), expected);
+}
+
 #[test]
 fn a_comparison_names_what_differs() {
     let (left, mut right) = (profile(MINE), profile("7654321"));
