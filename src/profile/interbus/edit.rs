@@ -19,7 +19,6 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     let mut plan = InterbusPlan { base: Base::default(), ops: Vec::new() };
     let changes = parameter_changes(&device.parameters, &wanted.parameters)?;
     if !changes.is_empty() {
-        plan.base.parameters = Some(device.parameters);
         plan.ops.push(Op::Parameterise(changes));
     }
     check_cams_that_stay(device, wanted)?;
@@ -52,6 +51,7 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
         }
     }
     plan.ops.extend(programs.into_iter().map(Op::Program));
+    plan.base.parameters = (!plan.is_empty()).then_some(device.parameters);
     Ok(plan)
 }
 

@@ -9,11 +9,11 @@ use crate::protocol::interbus::{CamNumber, Parameter, Program, ProgramNumber, Va
 /// What a write to an INTERBUS encoder would do.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// What was read before a plan was made: all that its operations change. Programs that it does not touch are not in it,
-/// since reading one switches the encoder's outputs.
+/// What was read before a plan was made: all that its operations change, and the range that its cams have to be within.
+/// Programs that it does not touch are not in it, since reading one switches the encoder's outputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// The parameters; `None` where the plan touches none.
+    /// The parameters; `None` where there is nothing to do.
     pub parameters: Option<Parameters>,
     /// The shift of the window; `None` where the plan does not touch it.
     pub shift: Option<WindowShift>,

@@ -62,7 +62,7 @@ fn a_full_set_touches_only_what_differs() {
     assert_eq!(plan.ops, expected);
     assert_eq!(plan.write_cycles(), 3);
     let touched: Vec<u8> = plan.base.programs.iter().map(|(number, _)| number.get()).collect();
-    assert_eq!((touched, plan.base.parameters, plan.base.shift), (vec![2, 5, 8], None, None));
+    assert_eq!((touched, plan.base.parameters, plan.base.shift), (vec![2, 5, 8], Some(device.parameters), None));
     assert_eq!(plan.base.programs[0].1, *device.program(program(2)).unwrap());
     let items: Vec<String> = plan.ops.iter().map(Op::item).collect();
     assert_eq!(items, ["cam:2:0, cam:2:7", "cam:5:3", "cam-mask:8, cam:8:1"]);
