@@ -362,7 +362,7 @@ mod tests {
             ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
             ("schema: 1,", "", "schema is missing"),
             ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
-            ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\" and \"ssi\""),
+            ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\", \"ssi\" and"),
             ("\"A1\"", "17", "identity.serial_number must be a text"),
             ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
             ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
@@ -400,7 +400,12 @@ mod tests {
                 count += 1;
             }
             // Of SSI, each family as delivered and one more.
-            assert_eq!(count, if kind == ssi::KIND { 12 } else { 3 }, "{kind}");
+            let expected = match kind {
+                ssi::KIND => 12,
+                interbus::KIND => 2,
+                _ => 3,
+            };
+            assert_eq!(count, expected, "{kind}");
         }
     }
 }
