@@ -3,6 +3,7 @@
 pub mod biss;
 pub mod bridge;
 pub mod ethernet_ip;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 pub mod ssi;

@@ -1,0 +1,46 @@
+//! HIPERDRIVE: small drives of halstrup-walcher, one behind an EtherNet/IP adapter or up to eight behind a hub. Control and
+//! status words, the state machine, process data, parameter words, parameters, scaling, switches and lamps.
+//!
+//! Source: the drive's manual 004 ("the manual" below; the project's reference of it where a section is named so). `D` is
+//! derived, `U` is left open by the manual; where it contradicts itself, reference 8 says what is taken.
+
+mod control_word;
+mod error_code;
+mod leds;
+mod parameter;
+mod parameters;
+mod pkw;
+mod process_data;
+mod recipe;
+mod scaling;
+mod state;
+mod status_word;
+mod switches;
+mod value;
+mod variant;
+#[cfg(test)]
+mod vectors;
+
+/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+pub const KIND: &str = "hiperdrive";
+/// Halstrup-Walcher in ODVA's list of makers.
+pub const VENDOR: u16 = 1010;
+/// Assemblies of the cyclic connection: configuration, to the drives, back from them.
+pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
+
+pub use control_word::{Begins, ControlBit, ControlWord, Direction, Refused, RunEnd};
+pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
+pub use leds::{BUS_LEDS, BusLamp, BusLedRow, BusLight, DRIVE_LEDS, DRIVES_LEDS, DriveLight, LedRow, drive_led};
+pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range};
+pub use parameters::PARAMETERS;
+pub use pkw::{Answer, Pkw, PkwError, Task};
+pub use process_data::{
+    Actual, ByteOrder, ImageError, InImage, Layout, OutData, OutImage, Percent, Setpoint, Topology,
+};
+pub use recipe::{ACKNOWLEDGE, ENABLE, Step, UNLOCK};
+pub use scaling::{Family, Length, PositionScale, ScaleError, SpeedScale, effective_torque, nearest_reference, turns};
+pub use state::{State, TRANSITIONS, Transition, Trigger};
+pub use status_word::{StatusBit, StatusWord};
+pub use switches::AddressSwitch;
+pub use value::{Kind, Value, ValueError};
+pub use variant::{VARIANTS, Variant, VariantRow};

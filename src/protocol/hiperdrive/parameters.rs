@@ -1,0 +1,127 @@
+//! All parameters, of the device and of drive 1 (reference 4). Names are ours: the manual's are German.
+
+use super::parameter::{Access, Factory, ParameterRow, Range};
+use super::value::Kind;
+use Kind::{I8, I16, I32, Text, U8, U16, U32};
+use Range::{Any, OneOf, Within, WithinOr};
+
+/// Something that is only read.
+const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {
+    ParameterRow {
+        number,
+        name,
+        unit,
+        kind,
+        access: Access::Read,
+        saved: false,
+        range: Range::Any,
+        factory: Factory::None,
+    }
+}
+
+impl ParameterRow {
+    /// It can be written, and is gone without supply.
+    const fn written(self, range: Range, factory: Factory) -> Self {
+        ParameterRow { access: Access::ReadWrite, range, factory, ..self }
+    }
+
+    /// It can be written, and is kept by a save.
+    const fn kept(self, range: Range, factory: Factory) -> Self {
+        ParameterRow { saved: true, ..self.written(range, factory) }
+    }
+}
+
+const fn text(number: u16, name: &'static str) -> ParameterRow {
+    read(number, name, Text, "")
+}
+
+const fn register(number: u16, name: &'static str) -> ParameterRow {
+    read(number, name, U32, "").kept(Any, Factory::Number(0))
+}
+
+const fn error(number: u16, name: &'static str) -> ParameterRow {
+    read(number, name, U16, "")
+}
+
+const fn percent(number: u16, name: &'static str) -> ParameterRow {
+    read(number, name, U8, "%").written(Within(1, 100), Factory::Number(100))
+}
+
+const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
+    read(number, name, U16, "").kept(Within(1, 65535), Factory::Number(factory))
+}
+
+/// All of them, by number. Types of 11, 119, 186 and 188 are assumed (`U`): the manual has their bits alone, or nothing.
+pub const PARAMETERS: [ParameterRow; 71] = [
+    read(9, "control supply", U16, "0.1 V"),
+    read(11, "device temperature", I16, "°C"),
+    read(12, "address switch", U16, ""),
+    text(13, "category"),
+    text(15, "name"),
+    text(16, "article number"),
+    read(17, "serial number", U16, ""),
+    text(18, "production date"),
+    text(19, "software version"),
+    register(24, "free register 1"),
+    register(26, "free register 2"),
+    register(28, "free register 3"),
+    register(30, "free register 4"),
+    register(32, "free register 5"),
+    register(34, "free register 6"),
+    register(36, "free register 7"),
+    register(38, "free register 8"),
+    register(40, "free register 9"),
+    register(42, "free register 10"),
+    read(47, "save and reset", I16, "").written(Within(-4, 1), Factory::Number(0)),
+    read(101, "control word", U16, "").written(Any, Factory::Number(0)),
+    percent(102, "speed"),
+    percent(103, "torque"),
+    read(104, "target position", I32, "steps").written(Any, Factory::Number(0)),
+    read(105, "status word", U16, ""),
+    read(106, "actual speed", I16, "0.1 rpm"),
+    read(107, "actual position", I32, "steps"),
+    error(108, "error 1"),
+    error(109, "error 2"),
+    error(110, "error 3"),
+    error(111, "error 4"),
+    error(112, "error 5"),
+    error(113, "error 6"),
+    error(114, "error 7"),
+    error(115, "error 8"),
+    error(116, "drive error word"),
+    error(117, "motion status"),
+    error(118, "communication error"),
+    read(119, "drive temperature", I8, "°C"),
+    read(120, "variant", U16, ""),
+    text(121, "drive name"),
+    text(122, "drive article number"),
+    text(123, "drive serial number"),
+    text(124, "drive production date"),
+    text(125, "drive software version"),
+    text(126, "nominal voltage"),
+    text(127, "nominal current"),
+    text(128, "nominal torque"),
+    text(129, "nominal speed"),
+    read(152, "requested", U8, "").kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 }),
+    scale(154, "position scale numerator", 256),
+    scale(156, "position scale denominator", 1),
+    read(158, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)),
+    read(160, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)),
+    scale(162, "speed scale numerator", 10),
+    scale(164, "speed scale denominator", 1),
+    read(166, "maximum speed", U16, "0.1 rpm").kept(Within(5, 350), Factory::Number(350)),
+    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)),
+    percent(172, "jog 1 speed"),
+    percent(174, "jog 1 torque"),
+    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)),
+    percent(178, "jog 2 speed"),
+    percent(180, "jog 2 torque"),
+    read(182, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
+    read(186, "RS-485 time-out", U8, "0.1 s").kept(WithinOr(1, 100, 255), Factory::Number(20)),
+    read(188, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
+    read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)),
+    read(192, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
+    read(197, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
+    read(198, "set actual position", I32, "steps").kept(Any, Factory::Number(0)),
+    ParameterRow { access: Access::Write, ..read(199, "reset drive", U8, "").written(Within(0, 1), Factory::None) },
+];

@@ -1,0 +1,47 @@
+//! The address switches S1 and S2, read when the device is switched on (reference 1). S3 chooses what the lamp RS485 is about.
+
+use core::net::Ipv4Addr;
+
+/// Where the two switches say that the IP address comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AddressSwitch {
+    /// 0: as the TCP/IP object says (class F5h, attribute 3): stored, BOOTP or, from the factory, DHCP.
+    Object,
+    /// 1 to 96: 192.168.1.n with the mask 255.255.255.0 and no gateway.
+    Fixed(Ipv4Addr),
+    /// 97: as it is stored. Turned to 97 while it runs, the device also stores its present address.
+    Stored,
+    /// 98.
+    Bootp,
+    /// 99.
+    Dhcp,
+}
+
+impl AddressSwitch {
+    /// By the two digits; `None` above 99.
+    pub const fn parse(number: u8) -> Option<Self> {
+        let source = match number {
+            0 => AddressSwitch::Object,
+            1..=96 => AddressSwitch::Fixed(Ipv4Addr::new(192, 168, 1, number)),
+            97 => AddressSwitch::Stored,
+            98 => AddressSwitch::Bootp,
+            99 => AddressSwitch::Dhcp,
+            _ => return None,
+        };
+        Some(source)
+    }
+
+    /// The two digits.
+    pub const fn number(self) -> u8 {
+        match self {
+            AddressSwitch::Object => 0,
+            AddressSwitch::Fixed(address) => {
+                let [_, _, _, last] = address.octets();
+                last
+            }
+            AddressSwitch::Stored => 97,
+            AddressSwitch::Bootp => 98,
+            AddressSwitch::Dhcp => 99,
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Words and process data of the reference, both ways; what must not be sent; anything else. Parameters and scaling stand
+//! beside.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::bits::{hex, parse_hex};
+use ControlBit as C;
+use StatusBit as S;
+
+mod numbers;
+
+const SINGLE: Layout = Layout { topology: Topology::Adapter, pkw: true, order: ByteOrder::Little };
+const BARE: Layout = Layout { pkw: false, ..SINGLE };
+
+fn bytes(text: &str) -> Vec<u8> {
+    parse_hex(text).unwrap()
+}
+
+fn word(word: u16) -> ControlWord {
+    ControlWord::parse(word).unwrap()
+}
+
+fn status(word: u16) -> StatusWord {
+    StatusWord::new(word)
+}
+
+/// Reference 3: every word has its name, and every name its word.
+#[test]
+fn the_published_control_words() {
+    use Direction::{Clockwise, Counterclockwise};
+    use RunEnd::{Endless, RangeEnd};
+    let cases = [
+        (0x0000, ControlWord::OFF),
+        (0x0400, ControlWord::READY),
+        (0x0401, ControlWord::OPERATIONAL),
+        (0x0409, ControlWord::ENABLED),
+        (0x0481, ControlWord::ACKNOWLEDGE),
+        // ZSW12 is clear in 2A37 and set in 3E37: hold with the same, start with the other.
+        (0x0439, ControlWord::holding(status(0x2A37))),
+        (0x0479, ControlWord::starting(status(0x2A37))),
+        (0x0479, ControlWord::holding(status(0x3E37))),
+        (0x0439, ControlWord::starting(status(0x3E37))),
+        (0x1419, ControlWord::speed_mode(Clockwise, RangeEnd)),
+        (0x1459, ControlWord::running(Clockwise, RangeEnd)),
+        (0x1409, ControlWord::speed_mode(Counterclockwise, RangeEnd)),
+        (0x1449, ControlWord::running(Counterclockwise, RangeEnd)),
+        (0x1439, ControlWord::speed_mode(Clockwise, Endless)),
+        (0x1479, ControlWord::running(Clockwise, Endless)),
+    ];
+    for (expected, control) in cases {
+        assert_eq!(format!("{:04X}", control.word()), format!("{expected:04X}"));
+        assert_eq!(ControlWord::parse(expected), Ok(control));
+    }
+    let names = |of: u16| word(of).set().map(|(bit, name)| format!("{bit} {name}")).collect::<Vec<_>>().join(", ");
+    assert_eq!(names(0x0479), "0 on, 3 enable operation, 4 no stop, 5 no pause, 6 job toggle, 10 control by PLC");
+    assert_eq!(names(0x1459), "0 on, 3 enable operation, 4 clockwise, 6 run, 10 control by PLC, 12 speed mode");
+    assert_eq!(names(0x0509), "0 on, 3 enable operation, 8 jog 1, 10 control by PLC");
+}
+
+/// Reference 9, negative: bits 1, 2, 11, 13 to 15; 047F as PROFIdrive has it.
+#[test]
+fn reserved_bits_are_refused() {
+    for bit in [1, 2, 11, 13, 14, 15] {
+        let wrong = 0x0409 | 1 << bit;
+        assert_eq!(ControlWord::parse(wrong), Err(Refused { word: wrong }), "bit {bit}");
+    }
+    let refused = ControlWord::parse(0x047F).unwrap_err();
+    assert_eq!(refused.to_string(), "control word 047F has reserved bits set (1, 2), which must be 0");
+    let legal = (0..=u16::MAX).filter(|word| ControlWord::parse(*word).is_ok()).count();
+    // Ten bits are left.
+    assert_eq!(legal, 1 << 10);
+}
+
+/// A stop is another bit in each mode; it ends no jog step, which is why its word has none.
+#[test]
+fn a_stop_is_the_modes_own() {
+    for (before, stopped) in [
+        (0x0479, 0x0469),
+        (0x0439, 0x0429),
+        (0x1459, 0x1419),
+        (0x1449, 0x1409),
+        (0x1479, 0x1439),
+        (0x0509, 0x0409),
+        (0x0400, 0x0400),
+    ] {
+        assert_eq!(word(before).stopped().word(), stopped, "{before:04X}");
+    }
+    assert_eq!(word(0x0479).paused().word(), 0x0459);
+    assert_eq!(word(0x0459).resumed().word(), 0x0479);
+    assert_eq!((word(0x1459).paused().word(), word(0x1419).resumed().word()), (0x1459, 0x1419));
+}
+
+/// Reference 3 and 8.10: the start of a job is a difference of levels, of a run an edge, and neither begins while anything
+/// is missing.
+#[test]
+fn what_begins_with_a_word() {
+    let cases = [
+        ("job", 0x0439, 0x0479, 0x2A37, Some(Begins::Job)),
+        ("next job", 0x0479, 0x0439, 0x3E37, Some(Begins::Job)),
+        ("bit 6 as acknowledged", 0x0439, 0x0479, 0x3E37, None),
+        ("held", 0x0409, 0x0439, 0x2A37, None),
+        ("a level, no edge", 0x0479, 0x0479, 0x2A37, Some(Begins::Job)),
+        ("stopped", 0x0439, 0x0469, 0x2A37, None),
+        ("paused", 0x0439, 0x0459, 0x2A37, None),
+        ("not enabled yet", 0x0439, 0x0479, 0x2A33, None),
+        ("fault", 0x0439, 0x0479, 0x2ABF, None),
+        ("run", 0x1419, 0x1459, 0x2A37, Some(Begins::Run)),
+        ("runs already", 0x1459, 0x1459, 0x1A37, None),
+        // The run has set ZSW12 and its stop left bit 6 clear: without bit 12 that is a job to a stale target.
+        ("out of speed mode", 0x1419, 0x0439, 0x3E37, Some(Begins::Job)),
+        ("out of it through 0400", 0x1419, 0x0400, 0x3E37, None),
+        ("jog 1", 0x0409, 0x0509, 0x2A37, Some(Begins::JogOne)),
+        ("jog 2", 0x0409, 0x0609, 0x2A37, Some(Begins::JogTwo)),
+        ("jog 1 kept", 0x0509, 0x0509, 0x2A37, None),
+    ];
+    for (label, before, now, says, expected) in cases {
+        assert_eq!(word(now).begins(word(before), status(says)), expected, "{label}");
+    }
+}
+
+/// Reference 3 and 9.
+#[test]
+fn the_published_status_words() {
+    let cases = [
+        (0x2A30, State::NotReady),
+        (0x2A31, State::Ready),
+        (0x2A33, State::Operational),
+        (0x2A37, State::Enabled),
+        (0x1A37, State::Moving),
+        (0x0A37, State::Moving),
+        (0x3E37, State::Enabled),
+        (0x2AB8, State::Fault),
+        (0x2A70, State::Locked),
+        // A fault goes before everything, the lock before the rest.
+        (0x2AFF, State::Fault),
+        (0x2A77, State::Locked),
+    ];
+    for (word, state) in cases {
+        assert_eq!(status(word).state(), state, "{word:04X}");
+    }
+    // Bits 4, 5, 9, 11 of a drive that was found; 13 while it stands.
+    let standing = StatusWord::FOUND.with(S::StandingStill, true);
+    assert_eq!((standing.word(), standing.is_present()), (0x2A30, true));
+    let set: Vec<u8> = standing.set().map(StatusBit::number).collect();
+    assert_eq!(set, [4, 5, 9, 11, 13]);
+    assert!(!status(0).is_present());
+    assert_eq!(status(0x3E37).with(S::TargetReached, false).word(), 0x3A37);
+    let [moving, done] = [0x1A37, 0x3E37].map(|word| status(word).has(S::SetpointAcknowledged));
+    assert!(moving && done);
+}
+
+/// Reference 3, row by row.
+#[test]
+fn the_state_machine() {
+    use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
+    let cases = [
+        (NotReady, 0x0000, 0x0400, Ready),
+        (NotReady, 0x0000, 0x0001, NotReady),
+        (Ready, 0x0400, 0x0000, NotReady),
+        (Ready, 0x0400, 0x0401, Operational),
+        // One step at a time.
+        (Ready, 0x0400, 0x0409, Operational),
+        (Operational, 0x0401, 0x0400, Ready),
+        (Operational, 0x0401, 0x0409, Enabled),
+        (Operational, 0x0401, 0x0000, NotReady),
+        (Enabled, 0x0409, 0x0401, Operational),
+        (Enabled, 0x0409, 0x0408, Ready),
+        (Enabled, 0x0409, 0x0009, NotReady),
+        (Enabled, 0x0439, 0x0479, Enabled),
+        (Moving, 0x0479, 0x0400, Ready),
+        (Moving, 0x0479, 0x0000, NotReady),
+        (Fault, 0x0401, 0x0481, Fault),
+        (Fault, 0x0481, 0x0401, Locked),
+        (Fault, 0x0481, 0x0481, Fault),
+        (Fault, 0x0401, 0x0400, Fault),
+        (Locked, 0x0401, 0x0401, Locked),
+        (Locked, 0x0401, 0x0400, Ready),
+        (Locked, 0x0401, 0x0000, NotReady),
+        // Bit 0 has fallen before: nothing is left to fall.
+        (Locked, 0x0400, 0x0400, Locked),
+    ];
+    for (from, before, now, to) in cases {
+        assert_eq!(from.after(word(before), word(now)), to, "{from}: {before:04X} {now:04X}");
+    }
+    for (from, trigger, to) in [
+        (Enabled, Trigger::Starts, Moving),
+        (Moving, Trigger::Starts, Moving),
+        (Moving, Trigger::Ends, Enabled),
+        (Moving, Trigger::Fails, Fault),
+        (Operational, Trigger::Fails, Fault),
+        (Ready, Trigger::Fails, Ready),
+        (Operational, Trigger::Starts, Operational),
+    ] {
+        assert_eq!(from.by(trigger), to, "{from}");
+    }
+    let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.obeys_keys()).collect();
+    assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
+    // The word of a row does what the row says, from the word with which its state is kept.
+    for (state, kept) in
+        [(NotReady, 0), (Ready, 0x400), (Operational, 0x401), (Enabled, 0x409), (Fault, 0x481), (Locked, 0x401)]
+    {
+        for row in state.transitions() {
+            let Some(control) = row.word else { continue };
+            assert_eq!(state.after(word(kept), control), row.to, "{state} by {:04X}", control.word());
+        }
+    }
+}
+
+/// What a drive says in a state, as reference 3 has it.
+fn said_in(state: State) -> StatusWord {
+    let word = match state {
+        State::NotReady => 0x2A30,
+        State::Ready => 0x2A31,
+        State::Operational => 0x2A33,
+        State::Enabled => 0x2A37,
+        State::Moving => 0x1A37,
+        State::Fault => 0x2AB8,
+        State::Locked => 0x2A70,
+    };
+    status(word)
+}
+
+/// Each recipe leads where it says, its words as reference 3 has them, and no step is done before its word.
+#[test]
+fn the_recipes_lead_where_they_say() {
+    let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
+        let mut words = Vec::new();
+        for step in steps {
+            assert!(step.until.is_empty() || !step.is_done(said_in(state)), "{state} before {:04X}", step.word.word());
+            state = state.after(before, step.word);
+            assert!(step.is_done(said_in(state)), "{state} after {:04X}", step.word.word());
+            before = step.word;
+            words.push(step.word.word());
+        }
+        (words, state)
+    };
+    let enabled = walk(&ENABLE, ControlWord::OFF, State::NotReady);
+    assert_eq!(enabled, (vec![0x0000, 0x0400, 0x0401, 0x0409], State::Enabled));
+    let acknowledged = walk(&ACKNOWLEDGE, ControlWord::ENABLED, State::Fault);
+    assert_eq!(acknowledged, (vec![0x0481, 0x0401, 0x0400, 0x0401, 0x0409], State::Enabled));
+    let unlocked = walk(&UNLOCK, ControlWord::READY, State::Locked);
+    assert_eq!(unlocked, (vec![0x0401, 0x0400], State::Ready));
+}
+
+/// Reference 9: target 2.5 turns = 163840, 100 %, both byte orders; −1 turn = −65536 with 50 and 75 %.
+#[test]
+fn the_published_process_data_to_a_drive() {
+    let setpoint = |control: u16, speed, torque, target| Setpoint {
+        control: word(control),
+        speed: Percent::new(speed).unwrap(),
+        torque: Percent::new(torque).unwrap(),
+        target,
+    };
+    let zeros = "00 00 00 00 00 00 00 00";
+    let cases = [
+        ("00 00 64 64 00 80 02 00", setpoint(0x0000, 100, 100, 163_840)),
+        ("00 04 64 64 00 80 02 00", setpoint(0x0400, 100, 100, 163_840)),
+        ("01 04 64 64 00 80 02 00", setpoint(0x0401, 100, 100, 163_840)),
+        ("09 04 64 64 00 80 02 00", setpoint(0x0409, 100, 100, 163_840)),
+        ("39 04 64 64 00 80 02 00", setpoint(0x0439, 100, 100, 163_840)),
+        ("79 04 64 64 00 80 02 00", setpoint(0x0479, 100, 100, 163_840)),
+        ("39 04 32 4B 00 00 FF FF", setpoint(0x0439, 50, 75, -65_536)),
+        ("19 14 19 64 00 00 00 00", setpoint(0x1419, 25, 100, 0)),
+        ("59 14 19 64 00 00 00 00", setpoint(0x1459, 25, 100, 0)),
+    ];
+    for (text, setpoint) in cases {
+        let bare = OutImage { drives: vec![setpoint.into()], pkw: None };
+        assert_eq!((hex(&bare.emit(BARE)), OutImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(bare.clone())));
+        let with = OutImage { pkw: Some(Pkw::default()), ..bare };
+        assert_eq!(hex(&with.emit(SINGLE)), format!("{text} {zeros}"));
+        assert_eq!(with.drives[0].control(), Ok(setpoint.control));
+    }
+    let big = Layout { order: ByteOrder::Big, ..BARE };
+    let image = OutImage { drives: vec![setpoint(0x0479, 100, 100, 163_840).into()], pkw: None };
+    assert_eq!(hex(&image.emit(big)), "04 79 64 64 00 02 80 00");
+    assert_eq!(OutImage::parse(&bytes("04 79 64 64 00 02 80 00"), big), Ok(image));
+    let odd = OutImage::parse(&bytes("7F 04 64 FF 00 00 00 00"), BARE).unwrap().drives[0];
+    assert_eq!((odd.control(), odd.torque), (Err(Refused { word: 0x047F }), 255));
+    assert_eq!((Percent::new(101), Percent::new(100)), (None, Some(Percent::FULL)));
+}
+
+/// Reference 9.
+#[test]
+fn the_published_process_data_from_a_drive() {
+    let cases = [
+        ("37 1A 20 03 A0 86 01 00", 0x1A37, 800, 100_000),
+        ("37 3E 00 00 00 80 02 00", 0x3E37, 0, 163_840),
+        // By hand: −1.5 rpm = −15 = FFF1h, −1 step.
+        ("37 1A F1 FF FF FF FF FF", 0x1A37, -15, -1),
+    ];
+    for (text, word, speed, position) in cases {
+        let image = InImage { drives: vec![Actual { status: status(word), speed, position }], pkw: None };
+        assert_eq!((hex(&image.emit(BARE)), InImage::parse(&bytes(text), BARE)), (text.to_owned(), Ok(image)));
+    }
+    let actual = InImage::parse(&bytes(cases[0].0), BARE).unwrap().drives[0];
+    assert_eq!((actual.status.state(), SpeedScale::FACTORY.rpm(actual.speed)), (State::Moving, 80.0));
+    assert_eq!(turns(actual.position), (1, 34_464));
+}
+
+/// Reference 2: 16 and 8 bytes of an adapter, 40 and 72 of the hubs, 8 less without parameter words, which stand at 32 and 64.
+#[test]
+fn the_published_lengths() {
+    let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };
+    let [single, four, eight] = Topology::ALL;
+    for (topology, with) in [(single, 16), (four, 40), (eight, 72)] {
+        assert_eq!((layout(topology, true).length(), layout(topology, false).length()), (with, with - 8));
+        for pkw in [true, false] {
+            let layout = layout(topology, pkw);
+            assert_eq!(Layout::of_length(layout.length()).collect::<Vec<_>>(), [layout]);
+        }
+        assert_eq!(Topology::of_category(topology.category()), Some(topology));
+    }
+    assert_eq!(Layout::of_length(24).count(), 0);
+    // Drive 3 of a hub at 16, the parameter words behind the drives; what is not given is zero.
+    for (topology, at) in [(four, 32), (eight, 64)] {
+        let drives = vec![OutData::default(), OutData::default(), OutData { target: -1, ..OutData::default() }];
+        let request = Pkw::request(Task::Read, 166, 0, 0);
+        let image = OutImage { drives, pkw: Some(request) };
+        let bytes = image.emit(layout(topology, true));
+        assert_eq!((hex(&bytes[20..24]), hex(&bytes[at..at + 2])), ("FF FF FF FF".to_owned(), "A6 10".to_owned()));
+        assert_eq!(bytes.iter().filter(|byte| **byte != 0).count(), 6);
+        let parsed = OutImage::parse(&bytes, layout(topology, true)).unwrap();
+        assert_eq!((parsed.drives.len(), parsed.pkw), (at / 8, Some(request)));
+    }
+    let wrong = ImageError { expected: 40, got: 39 };
+    assert_eq!(InImage::parse(&[0; 39], layout(four, true)), Err(wrong));
+    assert_eq!(OutImage::parse(&[0; 41], layout(four, true)), Err(ImageError { got: 41, ..wrong }));
+}
+
+proptest! {
+    #[test]
+    fn no_host_sets_a_reserved_or_a_jog_bit(says: u16, clockwise: bool, endless: bool, from: u16) {
+        let says = status(says);
+        let direction = if clockwise { Direction::Clockwise } else { Direction::Counterclockwise };
+        let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
+        let before = word(from & !0xE806);
+        for control in [
+            ControlWord::holding(says),
+            ControlWord::starting(says),
+            ControlWord::speed_mode(direction, end),
+            ControlWord::running(direction, end),
+            before.stopped(),
+        ] {
+            prop_assert_eq!(ControlWord::parse(control.word()), Ok(control));
+            prop_assert!(!control.has(C::JogOne) && !control.has(C::JogTwo));
+        }
+        prop_assert_eq!(before.stopped().begins(before, says), None);
+        prop_assert_eq!(ControlWord::holding(says).begins(before, says), None);
+        prop_assert_eq!(ControlWord::READY.begins(before, says), None);
+    }
+
+    #[test]
+    fn every_image_survives(data: Vec<u8>, big: bool) {
+        let order = if big { ByteOrder::Big } else { ByteOrder::Little };
+        for layout in Topology::ALL.into_iter().flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order })) {
+            let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.length()).collect();
+            prop_assert_eq!(OutImage::parse(&data, layout).unwrap().emit(layout), data.clone());
+            prop_assert_eq!(InImage::parse(&data, layout).unwrap().emit(layout), data);
+        }
+    }
+
+    #[test]
+    fn no_bytes_panic(data: Vec<u8>) {
+        for layout in Layout::of_length(data.len()).chain([SINGLE, BARE]) {
+            let _ = (OutImage::parse(&data, layout), InImage::parse(&data, layout));
+        }
+        for row in PARAMETERS {
+            let _ = row.kind.parse(&data);
+        }
+    }
+}
