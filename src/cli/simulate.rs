@@ -22,6 +22,12 @@ const SHORT: Duration = Duration::from_millis(10);
 pub(super) trait Simulated: ByteDevice {
     /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
     fn format(&self, now: Moment) -> Option<CharacterFormat>;
+
+    /// The same device for another client beside this one; `None` where there is one line to it, and clients come one
+    /// after the other.
+    fn another(&self) -> Option<Box<dyn Simulated>> {
+        None
+    }
 }
 
 pub(super) fn simulate(arguments: &Simulate) -> Result {
@@ -31,7 +37,7 @@ pub(super) fn simulate(arguments: &Simulate) -> Result {
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
-    let mut device = Device { kind: kind.name, simulated, clock: RealClock::start() };
+    let mut device = Device { kind: kind.name, simulated, clock: Arc::new(RealClock::start()) };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
         (None, Some(address)) => listen(address, &mut device, &ended)?,
@@ -57,7 +63,7 @@ pub(super) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
 struct Device {
     kind: &'static str,
     simulated: Box<dyn Simulated>,
-    clock: RealClock,
+    clock: Arc<RealClock>,
 }
 
 /// What reading from a client gave.
@@ -69,6 +75,12 @@ enum Heard {
 }
 
 impl Device {
+    /// For another client.
+    fn another(&self) -> Option<Device> {
+        let simulated = self.simulated.another()?;
+        Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
+    }
+
     /// Serves one client until it goes or the program is interrupted. `baud` is what the client's side is set to, where
     /// that can be seen.
     fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
@@ -171,20 +183,30 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     let listener = TcpListener::bind(address).map_err(cannot)?;
     listener.set_nonblocking(true).map_err(cannot)?;
     device.ready(&listener.local_addr().map_err(cannot)?.to_string())?;
-    while !ended.load(Ordering::SeqCst) {
-        match listener.accept() {
-            Ok((mut client, _)) => {
-                // A client that cannot be served is gone; the next one may come.
-                let _ = client
-                    .set_nonblocking(false)
-                    .and_then(|()| client.set_nodelay(true))
-                    .and_then(|()| client.set_write_timeout(Some(PATIENCE * 10)))
-                    .and_then(|()| device.serve(&mut client, ended));
+    // Leaves when all clients have been left.
+    std::thread::scope(|scope| {
+        while !ended.load(Ordering::SeqCst) {
+            match (listener.accept(), device.another()) {
+                (Ok((client, _)), None) => attend(device, client, ended),
+                (Ok((client, _)), Some(mut own)) => {
+                    let attended = move || attend(&mut own, client, ended);
+                    // Where there is no thread for it, the client finds its connection closed.
+                    let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
+                }
+                (Err(_), _) => std::thread::sleep(PATIENCE),
             }
-            Err(_) => std::thread::sleep(PATIENCE),
         }
-    }
+    });
     Ok(())
+}
+
+/// Serves a client over TCP. One that cannot be served is gone; the next one may come.
+fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
+    let _ = client
+        .set_nonblocking(false)
+        .and_then(|()| client.set_nodelay(true))
+        .and_then(|()| client.set_write_timeout(Some(PATIENCE * 10)))
+        .and_then(|()| device.serve(&mut client, ended));
 }
 
 #[cfg(unix)]

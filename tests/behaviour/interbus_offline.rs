@@ -118,7 +118,6 @@ fn other_commands_say_what_there_is() {
         &["write", "interbus", "steps", "1", "--link", "sim:"],
         &["save", "interbus", "--link", "sim:", "-o", &file],
         &["do", "interbus", "preset", "--link", "sim:"],
-        &["simulate", "interbus", "--listen", "127.0.0.1:0"],
     ] {
         bench.run(arguments).fails(2, &["interbus", "decode interbus"]);
     }

@@ -26,6 +26,7 @@ mod cli_ssi;
 mod cli_status;
 mod foreign;
 mod interbus_offline;
+mod interbus_simulate;
 mod source;
 mod ssi_export;
 mod ssi_live;

@@ -105,6 +105,13 @@ impl Bench {
         Some(foreign)
     }
 
+    /// Starts a foreign gateway with a K3 encoder behind it.
+    pub(crate) fn gateway(&self, arguments: &[&str]) -> Option<Foreign> {
+        let mut foreign = self.foreign("interbus_gateway.py", arguments)?;
+        foreign.url = format!("modbus:{}", foreign.place);
+        Some(foreign)
+    }
+
     fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.load(Ordering::SeqCst);
         let link = self.file(&format!("enc{number}"));
@@ -226,7 +233,8 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// What was asked since the last time, a line each: of HIPERFACE the frames in hex, of BiSS the registers.
+    /// What was asked since the last time, a line each: of HIPERFACE the frames in hex, of BiSS the registers, of INTERBUS the
+    /// words.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();

@@ -65,15 +65,17 @@ class Master:
             self.write(int(thing[1:], 16))
             return f"{self.read():08X}"
         out = int(thing, 16)
+        before = self.read()
         self.write(out)
         last, since, began = None, 0, time.monotonic()
         while time.monotonic() - began < PATIENCE:
             word = self.read()
             since = since + 1 if word == last else 0
             last = word
-            # What belongs to a word stands still for two cycles; a word of before, or a position that moves, cannot be told
-            # from a new one, so that it is given time.
-            settled = since >= 1 if word >> 31 else time.monotonic() - began > SETTLES
+            # What belongs to a word stands still for two cycles. What stood there before, and a position, cannot be told
+            # from what is new, so that it is given time.
+            told_apart = word >> 31 and word != before
+            settled = since >= 1 if told_apart else time.monotonic() - began > SETTLES
             if self.belongs(out, word) and settled:
                 return f"{word:08X}"
         return f"{last:08X} late"

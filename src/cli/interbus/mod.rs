@@ -4,6 +4,7 @@
 mod decode;
 mod meaning;
 mod profiles;
+mod simulate;
 
 use super::kind::Kind;
 use super::{Failure, Result};
@@ -22,7 +23,7 @@ pub(super) const COMMANDS: Kind = Kind {
     act: |_, _, _| lacking("do"),
     decode: decode::decode,
     restore: |_, _, _, _| lacking("restore"),
-    simulated: |_| lacking("simulate"),
+    simulated: simulate::simulated,
     present: |_, _| lacking("reading from a link"),
     compare: profiles::compare,
     other_device: profiles::other_device,
