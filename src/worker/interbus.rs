@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, InterbusJob, InterbusOutput, JobError, Prepared, Remark, WEAR_ASK,
-    WEAR_LIMIT, WEAR_WARNING, device_key,
+    WEAR_LIMIT, WEAR_WARNING, Wear, device_key,
 };
 pub use open::{check, open};
 
 use super::commit::cycles_seen;
 use super::{Desk, Device, Progress, Session, Tell, Watched};
-use crate::device::interbus::check::{Wear, check as check_device};
+use crate::device::interbus::check::{Wear as Limits, check as check_device};
 use crate::device::interbus::{
     Handshake, Identity, Kept, Master, Reading, Station, identify, read_item, read_one, read_programs, read_status,
     save, select, survey,
@@ -141,7 +141,7 @@ impl Interbus {
             InterbusJob::Identify => InterbusOutput::Identity(Box::new(identify(&mut master)?)),
             InterbusJob::Status => InterbusOutput::Status(Box::new(read_status(&mut master)?)),
             InterbusJob::Check => {
-                let wear = |identity: &Identity| Wear {
+                let wear = |identity: &Identity| Limits {
                     seen: cycles_seen(&store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,

@@ -5,6 +5,7 @@ mod adapter;
 pub mod biss;
 mod detail;
 pub mod hiperface;
+pub mod interbus;
 pub mod signal;
 pub mod ssi;
 pub mod traced;
