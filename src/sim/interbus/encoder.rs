@@ -145,7 +145,7 @@ impl Encoder {
     }
 
     /// Puts the shaft at a place in steps of the disc, of which a turn has 8192.
-    pub fn put_shaft(&mut self, now: Moment, place: i64) {
+    pub fn put_shaft(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
     }
@@ -186,7 +186,7 @@ impl Encoder {
         self.out
     }
 
-    /// The bits of its temperature, for a hotter or colder one: tenths of a degree Celsius.
+    /// Warms or cools it: tenths of a degree Celsius.
     pub const fn set_temperature(&mut self, tenths: i32) {
         self.identity.temperature = tenths;
     }

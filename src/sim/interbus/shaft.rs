@@ -28,8 +28,8 @@ impl Shaft {
     }
 
     /// Puts it somewhere.
-    pub(super) fn put(&mut self, now: Moment, place: i64) {
-        (self.place, self.since) = (place as f64, now);
+    pub(super) fn put(&mut self, now: Moment, place: i32) {
+        (self.place, self.since) = (f64::from(place), now);
     }
 
     /// Where it is: whole steps, also below 0.

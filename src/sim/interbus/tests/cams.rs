@@ -3,15 +3,14 @@
 use super::*;
 use crate::protocol::interbus::{Cam, StartupMode, Value};
 
-/// 4096 steps over 4096/8192 of a turn would be no gear: a step is two places of the disc.
+/// A step is two places of the disc.
 const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
 
-/// Half a place of the disc is a step.
-fn at(position: i64) -> i64 {
+fn at(position: i32) -> i32 {
     position * 2
 }
 
-fn outputs(master: &mut Master, position: i64) -> u32 {
+fn outputs(master: &mut Master, position: i32) -> u32 {
     master.put_shaft(at(position));
     master.read() & 0xFF
 }

@@ -3,13 +3,13 @@
 use super::*;
 use crate::sim::ByteDevice;
 
-struct Host {
-    gateway: Gateway,
-    now: Moment,
+pub(super) struct Host {
+    pub(super) gateway: Gateway,
+    pub(super) now: Moment,
 }
 
 impl Host {
-    fn with(query: &str) -> Self {
+    pub(super) fn with(query: &str) -> Self {
         Host { gateway: Gateway::new(&config(&format!("stale=0&busy=0&{query}"))), now: Moment::START }
     }
 
@@ -19,7 +19,7 @@ impl Host {
     }
 
     /// What comes back within ten milliseconds.
-    fn ask(&mut self, request: &str) -> String {
+    pub(super) fn ask(&mut self, request: &str) -> String {
         self.gateway.on_bytes(self.now, &bytes(request));
         self.now = self.now + Duration::from_millis(10);
         hex(&self.gateway.poll(self.now))

@@ -1,11 +1,13 @@
 //! What a master sees of the virtual encoder, in virtual time. Expected words are the reference's; none is computed by the
 //! code under test.
 
+mod any;
 mod cams;
 mod gateway;
 mod parameters;
 mod read_outs;
 mod storage;
+mod vectors;
 
 use std::time::Duration;
 
@@ -58,12 +60,12 @@ impl Master {
         self.now = self.now + Duration::from_millis(milliseconds);
     }
 
-    fn put_shaft(&mut self, place: i64) {
+    fn put_shaft(&mut self, place: i32) {
         self.encoder.put_shaft(self.now, place);
     }
 
     /// The position, at a place of the disc.
-    fn position(&mut self, place: i64) -> u32 {
+    fn position(&mut self, place: i32) -> u32 {
         self.put_shaft(place);
         self.read()
     }
