@@ -10,11 +10,12 @@ use rmodbus::{ModbusProto, guess_response_frame_len};
 
 use super::data::ProcessData;
 use super::error::{Asked, Damage, Exception};
-use super::station::{Station, WordOrder};
+use super::station::Station;
 use super::{Error, Known};
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, LineState};
 use crate::link::Ctx;
+use crate::protocol::interbus::WordOrder;
 use crate::units::Moment;
 
 /// Tries before a gateway counts as gone, where it does not answer; each may take its whole time.

@@ -26,6 +26,6 @@ pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, 
 pub use master::Master;
 pub use reading::{Place, Reading};
 pub use save::{Kept, read_item, read_state, save};
-pub use station::{PARAMETERS, Station, WordOrder};
+pub use station::{PARAMETERS, Station};
 
 use station::Known;

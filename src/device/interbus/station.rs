@@ -5,48 +5,10 @@ use std::time::Duration;
 
 use crate::device::line::LineState;
 use crate::link::{Query, UrlError};
-use crate::protocol::interbus::{Command, Gear, StartupMode, WindowShift};
+use crate::protocol::interbus::{Command, Gear, StartupMode, WindowShift, WordOrder};
 
 /// Link parameters that describe the gateway and the encoder's place behind it.
 pub const PARAMETERS: [&str; 7] = ["unit", "input", "output", "order", "handshake", "cycle", "timeout"];
-
-/// Which half of a word is in the first of its two registers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WordOrder {
-    /// Bits 31..16 (`U`: the usual order of INTERBUS).
-    #[default]
-    HighFirst,
-    /// Bits 15..0.
-    LowFirst,
-}
-
-impl WordOrder {
-    /// The registers of a word.
-    pub const fn registers(self, word: u32) -> [u16; 2] {
-        let (high, low) = ((word >> 16) as u16, word as u16);
-        match self {
-            WordOrder::HighFirst => [high, low],
-            WordOrder::LowFirst => [low, high],
-        }
-    }
-
-    /// The word of two registers.
-    pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
-        let (high, low) = match self {
-            WordOrder::HighFirst => (first, second),
-            WordOrder::LowFirst => (second, first),
-        };
-        (high as u32) << 16 | low as u32
-    }
-
-    fn read(text: &str) -> Option<Self> {
-        match text {
-            "high-first" => Some(WordOrder::HighFirst),
-            "low-first" => Some(WordOrder::LowFirst),
-            _ => None,
-        }
-    }
-}
 
 /// What a session knows about its gateway and the encoder behind it.
 #[derive(Clone, Debug)]
@@ -211,14 +173,6 @@ mod tests {
         ];
         for (query, message) in cases {
             assert_eq!(station(query).unwrap_err().to_string(), message);
-        }
-    }
-
-    #[test]
-    fn words_lie_in_their_registers_either_way() {
-        for (order, registers) in [(WordOrder::HighFirst, [0xC200, 0x00FF]), (WordOrder::LowFirst, [0x00FF, 0xC200])] {
-            assert_eq!(order.registers(0xC200_00FF), registers);
-            assert_eq!(order.word(registers), 0xC200_00FF);
         }
     }
 }

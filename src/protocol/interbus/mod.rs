@@ -26,6 +26,7 @@ mod reply;
 mod value;
 #[cfg(test)]
 mod vectors;
+mod word_order;
 
 /// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
 pub const KIND: &str = "interbus";
@@ -42,3 +43,4 @@ pub use parameter::{OutOfRange, PARAMETERS, Parameter, ParameterRow};
 pub use read_out::{Flags, READ_OUTS, ReadOut, ReadOutRow, ReadOutValue, StartupMode};
 pub use reply::{ErrorWord, Reply};
 pub use value::{Code, Value};
+pub use word_order::WordOrder;

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::memory::{Memory, PLACES};
-use crate::protocol::interbus::{Class, Gear, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, Value};
+use crate::protocol::interbus::{Class, Gear, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, Value, WordOrder};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -35,15 +35,6 @@ pub struct Config {
     pub(super) busy: Duration,
     pub(super) stale: u32,
     pub(super) acknowledges_selection: bool,
-}
-
-/// Which of the two registers of a 32-bit word has its upper half.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WordOrder {
-    /// The first: the usual order on INTERBUS (reference 1, `U`).
-    HighFirst,
-    /// The second.
-    LowFirst,
 }
 
 impl Default for Config {
@@ -205,8 +196,8 @@ impl Config {
             "input" => self.input = setting.number("a register from 0 to 65535")?,
             "output" => self.output = setting.number("a register from 0 to 65535")?,
             "order" => {
-                let orders = [("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)];
-                self.order = setting.one_of(&orders, "high-first or low-first")?;
+                let order = WordOrder::read(setting.value);
+                self.order = order.ok_or_else(|| setting.refused("high-first or low-first"))?;
             }
             "exception" => self.exceptions = setting.decimal(0.0..=1.0, "the share of requests from 0 to 1")?,
             "seed" => self.seed = setting.number("a whole number")?,

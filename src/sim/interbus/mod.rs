@@ -22,7 +22,7 @@ mod shaft;
 #[cfg(test)]
 mod tests;
 
-pub use config::{Config, WordOrder};
+pub use config::Config;
 pub use encoder::Encoder;
 pub use gateway::Gateway;
 pub use memory::Memory;

@@ -2,9 +2,10 @@
 //! its OUT word. Reading one or both of them, or writing one or both, is a cycle of its process data. The word of a K1
 //! encoder, which is half as long, stands in the lower register.
 
-use super::config::{Config, WordOrder};
+use super::config::Config;
 use super::encoder::Encoder;
 use super::frame::Exception;
+use crate::protocol::interbus::WordOrder;
 use crate::units::Moment;
 
 /// Which registers the encoders have.
@@ -62,7 +63,7 @@ impl Map {
         let begin = self.range(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
-            let mut halves = self.halves(encoder.out());
+            let mut halves = self.order.registers(encoder.out());
             let written = halves.iter_mut().zip(own..).filter(|(_, place)| places.contains(place));
             let mut written_to = false;
             for (half, place) in written {
@@ -70,7 +71,7 @@ impl Map {
                 written_to = true;
             }
             if written_to && encoder.has_power() {
-                encoder.write(now, self.word(halves));
+                encoder.write(now, self.order.word(halves));
             } else if written_to {
                 return Err(Exception::NoAnswer);
             }
@@ -91,7 +92,7 @@ impl Map {
         let mut registers = Vec::new();
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
             if own < places.end && own + REGISTERS > places.start {
-                let halves = self.halves(word(encoder)?);
+                let halves = self.order.registers(word(encoder)?);
                 let asked = halves.into_iter().zip(own..).filter(|(_, place)| places.contains(place));
                 registers.extend(asked.map(|(half, _)| half));
             }
@@ -103,21 +104,5 @@ impl Map {
     fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }
-    }
-
-    fn halves(&self, word: u32) -> [u16; REGISTERS] {
-        let (high, low) = ((word >> 16) as u16, word as u16);
-        match self.order {
-            WordOrder::HighFirst => [high, low],
-            WordOrder::LowFirst => [low, high],
-        }
-    }
-
-    fn word(&self, halves: [u16; REGISTERS]) -> u32 {
-        let [high, low] = match (self.order, halves) {
-            (WordOrder::HighFirst, halves) => halves,
-            (WordOrder::LowFirst, [low, high]) => [high, low],
-        };
-        u32::from(high) << 16 | u32::from(low)
     }
 }

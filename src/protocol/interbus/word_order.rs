@@ -1,0 +1,53 @@
+//! A word of the process data in the two 16-bit registers of a gateway (reference 1, `U`).
+
+/// Which half of a word is in the first of its two registers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WordOrder {
+    /// Bits 31..16 (`U`: the usual order of INTERBUS).
+    #[default]
+    HighFirst,
+    /// Bits 15..0.
+    LowFirst,
+}
+
+impl WordOrder {
+    /// The registers of a word.
+    pub const fn registers(self, word: u32) -> [u16; 2] {
+        let (high, low) = ((word >> 16) as u16, word as u16);
+        match self {
+            WordOrder::HighFirst => [high, low],
+            WordOrder::LowFirst => [low, high],
+        }
+    }
+
+    /// The word of two registers.
+    pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
+        let (high, low) = match self {
+            WordOrder::HighFirst => (first, second),
+            WordOrder::LowFirst => (second, first),
+        };
+        (high as u32) << 16 | low as u32
+    }
+
+    /// As links spell it: `high-first` or `low-first`.
+    pub fn read(text: &str) -> Option<Self> {
+        match text {
+            "high-first" => Some(WordOrder::HighFirst),
+            "low-first" => Some(WordOrder::LowFirst),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_lie_in_their_registers_either_way() {
+        for (order, registers) in [(WordOrder::HighFirst, [0xC200, 0x00FF]), (WordOrder::LowFirst, [0x00FF, 0xC200])] {
+            assert_eq!(order.registers(0xC200_00FF), registers);
+            assert_eq!(order.word(registers), 0xC200_00FF);
+        }
+    }
+}
