@@ -11,7 +11,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(super) use analyse::Analyse;
-pub(super) use decode::{Decode, Direction, Words};
+pub(super) use decode::{Decode, Direction, Protocol, Words};
 pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
 
 use super::Failure;
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 const KINDS: &str = "\
 Kinds of device: hiperface, biss and ssi; diff, verify and restore find it in the profile. find is for hiperface alone; do
 has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its frame is
-made, and ssi explains frames offline. Of interbus there is decode alone. Without hardware: --link sim:, as in
+made, and ssi explains frames offline. Of interbus and hiperdrive there is decode alone. Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -113,6 +113,8 @@ pub(super) enum DeviceKind {
     Ssi,
     /// INTERBUS encoder (K1, K2, K3); its words are explained offline (decode), and it is not reached over a link.
     Interbus,
+    /// HIPERDRIVE with EtherNet/IP; its words and packets are explained offline (decode), and it is not reached over a link.
+    Hiperdrive,
 }
 
 #[derive(Args)]

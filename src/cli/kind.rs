@@ -4,7 +4,7 @@
 use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, biss, hiperface, interbus, ssi};
+use super::{Failure, Result, biss, hiperdrive, hiperface, interbus, ssi};
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.
@@ -42,6 +42,7 @@ pub(super) fn of(device: DeviceKind) -> &'static Kind {
         DeviceKind::Biss => &biss::COMMANDS,
         DeviceKind::Ssi => &ssi::COMMANDS,
         DeviceKind::Interbus => &interbus::COMMANDS,
+        DeviceKind::Hiperdrive => &hiperdrive::COMMANDS,
     }
 }
 

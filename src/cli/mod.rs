@@ -7,6 +7,8 @@ mod biss;
 mod check;
 mod consent;
 mod decode;
+mod ethernet_ip;
+mod hiperdrive;
 mod hiperface;
 mod interbus;
 mod kind;
@@ -24,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, Common, DeviceKind, Words};
+use args::{Arguments, Command, Common, DeviceKind, Protocol, Words};
 use output::Output;
 
 use crate::link::LinkUrl;
@@ -155,7 +157,10 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),
         Command::Decode(decode) => {
             no_words(&decode.words, decode.protocol)?;
-            (kind::of(decode.protocol).decode)(&output, &decode)
+            match decode.protocol.device() {
+                Some(device) => (kind::of(device).decode)(&output, &decode),
+                None => ethernet_ip::decode(&output, &decode.hex),
+            }
         }
         Command::Analyse(capture) => analyse::analyse(&output, &capture),
         Command::Ssi(command) => ssi::ssi(&output, &command),
@@ -178,11 +183,9 @@ fn no_layout(layout: Option<&String>, device: DeviceKind) -> Result<()> {
 }
 
 /// What other devices send says itself which way it went.
-fn no_words(words: &Words, device: DeviceKind) -> Result<()> {
-    match words.given() {
-        Some(option) if device != DeviceKind::Interbus => {
-            Err(Failure::Usage(format!("{option} is for the words of interbus devices")))
-        }
-        _ => Ok(()),
+fn no_words(words: &Words, protocol: Protocol) -> Result<()> {
+    match words.foreign_to(protocol) {
+        Some((option, of)) => Err(Failure::Usage(format!("{option} is for the words of {of} devices"))),
+        None => Ok(()),
     }
 }

@@ -48,6 +48,21 @@ const CONNECTION_NAMES: [(Service, &str); 4] = [
     (Service(0x5B), "Large_ForwardOpen"),
 ];
 
+/// Objects that many devices have.
+const CLASSES: [(u16, &str); 6] = [
+    (0x01, "identity"),
+    (0x02, "message router"),
+    (0x04, "assembly"),
+    (Request::CONNECTION_MANAGER, "connection manager"),
+    (0xF5, "TCP/IP interface"),
+    (0xF6, "Ethernet link"),
+];
+
+/// What an object of a class is; `None` for what is not known, as every maker's own.
+pub fn class_name(class: u16) -> Option<&'static str> {
+    CLASSES.iter().find(|(number, _)| *number == class).map(|(_, name)| *name)
+}
+
 impl Service {
     /// All attributes are read.
     pub const GET_ALL: Service = Service(0x01);

@@ -35,7 +35,7 @@ pub use forward::{ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, Forwa
 pub use identity::{Identity, IdentityItem, Revision};
 pub use io::{IoPacket, RealTimeFormat, RunIdle};
 pub use items::{Item, Items, SocketAddress};
-pub use message::{Reply, Request, Service};
+pub use message::{Reply, Request, Service, class_name};
 pub use path::{ElectronicKey, LogicalKind, Path, Segment, Width};
 pub use receiver::Receiver;
 pub use status::{

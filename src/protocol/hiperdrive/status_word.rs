@@ -129,6 +129,12 @@ impl StatusWord {
         self.has(StatusBit::NoOff2)
     }
 
+    /// Bits 4, 5, 9 and 11 rise and fall together: a word with some of them alone is none of a drive.
+    pub const fn is_plausible(self) -> bool {
+        let found = self.0 & StatusWord::FOUND.0;
+        found == 0 || found == StatusWord::FOUND.0
+    }
+
     /// In which state the drive is. A fault goes before the lock, the lock before the rest (`D`; bits 0 to 2 of a fault `U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};

@@ -144,7 +144,9 @@ fn the_published_status_words() {
     assert_eq!((standing.word(), standing.is_present()), (0x2A30, true));
     let set: Vec<u8> = standing.set().map(StatusBit::number).collect();
     assert_eq!(set, [4, 5, 9, 11, 13]);
-    assert!(!status(0).is_present());
+    assert!(!status(0).is_present() && status(0).is_plausible() && standing.is_plausible());
+    // Bit 11 is missing, as in every control word.
+    assert!(!status(0x0439).is_plausible() && !status(0x047F).is_plausible());
     assert_eq!(status(0x3E37).with(S::TargetReached, false).word(), 0x3A37);
     let [moving, done] = [0x1A37, 0x3E37].map(|word| status(word).has(S::SetpointAcknowledged));
     assert!(moving && done);

@@ -1,0 +1,190 @@
+//! CIP messages in words: requests, replies, connections that begin and end.
+
+use super::Device;
+use crate::bits::hex;
+use crate::cli::hiperdrive::parameter_words;
+use crate::cli::output::count;
+use crate::protocol::ethernet_ip::{
+    AddressSource, ConfigurationControl, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused,
+    GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Path, Reply, Request, Segment, Service,
+    class_name, extended_row,
+};
+
+/// A message with what it is; `None` for bytes that are none.
+pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec<String>)> {
+    let request = Request::parse(bytes).ok().filter(|request| {
+        // Anything may look like a request: one for an object begins with its class.
+        matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }))
+    });
+    if let Some(request) = request {
+        return Some(("request", request_lines(&request, device)));
+    }
+    let reply = Reply::parse(bytes).ok()?;
+    let known = reply.service.name(None).is_some() && bytes.get(1) == Some(&0);
+    known.then(|| ("reply", reply_lines(&reply)))
+}
+
+fn request_lines(request: &Request, device: Device) -> Vec<String> {
+    let class = request.class();
+    let mut lines = vec![format!("CIP request: {} of {}", service(request.service, class), path(&request.path))];
+    match (request.service, class) {
+        (Service::FORWARD_OPEN, Some(Request::CONNECTION_MANAGER)) => match ForwardOpen::parse(&request.data) {
+            Ok(asked) => lines.extend(open_lines(&asked)),
+            Err(why) => lines.push(format!("{why}: {}", hex(&request.data))),
+        },
+        (Service::FORWARD_CLOSE, Some(Request::CONNECTION_MANAGER)) => match ForwardClose::parse(&request.data) {
+            Ok(asked) => lines.push(format!("{}; {}", owner(asked.owner), path(&asked.path))),
+            Err(why) => lines.push(format!("{why}: {}", hex(&request.data))),
+        },
+        _ => lines.extend(attribute_lines(request, device)),
+    }
+    lines
+}
+
+fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
+    let data = &request.data;
+    let place = request.class().zip(request.path.number(LogicalKind::Attribute));
+    let said = match place {
+        Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)) => {
+            let source = ConfigurationControl::parse(data).map(|control| source_words(control.source()));
+            Some(("where the address comes from".to_owned(), source.ok()))
+        }
+        Some((class, attribute)) if device == Device::Hiperdrive => parameter_words(class, attribute, data),
+        _ => None,
+    };
+    match said {
+        Some((name, Some(value))) if !data.is_empty() => vec![format!("{name} = {value}")],
+        Some((name, _)) if data.is_empty() => vec![name],
+        Some((name, _)) => vec![format!("{name}; data of another length: {}", hex(data))],
+        None if data.is_empty() => Vec::new(),
+        None => vec![data_words(data)],
+    }
+}
+
+fn reply_lines(reply: &Reply) -> Vec<String> {
+    let mut lines = vec![format!("CIP reply: {}, status {}", service(reply.service, None), reply.status)];
+    for code in &reply.extended {
+        let said = extended_row(reply.service, reply.status, *code)
+            .map_or_else(|| "unknown".to_owned(), |row| format!("{}; {}", row.meaning, row.remedy));
+        lines.push(format!("extended status 0x{code:04X} {said}"));
+    }
+    if reply.status != GeneralStatus::OK && reply.extended.is_empty() {
+        lines.extend(reply.status.row().map(|row| row.remedy.to_owned()));
+    }
+    let done = reply.status == GeneralStatus::OK;
+    let said = match (reply.service, done) {
+        (Service::FORWARD_OPEN, true) => ForwardOpened::parse(&reply.data).ok().map(|opened| {
+            format!(
+                "to the target as 0x{:08X} every {}, to the originator as 0x{:08X} every {}; {}",
+                opened.to_target_id,
+                interval(opened.to_target_interval_us),
+                opened.to_originator_id,
+                interval(opened.to_originator_interval_us),
+                owner(opened.owner)
+            )
+        }),
+        (Service::FORWARD_CLOSE, true) => ForwardClosed::parse(&reply.data).ok().map(|closed| owner(closed.owner)),
+        (Service::FORWARD_OPEN | Service::FORWARD_CLOSE, false) => {
+            ForwardRefused::parse(&reply.data).ok().map(|refused| {
+                format!(
+                    "{}; {} of the path left",
+                    owner(refused.owner),
+                    count(refused.remaining_path_words.into(), "word")
+                )
+            })
+        }
+        _ => None,
+    };
+    lines.extend(said.or_else(|| (!reply.data.is_empty()).then(|| data_words(&reply.data))));
+    lines
+}
+
+fn open_lines(asked: &ForwardOpen) -> Vec<String> {
+    let way = |to: &str, id: u32, interval_us: u32, parameters: NetworkParameters| {
+        let kind = match parameters.kind() {
+            NetworkType::Null => "nothing",
+            NetworkType::Multicast => "multicast",
+            NetworkType::PointToPoint => "point to point",
+            NetworkType::Reserved => "reserved",
+        };
+        let size = count(parameters.size().into(), "byte");
+        format!(
+            "to the {to} as 0x{id:08X} every {}: {size}, {kind} (0x{:04X})",
+            interval(interval_us),
+            parameters.word()
+        )
+    };
+    vec![
+        way("target", asked.to_target_id, asked.to_target_interval_us, asked.to_target),
+        way("originator", asked.to_originator_id, asked.to_originator_interval_us, asked.to_originator),
+        format!(
+            "{}; ends after {} without data ({} ms to the target); transport 0x{:02X}, class {}; request within {} ms; {}",
+            owner(asked.owner),
+            count(usize::try_from(asked.connection_timeout.intervals()).unwrap_or(usize::MAX), "interval"),
+            asked.to_target_timeout().as_millis(),
+            asked.transport.byte(),
+            asked.transport.class(),
+            asked.timeout.duration().as_millis(),
+            path(&asked.path)
+        ),
+    ]
+}
+
+fn source_words(source: AddressSource) -> String {
+    match source {
+        AddressSource::Stored => "stored in the device".to_owned(),
+        AddressSource::Bootp => "BOOTP".to_owned(),
+        AddressSource::Dhcp => "DHCP".to_owned(),
+        AddressSource::Unknown(number) => format!("method {number}, which is not known"),
+    }
+}
+
+fn service(service: Service, class: Option<u16>) -> String {
+    service.name(class).map_or_else(|| format!("service 0x{:02X}", service.code()), str::to_owned)
+}
+
+fn path(path: &Path) -> String {
+    let words: Vec<String> = path
+        .0
+        .iter()
+        .map(|segment| match segment {
+            Segment::Logical { kind: LogicalKind::Class, number, .. } => {
+                let name = class_name(*number).map_or(String::new(), |name| format!(" ({name})"));
+                format!("class 0x{number:02X}{name}")
+            }
+            Segment::Logical { kind: LogicalKind::Instance, number, .. } => format!("instance {number}"),
+            Segment::Logical { kind: LogicalKind::Attribute, number, .. } => format!("attribute {number}"),
+            Segment::Logical { kind: LogicalKind::ConnectionPoint, number, .. } => format!("connection point {number}"),
+            Segment::Key(key) => format!("key of vendor {}, product {}", key.vendor, key.product_code),
+            Segment::Data(words) => format!("{} of configuration", count(words.len(), "word")),
+            Segment::Unknown(bytes) => format!("unknown segment {}", hex(bytes)),
+        })
+        .collect();
+    words.join(", ")
+}
+
+fn owner(owner: Owner) -> String {
+    let Owner { connection_serial, vendor, serial_number } = owner;
+    format!("connection {connection_serial} of vendor {vendor}, serial number {serial_number}")
+}
+
+fn interval(microseconds: u32) -> String {
+    format!("{} ms", f64::from(microseconds) / 1e3)
+}
+
+/// Bytes, and the number they are where they may be one.
+fn data_words(data: &[u8]) -> String {
+    let number = match data {
+        [byte] => Some(i64::from(*byte)),
+        [a, b] => Some(i64::from(u16::from_le_bytes([*a, *b]))),
+        [a, b, c, d] => Some(i64::from(i32::from_le_bytes([*a, *b, *c, *d]))),
+        _ => None,
+    };
+    let text = (data.len() > 4 && data.iter().all(|byte| (b' '..=b'~').contains(byte)))
+        .then(|| data.iter().map(|byte| char::from(*byte)).collect::<String>());
+    match (number, text) {
+        (Some(number), _) => format!("data {} ({number})", hex(data)),
+        (None, Some(text)) => format!("data {} (\"{text}\")", hex(data)),
+        (None, None) => format!("data {}", hex(data)),
+    }
+}

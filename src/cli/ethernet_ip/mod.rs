@@ -1,0 +1,176 @@
+//! `decode ethernet-ip`: frames, cyclic packets and CIP messages in words, offline. Which of them bytes are is found by what
+//! fits.
+
+mod cip;
+
+use serde_json::{Map, Value as Json, json};
+
+use super::Result;
+use super::decode::{Explained, frames, show};
+use super::output::{Output, count};
+use crate::bits::{hex, hex_compact};
+use crate::protocol::ethernet_ip::{
+    Body, Command, EncapsulationStatus, Frame, IoPacket, Item, Items, RealTimeFormat, SocketAddress,
+};
+
+/// What bytes say.
+pub(super) struct Said {
+    pub(super) lines: Vec<String>,
+    /// Further keys for a script.
+    pub(super) more: Map<String, Json>,
+    /// Process data of a cyclic packet, with whether they go to the target.
+    pub(super) data: Option<(Vec<u8>, bool)>,
+}
+
+/// Whose attributes are told by more than their numbers.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Device {
+    Any,
+    Hiperdrive,
+}
+
+const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
+
+pub(super) fn decode(output: &Output, words: &[String]) -> Result {
+    let explain = |bytes: &Vec<u8>| {
+        let said = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
+        let (meaning, more) = match said {
+            Ok(Said { lines, more, .. }) => (Ok(lines), more),
+            Err(why) => (Err(why), Map::new()),
+        };
+        Explained { shown: hex(bytes), compact: hex_compact(bytes), meaning, more }
+    };
+    let explained: Vec<Explained> = frames(words)?.iter().map(explain).collect();
+    show(output, &explained)
+}
+
+/// What a packet says; `None` for bytes that do not begin like one.
+pub(super) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
+    if let Some(said) = cyclic(bytes) {
+        return Some(Ok(said));
+    }
+    if let Some(said) = stream(bytes, device) {
+        return Some(said);
+    }
+    let (kind, lines) = cip::message(bytes, device)?;
+    Some(Ok(Said { lines, more: packet(kind), data: None }))
+}
+
+fn packet(kind: &str) -> Map<String, Json> {
+    Map::from_iter([("packet".to_owned(), json!(kind))])
+}
+
+/// A cyclic packet. Whether there is a header is seen by the length: process data are whole words of 32 bits.
+fn cyclic(bytes: &[u8]) -> Option<Said> {
+    let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
+    let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {
+        let known = packet.header.is_some_and(|header| header.word() <= 1);
+        known && (packet.data.len() % 8 == 0 || plain.data.len() % 8 != 0)
+    });
+    let to_target = with.is_some();
+    let IoPacket { connection, sequence, count: number, header, data } = with.unwrap_or(plain);
+    let header_words = header.map_or("no run/idle header", |header| if header.runs() { "run" } else { "idle" });
+    let lines = vec![
+        format!("cyclic packet {sequence} of connection 0x{connection:08X}: count {number}, {header_words}"),
+        format!("{} of process data: {}", count(data.len(), "byte"), hex(&data)),
+    ];
+    let mut more = packet("cyclic");
+    more.extend([
+        ("connection".to_owned(), json!(connection)),
+        ("sequence".to_owned(), json!(sequence)),
+        ("count".to_owned(), json!(number)),
+        ("run".to_owned(), json!(header.map(|header| header.runs()))),
+    ]);
+    Some(Said { lines, more, data: Some((data, to_target)) })
+}
+
+/// Frames behind each other; `None` where not even the first command is known. Process data of drives that are left alone
+/// begin like NOP, which nobody captures.
+fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
+    let [low, high, ..] = bytes else { return None };
+    let command = Command::new(u16::from_le_bytes([*low, *high]));
+    let is_idle = command == Command::NOP && device == Device::Hiperdrive;
+    if bytes.len() < Frame::HEADER || command.name().is_none() || is_idle {
+        return None;
+    }
+    let mut rest = bytes;
+    let mut lines = Vec::new();
+    while !rest.is_empty() {
+        let whole = match Frame::length(rest) {
+            Ok(Some(length)) => rest.split_at_checked(length),
+            Ok(None) => None,
+            Err(why) => return Some(Err(why.to_string())),
+        };
+        let Some((whole, behind)) = whole else {
+            return Some(Err(format!(
+                "the encapsulation frame is cut off: there are {} of it",
+                count(rest.len(), "byte")
+            )));
+        };
+        match Frame::parse(whole).map_err(|why| why.to_string()).and_then(|frame| frame_lines(&frame, device)) {
+            Ok(own) => lines.extend(own),
+            Err(why) => return Some(Err(why)),
+        }
+        rest = behind;
+    }
+    Some(Ok(Said { lines, more: packet("frame"), data: None }))
+}
+
+fn frame_lines(frame: &Frame, device: Device) -> std::result::Result<Vec<String>, String> {
+    let name = frame.command.name().map_or_else(|| format!("command 0x{:04X}", frame.command.number()), str::to_owned);
+    let session = if frame.session == 0 { String::new() } else { format!(", session 0x{:08X}", frame.session) };
+    let mut lines = vec![format!("{name}{session}: {}", count(frame.data.len(), "byte"))];
+    if frame.status != EncapsulationStatus::OK {
+        let remedy = frame.status.row().map_or(String::new(), |row| format!("; {}", row.remedy));
+        lines.push(format!("status {}{remedy}", frame.status));
+    }
+    match frame.body().map_err(|why| why.to_string())? {
+        Body::Empty => {}
+        Body::Register { version, .. } => lines.push(format!("version {version} of the protocol")),
+        Body::List(items) | Body::Data { items, .. } => items_lines(&items, device, &mut lines),
+        Body::Other(data) => lines.push(format!("data {}", hex(&data))),
+    }
+    Ok(lines)
+}
+
+fn items_lines(items: &Items, device: Device, lines: &mut Vec<String>) {
+    for item in &items.0 {
+        match item {
+            Item::Null => {}
+            Item::Identity(item) => {
+                let own = &item.identity;
+                lines.push(format!(
+                    "identity: \"{}\", vendor {}, device type {}, product {}, revision {}, serial number {}, status 0x{:04X}, \
+                     state {}",
+                    own.product_name,
+                    own.vendor,
+                    own.device_type,
+                    own.product_code,
+                    own.revision,
+                    own.serial_number,
+                    own.status,
+                    item.state
+                ));
+                lines.push(format!("answers at {}", socket(&item.socket)));
+            }
+            Item::ConnectedAddress(connection) => lines.push(format!("connection 0x{connection:08X}")),
+            Item::SequencedAddress { connection, sequence } => {
+                lines.push(format!("connection 0x{connection:08X}, packet {sequence}"));
+            }
+            Item::ConnectedData(data) => lines.push(format!("data {}", hex(data))),
+            Item::UnconnectedData(data) => match cip::message(data, device) {
+                Some((_, message)) => lines.extend(message),
+                None => lines.push(format!("no CIP message: {}", hex(data))),
+            },
+            Item::SocketToTarget(address) => lines.push(format!("cyclic data to the target at {}", socket(address))),
+            Item::SocketToOriginator(address) => {
+                lines.push(format!("cyclic data to the originator at {}", socket(address)));
+            }
+            Item::Unknown { kind, data } => lines.push(format!("item 0x{kind:04X}: {}", hex(data))),
+        }
+    }
+}
+
+fn socket(address: &SocketAddress) -> String {
+    format!("{}:{}", address.address, address.port)
+}
