@@ -10,8 +10,8 @@ mod snap;
 mod tests;
 pub mod words;
 
-pub use grid::{Tick, rounded, ticks};
-pub use moving::{Hold, drawn, line_after, moved, pulled};
+pub use grid::{Tick, next_line, rounded, ticks};
+pub use moving::{Hold, drawn, moved, pulled};
 pub use snap::{Snap, snap};
 
 use super::staged::{Mark, Staged, Wanted};

@@ -8,6 +8,7 @@ use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
 mod bit_strip;
+mod cams;
 mod field_map;
 mod frame_strip;
 mod hex_editor;
@@ -15,6 +16,7 @@ mod register_table;
 mod steps;
 mod timing_diagram;
 mod typed_view;
+mod word_layout;
 
 fn skin() -> Skin {
     Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English)

@@ -47,6 +47,26 @@ pub fn ticks(scale: &Scale, view: &View, range: u32, apart: f64) -> Vec<Tick> {
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
+/// The next line of that grid from a position on, or the one before it, in steps; lines go on beyond the range.
+pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
+    let around = lines_around(scale, apart, f64::from(position), 2);
+    let position = i64::from(position);
+    let mut lines = around.into_iter().map(|line| line as i64);
+    if forward {
+        lines.find(|line| *line > position).unwrap_or(position)
+    } else {
+        lines.rfind(|line| *line < position).unwrap_or(position)
+    }
+}
+
+/// The lines around a position, so many on each side, on whole steps and rising.
+pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
+    let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
+    let zero = f64::from(scale.zero());
+    let own = ((position - zero) / steps).floor();
+    (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
+}
+
 /// The least round number of units that is at least so much.
 fn round_units(unit: Unit, at_least: f64) -> f64 {
     match unit {

@@ -62,19 +62,6 @@ pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
     with(with(none, Edge::Start, first, whole), Edge::Stop, last, whole)
 }
 
-/// The next line of a grid from a position on, or the one before it.
-pub fn line_after(position: u32, grid: u32, forward: bool) -> i64 {
-    let (position, grid) = (i64::from(position), i64::from(grid.max(1)));
-    let before = position.div_euclid(grid) * grid;
-    if forward {
-        before + grid
-    } else if before < position {
-        before
-    } else {
-        before - grid
-    }
-}
-
 fn with(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
     // Below the range, which has 25 bits.
     let to = Value::of_word(to.rem_euclid(whole) as u32);

@@ -1,8 +1,7 @@
-//! What draws the edge of a cam to itself while it is dragged: edges of other cams, round units of the machine, and the
-//! grid.
+//! What draws the edge of a cam to itself while it is dragged: edges of other cams, and the lines of the grid.
 
-use super::{Chart, Hold, View, grid, of_edge};
-use crate::profile::interbus::{Edge, Scale, Unit};
+use super::{Chart, Hold, grid, of_edge};
+use crate::profile::interbus::{Edge, Scale};
 use crate::protocol::interbus::{Cam, CamNumber};
 
 /// What draws, and how near one has to come.
@@ -10,9 +9,7 @@ use crate::protocol::interbus::{Cam, CamNumber};
 pub struct Snap {
     /// How near, in steps.
     pub reach: f64,
-    /// Multiples of so many steps, 1 for every step.
-    pub grid: u32,
-    /// Round units of the machine are so many steps apart at least; `None`: they do not draw.
+    /// The lines of a grid in round units, at least so many steps apart; `None`: they do not draw.
     pub apart: Option<f64>,
     /// Edges of other cams do.
     pub edges: bool,
@@ -20,12 +17,11 @@ pub struct Snap {
 
 impl Snap {
     /// Nothing draws.
-    pub const OFF: Snap = Snap { reach: 0.0, grid: 1, apart: None, edges: false };
+    pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
 
     /// Everything does, in a chart with so many steps a point: within six points, on a grid of at least ten.
-    pub fn on(steps_in_point: f64) -> Self {
-        let grid = grid::rounded(steps_in_point * GRID).clamp(1.0, f64::from(u32::MAX));
-        Snap { reach: steps_in_point * REACH, grid: grid as u32, apart: Some(steps_in_point * GRID), edges: true }
+    pub const fn on(steps_in_point: f64) -> Self {
+        Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
 }
 
@@ -74,13 +70,8 @@ fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, sn
             targets.extend([same, next].into_iter().flat_map(|at| [turn + at, turn + at + range, turn + at - range]));
         }
     }
-    if let Some(apart) = snap.apart.filter(|_| scale.unit() != Unit::Steps) {
-        let around = at - turn;
-        let near = View { first: (around - apart).max(0.0), span: 2.0 * apart };
-        targets.extend(grid::ticks(scale, &near, chart.range, apart).iter().map(|tick| turn + tick.position.round()));
-    } else if snap.grid > 1 {
-        let grid = f64::from(snap.grid);
-        targets.push(turn + ((at - turn) / grid).round() * grid);
+    if let Some(apart) = snap.apart {
+        targets.extend(grid::lines_around(scale, apart, at - turn, 0).into_iter().map(|line| turn + line));
     }
     targets
 }

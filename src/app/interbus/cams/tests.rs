@@ -3,7 +3,7 @@
 mod session;
 
 use super::{
-    Chart, Hold, Lamp, Snap, Stretch, View, drawn, line_after, moved, pulled, rounded, snap, stretches, ticks, words,
+    Chart, Hold, Lamp, Snap, Stretch, View, drawn, moved, next_line, pulled, rounded, snap, stretches, ticks, words,
 };
 use crate::app::Language;
 use crate::app::interbus::staged::{Edit, Staged};
@@ -110,10 +110,16 @@ fn cams_are_moved_and_drawn_anew() {
 
 #[test]
 fn the_keyboard_goes_from_line_to_line() {
-    for (position, grid, forward, expected) in
-        [(100, 50, true, 150), (101, 50, true, 150), (100, 50, false, 50), (101, 50, false, 100), (0, 50, false, -50)]
-    {
-        assert_eq!(line_after(position, grid, forward), expected, "{position}");
+    let steps = Scale::default();
+    for (position, forward, expected) in [(100, true, 150), (101, true, 150), (100, false, 50), (101, false, 100)] {
+        assert_eq!(next_line(&steps, 40.0, position, forward), expected, "{position}");
+    }
+    assert_eq!(next_line(&steps, 40.0, 0, false), -50, "over the end of the range");
+    assert_eq!(next_line(&steps, 0.01, 7, true), 8);
+    // 10° of 1000 steps: 27.8, 55.6, 83.3.
+    let degrees = Scale::degrees(1000.0, 0).unwrap();
+    for (position, forward, expected) in [(28, true, 56), (56, true, 83), (83, false, 56), (0, false, -28)] {
+        assert_eq!(next_line(&degrees, 20.0, position, forward), expected, "{position}");
     }
 }
 
@@ -166,7 +172,7 @@ fn edges_are_drawn_to_what_is_near() {
     let chart = chart(&[(0, 100, 199), (1, 403, 555)]);
     let (first, steps) = (edges(100, 199), Scale::default());
     let pull = |edge, by, with: &Snap| snap(&chart, &steps, Hold::Edge(cam(0), edge), first, by, with);
-    let on = Snap { reach: 6.0, grid: 1, apart: None, edges: true };
+    let on = Snap { reach: 6.0, apart: None, edges: true };
     // Of the other cam: 403 to 555. A stop goes right before its start, or to its stop.
     assert_eq!(199 + pull(Edge::Stop, 200.3, &on), 402);
     assert_eq!(199 + pull(Edge::Stop, 351.0, &on), 555);
@@ -174,15 +180,15 @@ fn edges_are_drawn_to_what_is_near() {
     assert_eq!(100 + pull(Edge::Start, 299.0, &on), 403);
     assert_eq!(100 + pull(Edge::Start, 280.4, &on), 380);
     assert_eq!(pull(Edge::Stop, 200.3, &Snap::OFF), 200);
-    let grid = Snap { reach: 6.0, grid: 50, apart: None, edges: true };
+    let grid = Snap { reach: 6.0, apart: Some(50.0), edges: true };
     assert_eq!(100 + pull(Edge::Start, 353.0, &grid), 450);
     assert_eq!(100 + pull(Edge::Start, -104.0, &grid), 0);
     assert_eq!(100 + pull(Edge::Start, -204.0, &grid), -100, "over the end of the range");
     // Moved as a whole, either edge is drawn: 199 + 203 = 402.
     assert_eq!(snap(&chart, &steps, Hold::Whole(cam(0)), first, 199.0, &on), 203);
-    // 90° of 1000 steps is 250.
+    // 90° of 1000 steps is 250; the grid is of 30°, which is 83.3.
     let degrees = Scale::degrees(1000.0, 0).unwrap();
-    let units = Snap { reach: 6.0, grid: 1, apart: Some(125.0), edges: false };
+    let units = Snap { reach: 6.0, apart: Some(80.0), edges: false };
     assert_eq!(100 + snap(&chart, &degrees, Hold::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);
 }
 

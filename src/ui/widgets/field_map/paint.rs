@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKin
 
 use super::MapField;
 use super::strip::{Strip, widest};
-use crate::ui::widgets::{focus_ring, series};
+use crate::ui::widgets::{focus_ring, hatch, series};
 use crate::ui::{Skin, icons};
 
 /// What is going on with a part of the map.
@@ -40,7 +40,7 @@ pub(super) fn field(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], field: &
         let strength = if state.hovered { 0.34 } else { 0.22 };
         painter.rect_filled(rect, corners, colour.gamma_multiply(strength));
         if field.unreadable {
-            hatch(ui, skin, rect, colour.gamma_multiply(0.3));
+            hatch(painter, skin, rect, colour.gamma_multiply(0.3));
         }
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left() + strip.block.x;
@@ -114,17 +114,6 @@ fn fitting(ui: &Ui, skin: &Skin, caption: &str, room: f32) -> Option<std::sync::
         rest = rest.rsplit_once(" · ").map_or("", |(head, _)| head);
     }
     None
-}
-
-/// Diagonal lines.
-fn hatch(ui: &Ui, skin: &Skin, rect: Rect, colour: Color32) {
-    let painter = ui.painter().with_clip_rect(rect.shrink(1.0).intersect(ui.clip_rect()));
-    let mut x = rect.left() - rect.height();
-    while x < rect.right() {
-        let line = [egui::pos2(x, rect.bottom()), egui::pos2(x + rect.height(), rect.top())];
-        painter.line_segment(line, Stroke::new(1.0, colour));
-        x += skin.space.between;
-    }
 }
 
 /// What is free: an outline a block.
