@@ -44,6 +44,8 @@ pub struct Master<'a> {
     parameterising: bool,
     /// What was sent last in this job.
     out: Option<Command>,
+    /// Whether it got there is not known.
+    lost: bool,
     /// What came last.
     input: u32,
     /// The echoes of all that was set in this job.
@@ -78,6 +80,7 @@ impl<'a> Master<'a> {
             found_error: None,
             parameterising: false,
             out: None,
+            lost: false,
             input: 0,
             echoes: Vec::new(),
             told: None,
@@ -193,12 +196,15 @@ impl<'a> Master<'a> {
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
         self.leave_value()?;
         self.ensure_legal(command)?;
-        let before = self.input;
+        let (before, echoes) = (self.input, self.echoes.clone());
         self.until(command, Awaited::Value, |word, same| match Reply::parse(word) {
             Reply::ReadOut(value) if same >= STANDS => Some(Ok(value)),
             Reply::UnknownReadOut(_) if same >= STANDS => Some(Err(Error::UnknownReadOut { command })),
             Reply::Error(error) if word != before && same >= STANDS => {
                 Some(Err(Error::Refused { sent: command, error }))
+            }
+            Reply::Echo { .. } if !echoes.contains(&word) && same >= STAYS => {
+                Some(Err(Error::OtherMaster { sent: command.emit(), seen: Meddled::Input(word) }))
             }
             _ => None,
         })
@@ -288,7 +294,10 @@ impl<'a> Master<'a> {
                 return Err(error);
             }
             // It may be there also where writing it fails.
-            ended => ended?,
+            ended => {
+                self.lost = ended.is_err();
+                ended?
+            }
         };
         let (out, input, says) = (command.emit(), self.input, Says::of(command, self.input));
         // The position of a shaft that turns is not told again and again.

@@ -11,7 +11,7 @@ use super::identify::{direction_of, programs, read_cam, read_parameters, read_pr
 use super::{Error, Identity, Master};
 use crate::profile::Consent;
 use crate::profile::interbus::{CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange};
-use crate::protocol::interbus::{Command, Gear, Parameter, ReadOut, StartupMode, Value};
+use crate::protocol::interbus::{Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, StartupMode, Value};
 
 /// A plan that a person consented to and whose base still holds.
 pub struct Confirmed<'p> {
@@ -83,10 +83,12 @@ pub fn confirm<'p>(
         if master.read_out(ReadOut::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
             return changed("the encoder itself".to_owned());
         }
-        if let Some(parameters) = plan.base.parameters
-            && read_parameters(master)? != parameters
-        {
-            return changed("a parameter".to_owned());
+        if let Some(before) = plan.base.parameters {
+            let now = read_parameters(master)?;
+            let differs = |row: &&ParameterRow| now.value(row.parameter) != before.value(row.parameter);
+            if let Some(row) = PARAMETERS.iter().find(differs) {
+                return changed(row.name.to_owned());
+            }
         }
         for (number, program) in &plan.base.programs {
             master.go(StartupMode::Cams(*number))?;

@@ -8,6 +8,10 @@ use crate::protocol::interbus::{Command, ReadOut, Reply, StartupMode};
 
 /// So long the value of a question about a cam may stay behind `00000000`, before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
+/// An old word may still stand when one looks for the first time: so many looks after it.
+const LOOKS: u32 = 2;
+/// From one to the next.
+const LOOK: Duration = Duration::from_millis(10);
 
 impl Master<'_> {
     /// Does something with the encoder, and leads it back to what it did before, whatever happens.
@@ -77,13 +81,19 @@ impl Master<'_> {
     /// Looks at the encoder, and asks what it does: so nothing is sent that it would take for something else.
     fn begin(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
-        self.input = self.data.input()?;
-        while let Reply::Echo { .. } | Reply::Busy { .. } = Reply::parse(self.input) {
-            if self.data.now().since(begun) >= self.patience {
-                return Err(Error::NotRunning { input: self.input });
-            }
-            self.data.wait(Duration::from_millis(20))?;
+        let mut looks = 0;
+        loop {
             self.input = self.data.input()?;
+            let waited = self.data.now().since(begun);
+            match Reply::parse(self.input) {
+                Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
+                    return Err(Error::NotRunning { input: self.input });
+                }
+                Reply::Echo { .. } | Reply::Busy { .. } => {}
+                _ if looks >= LOOKS => break,
+                _ => looks += 1,
+            }
+            self.data.wait(LOOK)?;
         }
         if let Reply::Error(_) = Reply::parse(self.input) {
             self.found_error = Some(self.input);
@@ -111,7 +121,7 @@ impl Master<'_> {
     /// It was sent nothing, or nothing but normal running stands.
     fn is_as_found(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
-        rests && !self.parameterising && !self.unsure && self.is == self.found
+        rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
     }
 
     fn ask_mode(&mut self) -> Result<StartupMode, Error> {
@@ -154,17 +164,27 @@ impl Master<'_> {
         if self.out.is_none() {
             return Ok(());
         }
+        let Some(found) = self.found else {
+            // It never said what it does, so that it was asked that and nothing else.
+            self.cycle(Command::Normal)?;
+            return Ok(());
+        };
         let reply = Reply::parse(self.input);
         let stands = matches!(reply, Reply::Echo { .. } | Reply::Busy { .. })
             || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
         if self.parameterising || self.unsure || stands {
+            if self.out == Some(Command::Run) {
+                // Its edge is what counts.
+                for _ in 0..LOOKS {
+                    self.cycle(Command::Normal)?;
+                }
+            }
             self.run()?;
             self.normal()?;
         }
         if self.unsure {
             self.ask_mode()?;
         }
-        let Some(found) = self.found else { return self.rest() };
         // A read-out may end a mode as well.
         if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
             self.rest()?;
@@ -178,6 +198,7 @@ impl Master<'_> {
 
     /// The word that stands while nothing is asked of the encoder.
     fn rest(&mut self) -> Result<(), Error> {
+        self.leave_value()?;
         let word = self.resting_word();
         if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
     }

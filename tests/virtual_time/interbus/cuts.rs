@@ -1,0 +1,160 @@
+//! The wire is cut at every request: what is told, in which state the encoder is, and that everything ends in time.
+
+use std::time::Duration;
+
+use encoder_studio::device::interbus::Error;
+use encoder_studio::device::interbus::write::Left;
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::interbus::{Item, ItemValue};
+use encoder_studio::protocol::interbus::StartupMode;
+use encoder_studio::worker::interbus::{Change, Commit, InterbusJob, InterbusOutput, JobError};
+
+use super::support::{Stand, program};
+use crate::support::Tap;
+
+const QUERY: &str = "steps=3600&revolutions=1&serial=5&cams=demo&program=2";
+/// So long a command may take to give a gateway up.
+const LIMIT: Duration = Duration::from_secs(12);
+
+/// What happens to the wire at a request.
+type Cut = fn(&mut Tap, usize);
+
+const LOST: Cut = |tap, at| tap.lost_from = Some(at);
+const MUTE: Cut = |tap, at| tap.mute_from = Some(at);
+const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
+const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
+const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
+
+/// Requests of a job that nothing happens to.
+fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
+    let mut stand = Stand::new(QUERY);
+    let job = job(&mut stand);
+    stand.tap().sent.clear();
+    stand.run(job).unwrap();
+    let tap = stand.tap();
+    tap.sent.len()
+}
+
+/// Two parameters and a mask.
+fn write(stand: &mut Stand) -> InterbusJob {
+    let survey = match stand.run(InterbusJob::Survey).unwrap() {
+        InterbusOutput::Surveyed(survey) => *survey,
+        other => panic!("{other:?}"),
+    };
+    let mut wanted = encoder_studio::profile::interbus::Image::of(survey.parameters);
+    let (_, own) = stand.programs(&[6]).remove(0);
+    *wanted.program_mut(program(6)).unwrap() = Some(own);
+    (wanted.parameters.preset, wanted.parameters.zero_shift) = (17, 3);
+    assert!(wanted.put(Item::CamMask(program(6)), ItemValue::Mask(!own.mask)));
+    let prepared = stand.prepare(Change::Write(Box::new(wanted)));
+    let consent = Consent::to(prepared.plan.id());
+    InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }))
+}
+
+#[test]
+fn a_single_loss_is_asked_again_and_nobody_notices() {
+    for cut in [REQUEST, REPLY] {
+        for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
+            let mut stand = Stand::new(QUERY);
+            cut(&mut stand.tap(), at);
+            match stand.run(InterbusJob::Identify).unwrap() {
+                InterbusOutput::Identity(identity) => assert_eq!(identity.serial_number, "5", "{at}"),
+                other => panic!("{other:?}"),
+            }
+            assert_eq!(stand.left(), (0, StartupMode::Cams(program(2))), "{at}");
+        }
+        for at in (0..requests(write)).step_by(29) {
+            let mut stand = Stand::new(QUERY);
+            let stores = stand.stores();
+            let job = write(&mut stand);
+            stand.tap().sent.clear();
+            cut(&mut stand.tap(), at);
+            let done = match stand.run(job).unwrap() {
+                InterbusOutput::Committed(done) => *done,
+                other => panic!("{other:?}"),
+            };
+            assert_eq!((done.written.verified, stand.stores() - stores), (3, 2), "{at}");
+            assert_eq!(stand.left(), (0, StartupMode::Cams(program(2))), "{at}");
+        }
+    }
+}
+
+#[test]
+fn a_read_that_is_cut_ends_in_time_and_says_what_out_is() {
+    for (cut, hears) in [(LOST, false), (MUTE, true), (DEAF, false)] {
+        for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
+            let mut stand = Stand::new(QUERY);
+            cut(&mut stand.tap(), at);
+            let error = stand.run(InterbusJob::Identify).unwrap_err();
+            assert!(stand.elapsed() < LIMIT, "{at}: {:?}", stand.elapsed());
+            let JobError::Device(error) = error else { panic!("{at}: {error}") };
+            assert!(error.is_lost(), "{at}: {error}");
+            let (out, mode) = stand.left();
+            assert_eq!(mode, StartupMode::Cams(program(2)), "{at}");
+            match error {
+                // What was sent last has reached it, unless it was that which did not.
+                Error::NotLedBack { standing, .. } => assert!(!hears || standing.out == out, "{at}: {standing}"),
+                _ => assert_eq!(out, 0, "{at}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be() {
+    let count = requests(write);
+    for cut in [LOST, MUTE, DEAF] {
+        for at in (0..count).step_by(31) {
+            let mut stand = Stand::new(QUERY);
+            let stores = stand.stores();
+            let job = write(&mut stand);
+            stand.tap().sent.clear();
+            cut(&mut stand.tap(), at);
+            let begun = stand.elapsed();
+            let ended = stand.run(job);
+            let spent = u64::from(stand.stores() - stores);
+            let (out, mode) = stand.left();
+            match ended {
+                Err(JobError::Interrupted { interrupted, backup, .. }) => {
+                    assert!(backup.exists() && interrupted.cause.is_lost(), "{at}: {interrupted}");
+                    assert!(spent <= interrupted.done.write_cycles, "{at}: {interrupted}");
+                    match interrupted.left {
+                        Left::Unknown(standing) => {
+                            assert_eq!(standing.found, Some(StartupMode::Cams(program(2))), "{at}");
+                            assert!(interrupted.to_string().contains("could not be led back"), "{at}: {interrupted}");
+                        }
+                        // The last that it heard was normal running.
+                        Left::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),
+                    }
+                }
+                Err(JobError::Device(error)) => assert!(error.is_lost() && spent == 0, "{at}: {error}"),
+                other => panic!("{at}: {other:?}"),
+            }
+            assert!(stand.elapsed() - begun < LIMIT + CONFIRMED, "{at}: {:?}", stand.elapsed() - begun);
+            // The cable is back: the encoder can be led back.
+            *stand.tap() = Tap::default();
+            stand.run(InterbusJob::LeadBack).unwrap();
+            assert!(stand.session.sample().unwrap().is_valid(), "{at}");
+            assert_eq!(stand.left().0, 0, "{at}");
+        }
+    }
+}
+
+/// The work before the cut.
+const CONFIRMED: Duration = Duration::from_secs(8);
+
+/// What the virtual gateway has as faults on purpose.
+#[test]
+fn a_bad_gateway_is_got_along_with() {
+    for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
+        for seed in 0..4 {
+            let mut stand = Stand::new(&format!("{QUERY}&seed={seed}&fault={fault}"));
+            match stand.run(InterbusJob::Identify) {
+                Ok(InterbusOutput::Identity(identity)) => assert_eq!(identity.serial_number, "5", "{fault}"),
+                other => panic!("{fault}: {other:?}"),
+            }
+        }
+    }
+    let mut stand = Stand::new(&format!("{QUERY}&exception=0.05&seed=3"));
+    assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
+}

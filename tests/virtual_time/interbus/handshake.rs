@@ -1,0 +1,229 @@
+//! The handshake word by word, from the tables of reference 4 and 5: what is waited for, what is not taken for an answer,
+//! and what is made of each that is wrong.
+
+use encoder_studio::device::interbus::Master;
+use encoder_studio::device::interbus::write::{Left, Written};
+use encoder_studio::device::interbus::{Awaited, Error, Meddled, Says, Station, identify, read_programs, select};
+use encoder_studio::protocol::interbus::{Parameter, StartupMode};
+
+use super::scripted::{POSITION, Script, cams, carry_out, parameters};
+use super::support::{program, station};
+
+/// Steps 255 and 4 turns, as a script that reads back 103 and 203 does not have them.
+const STEPS: u32 = 0x0200_00FF;
+const RUN: u32 = 0x8000_0000;
+
+/// Answers a read-out after the parameterisation as it was set: 255 steps, 1 turn, clockwise, preset 0.
+fn reading_back(script: Script) -> Script {
+    let value = |number: u32, value: u32| (0x2021_0000 + number, [0xA000_0000 | value]);
+    [value(1, 255), value(2, 1), value(3, 3), value(4, 0)].iter().fold(script, |script, (out, words)| {
+        // Once to be read back, once for the gear.
+        script.on(*out, words).on(*out, words)
+    })
+}
+
+fn worked_example() -> Vec<encoder_studio::profile::interbus::Op> {
+    use Parameter::{Direction, Preset, Steps, Turns};
+    parameters(&[(Steps, 255), (Turns, 1), (Direction, 3), (Preset, 0)])
+}
+
+/// Reference 4, "Worked example": old echoes stand first, and each word waits for its own.
+#[test]
+fn the_worked_example_is_sent_word_by_word() {
+    let script = Script::new()
+        .on(0x0200_00FF, &[POSITION, POSITION, 0xC200_00FF])
+        .on(0x0400_0001, &[0xC200_00FF, 0xC200_00FF, 0xC400_0001])
+        .on(0x0600_0003, &[0xC400_0001, 0xC600_0003])
+        .on(0x0800_0000, &[0xC600_0003, 0xC800_0000])
+        .on(0x8000_0000, &[0xC800_0000, 0xC800_0000, POSITION]);
+    let (ended, _, sent) = carry_out(reading_back(script), worked_example());
+    assert_eq!(ended.unwrap(), Written { ops: 1, written: 4, verified: 4, write_cycles: 1 });
+    let own = &sent[2..8];
+    assert_eq!(own, [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN, 0], "{sent:08X?}");
+    assert_eq!(sent.last(), Some(&0));
+}
+
+/// Echoes of the same code with other data, busy words, and an echo that is gone again in the next cycle.
+#[test]
+fn nothing_but_the_exact_echo_that_stands_counts() {
+    let cases: [(&str, &[u32]); 5] = [
+        ("busy", &[0xC000_0000, 0xC000_0000, 0xC000_0000, 0xC200_00FF]),
+        ("busy with data", &[0xC000_00FF, 0xC000_00FF, 0xC000_00FF, 0xC200_00FF]),
+        ("the same code with other data", &[0xC200_0100, 0xC200_0100, 0xC200_0100, 0xC200_00FF]),
+        ("gone again", &[0xC200_00FF, 0xC000_0000, 0xC200_00FF, POSITION, 0xC200_00FF]),
+        ("an error of one cycle", &[0x8200_0000, 0xC200_00FF]),
+    ];
+    for (label, words) in cases {
+        let script = reading_back(Script::new().on(STEPS, words));
+        let (ended, steps, _) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
+        assert_eq!(ended.unwrap().verified, 1, "{label}");
+        let echoed = steps.iter().filter(|step| step.out == STEPS && step.says == Says::Echoed).count();
+        assert!(echoed >= 1, "{label}");
+        let run = steps.iter().position(|step| step.out == RUN).unwrap();
+        assert_eq!(steps[run - 1].input, 0xC200_00FF, "{label}: the echo stood before run");
+    }
+}
+
+/// Reference 2: each error word, at each word of the worked example; `80000000` and `00000000` follow.
+#[test]
+fn an_error_at_any_step_is_told_and_led_back_from() {
+    let words = [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN];
+    let errors = [
+        (0x8200_0000, "wrong parameter data"),
+        (0x8400_0000, "unknown parameter code"),
+        (0x8600_0000, "parameters lost"),
+        (0x9800_0005, "manufacturer's error"),
+    ];
+    for (at, word) in words.into_iter().enumerate() {
+        for (error, meaning) in errors {
+            let (ended, _, sent) = carry_out(Script::new().on(word, &[error]), worked_example());
+            let interrupted = ended.unwrap_err();
+            assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == word), "{interrupted}");
+            assert!(interrupted.cause.to_string().contains(meaning), "{interrupted}");
+            assert_eq!(interrupted.left, Left::AsFound, "{interrupted}");
+            assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
+            assert_eq!(interrupted.unclear.len(), 4);
+            // The words up to that one, then back.
+            assert_eq!(sent[2..3 + at], words[..=at], "{sent:08X?}");
+            assert!(sent[3 + at..].contains(&0) && sent.contains(&RUN), "{sent:08X?}");
+            assert_eq!(sent.last(), Some(&0));
+        }
+    }
+}
+
+#[test]
+fn an_edge_beyond_the_range_is_refused_by_the_encoder_as_well() {
+    let script = Script::new().on(0x4E00_0015, &[0x9800_0004]);
+    let (ended, _, sent) = carry_out(script, cams(7, 0x15, 0x20, 0x80));
+    let interrupted = ended.unwrap_err();
+    assert!(interrupted.cause.to_string().contains("start or stop of a cam beyond the measuring range"));
+    // Back to position mode as well.
+    assert!(sent.ends_with(&[0x2080_0000, RUN, 0, 0x2021_0009, 0]), "{sent:08X?}");
+}
+
+/// Reference 5: the start of cam 0 at 0 has the busy word for an echo. It has to stand for longer.
+#[test]
+fn the_echo_that_looks_busy_stands_for_longer() {
+    let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
+    // The script reads back 0 for everything: the mask is not taken.
+    let interrupted = ended.unwrap_err();
+    assert!(matches!(&interrupted.cause, Error::NotTaken { item, wanted: 1, reads: 0 } if item == "cam-mask:1"));
+    assert!(sent.windows(3).any(|own| own == [0x4000_0000, 0x6000_0000, 0x2040_0001]), "{sent:08X?}");
+    let start = steps.iter().position(|step| step.out == 0x4000_0000).unwrap();
+    let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
+    assert!(steps[stop].at.since(steps[start].at).as_millis() >= 95);
+}
+
+/// The program is selected first, and asked for before any word that would do something else in position mode.
+#[test]
+fn cam_words_follow_a_mode_that_was_confirmed() {
+    let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
+    let first = sent.iter().position(|word| *word == 0x4600_000F).unwrap();
+    assert_eq!(sent[first - 5..first], [0x2080_0001, RUN, 0, 0x2021_0009, 0], "{sent:08X?}");
+    // An encoder that stays in position mode gets none of them.
+    let stays = Script::new().on(0x2021_0009, &[0xA000_0001]);
+    let stays = (0..9).fold(stays, |script, _| script.on(0x2021_0009, &[0xA000_0001]));
+    let (ended, _, sent) = carry_out(stays, cams(3, 15, 213, 8));
+    let interrupted = ended.unwrap_err();
+    assert!(matches!(interrupted.cause, Error::NoMode { is: StartupMode::K3, .. }), "{interrupted}");
+    assert!(sent.iter().all(|word| word >> 29 != 0b010 && word >> 29 != 0b011), "{sent:08X?}");
+}
+
+#[test]
+fn another_master_is_told_by_what_is_acknowledged_and_by_what_stands_in_out() {
+    let script = Script::new().on(STEPS, &[0xC600_0004]);
+    let interrupted = carry_out(script, worked_example()).0.unwrap_err();
+    let seen = Meddled::Input(0xC600_0004);
+    assert_eq!(interrupted.cause, Error::OtherMaster { sent: STEPS, seen });
+    let script = Script { output: Some(0x2040_0001), ..Script::new() }.on(STEPS, &[POSITION]);
+    let interrupted = carry_out(script, worked_example()).0.unwrap_err();
+    let seen = Meddled::Output(0x2040_0001);
+    assert_eq!(interrupted.cause, Error::OtherMaster { sent: STEPS, seen });
+    assert_eq!(
+        interrupted.cause.to_string(),
+        "another master writes to the encoder: OUT is 20400001 where 020000FF was written"
+    );
+}
+
+#[test]
+fn a_missing_echo_position_or_value_is_named_with_its_words() {
+    for (word, awaited) in [(STEPS, Awaited::Echo), (RUN, Awaited::Run)] {
+        let script = Script::new().on(word, &[0xC000_0000]).on(word, &[POSITION]);
+        let (ended, _, sent) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
+        let interrupted = ended.unwrap_err();
+        let expected = Error::TimeOut { awaited, sent: word, input: 0xC000_0000, milliseconds: 2000 };
+        match &interrupted.cause {
+            // `80000000` does not lead back either, because it stands already.
+            Error::NotLedBack { cause, standing } => {
+                assert_eq!((**cause == expected, standing.out, standing.parameterising), (true, RUN, true));
+            }
+            cause => assert_eq!(*cause, expected),
+        }
+        assert!(sent.contains(&RUN));
+    }
+    let mut station = station("handshake=500");
+    let script = Script::new().on(0x2021_0000, &[POSITION]);
+    let error = identify(&mut Master::over(script, &mut station)).unwrap_err();
+    assert_eq!(error.to_string(), "no value after OUT 20210000 within 500 ms; IN is 000004D2");
+}
+
+#[test]
+fn halves_that_are_exchanged_are_suspected() {
+    let mut station = station("");
+    // 1234h in the first register, 0 in the second.
+    let script = Script::new().on(0x2021_0009, &[0x1234_0000]);
+    let error = identify(&mut Master::over(script, &mut station)).unwrap_err();
+    assert_eq!(error.to_string(), "IN 12340000 makes sense as 00001234 only: the word order may be swapped");
+}
+
+/// What ends a mode the manual does not say: an encoder that goes back to its position with `00000000` is kept in its mode
+/// with the word that keeps it.
+#[test]
+fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
+    for (mode, holds) in [(5, RUN), (2, 0x2040_0001)] {
+        let script = Script { normal_ends_modes: true, ..Script::in_mode(mode) };
+        let sent = script.sent.clone();
+        let mut station = station("");
+        let mut master = Master::over(script, &mut station);
+        let identity = identify(&mut master).unwrap();
+        assert_eq!(identity.mode.emit(), mode);
+        assert_eq!(sent.lock().unwrap().last(), Some(&holds), "mode {mode}: {:08X?}", sent.lock().unwrap());
+    }
+    // The same for one that is selected; in the next job it is known.
+    let mut station: Station = station("");
+    let script = Script { normal_ends_modes: true, ..Script::new() };
+    let sent = script.sent.clone();
+    let mut master = Master::over(script, &mut station);
+    let wanted = StartupMode::Cams(program(4));
+    assert_eq!(select(&mut master, wanted).unwrap(), wanted);
+    assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
+    assert_eq!(identify(&mut master).unwrap().mode, wanted);
+    assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
+}
+
+/// The value of a question about a cam may stay behind `00000000`: bit 16 is clear in the question as well.
+#[test]
+fn values_of_cams_are_left_with_run_where_normal_running_does_not() {
+    let script = Script { normal_keeps_values: true, ..Script::new() }
+        .on(0x2020_0013, &[0xA000_0015])
+        .on(0x2020_0023, &[0xA000_0015, 0xA000_0015, 0xA000_0213]);
+    let sent = script.sent.clone();
+    let mut station = station("");
+    let mut master = Master::over(script, &mut station);
+    let (read, _) = read_programs(&mut master, &[program(1)], &mut |_, _, _| {}).unwrap();
+    let cam = read[0].1.cams[3].unwrap();
+    assert_eq!(cam.start.get(), 0x15);
+    let sent = sent.lock().unwrap();
+    assert!(sent.windows(4).any(|own| own == [0x2020_0013, 0, RUN, 0]), "{sent:08X?}");
+}
+
+/// Nothing is sent before an encoder has said what it does, but that question.
+#[test]
+fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
+    let script = Script::in_mode(0x55);
+    let sent = script.sent.clone();
+    let mut station = station("");
+    let mut master = Master::over(script, &mut station);
+    assert_eq!(identify(&mut master).unwrap().mode.emit(), 0x55);
+    assert_eq!(sent.lock().unwrap().last(), Some(&0));
+}

@@ -1,0 +1,216 @@
+//! What is read: with which words, and how the encoder is afterwards.
+
+use encoder_studio::device::interbus::{Error, Says};
+use encoder_studio::profile::interbus::{Direction, Item, ItemValue};
+use encoder_studio::protocol::interbus::{Mode, ReadOut, StartupMode};
+use encoder_studio::worker::interbus::{InterbusJob, InterbusOutput, JobError};
+
+use super::support::{Stand, cam, gateway, program, station};
+
+const K3: StartupMode = StartupMode::K3;
+
+/// Quarter of a turn of 4096 steps.
+const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
+
+#[test]
+fn the_in_word_alone_touches_nothing() {
+    let mut stand = Stand::new(QUARTER);
+    for job in [InterbusJob::Hello, InterbusJob::Position] {
+        let reading = match stand.run(job).unwrap() {
+            InterbusOutput::Hello(reading) | InterbusOutput::Position(reading) => reading,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!((reading.word, reading.position(), reading.mode), (1024, Some(1024), None));
+    }
+    assert_eq!(stand.session.sample().unwrap().word, 1024);
+    assert_eq!(stand.sent(), Vec::<u32>::new());
+}
+
+#[test]
+fn who_is_there_is_read_out_and_the_position_comes_back() {
+    let mut stand = Stand::new(QUARTER);
+    let stores = stand.stores();
+    let identity = match stand.run(InterbusJob::Identify).unwrap() {
+        InterbusOutput::Identity(identity) => *identity,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(identity.serial_number, "123456");
+    assert_eq!((identity.steps, identity.revolutions, identity.direction), (4096, 1, Direction::Clockwise));
+    assert_eq!((identity.mode, identity.flags.steps_minus_one()), (K3, false));
+    // The mode first; `00000000` between two values, which look the same.
+    let numbers = [9, 0, 1, 2, 3, 7, 9, 0xA];
+    let expected: Vec<u32> = numbers.into_iter().flat_map(|number| [0x2021_0000 + number, 0]).collect();
+    assert_eq!(stand.sent(), expected);
+    assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
+    let reading = stand.session.sample().unwrap();
+    assert_eq!((reading.mode, reading.position()), (Some(K3), Some(1024)));
+    assert!(reading.place().is_some_and(|place| (place.turns, place.degrees) == (0, 90.0)));
+}
+
+#[test]
+fn everything_that_can_be_read_out_is() {
+    let mut stand =
+        Stand::new("steps=360000&revolutions=100&preset=77&zero-shift=5&temperature=-10&operating-time=1000");
+    let survey = match stand.run(InterbusJob::Survey).unwrap() {
+        InterbusOutput::Surveyed(survey) => *survey,
+        other => panic!("{other:?}"),
+    };
+    let own = survey.parameters;
+    assert_eq!((own.steps, own.revolutions, own.preset, own.zero_shift), (360_000, 100, 77, 5));
+    assert_eq!(survey.read_outs().count(), 12);
+    assert_eq!(stand.left(), (0, K3));
+    for (item, value) in [
+        (Item::Steps, ItemValue::Number(360_000)),
+        (Item::Preset, ItemValue::Number(77)),
+        (Item::Direction, ItemValue::Direction(Direction::Clockwise)),
+        (Item::Temperature, ItemValue::TenthsOfDegree(survey.temperature_tenths)),
+        (Item::OperatingTime, ItemValue::Minutes(survey.operating_minutes)),
+    ] {
+        assert!(matches!(stand.run(InterbusJob::Read(item)).unwrap(), InterbusOutput::Item(read) if read == value));
+    }
+    let register = ReadOut::chip_register(5).unwrap();
+    assert!(
+        matches!(stand.run(InterbusJob::ReadOut(register)).unwrap(), InterbusOutput::ReadOut(own, _) if own == register)
+    );
+    let error = stand.run(InterbusJob::ReadOut(ReadOut::new(0xB))).unwrap_err();
+    assert_eq!(error.to_string(), "the encoder has no value for 2021000B (read-out)");
+    assert_eq!(stand.left(), (0, K3));
+}
+
+/// The value of a read-out looks like that of the one before: it has to be gone first, however long it stays.
+#[test]
+fn old_values_and_busy_words_are_no_values() {
+    for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
+        let mut stand = Stand::new(&format!("steps=4000&revolutions=10&serial=99&{query}"));
+        let survey = match stand.run(InterbusJob::Survey).unwrap() {
+            InterbusOutput::Surveyed(survey) => *survey,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(survey.identity.serial_number, "99", "{query}");
+        assert_eq!((survey.parameters.steps, survey.parameters.revolutions), (4000, 10), "{query}");
+    }
+}
+
+#[test]
+fn cam_programs_are_selected_read_and_left_again() {
+    for (query, found) in [
+        ("cams=demo", StartupMode::K3),
+        ("cams=demo&selection=output", StartupMode::K3),
+        ("cams=demo&program=3", StartupMode::Cams(program(3))),
+        ("cams=demo&program=3&stale=4", StartupMode::Cams(program(3))),
+        ("cams=demo&selection=output&busy=50&stale=4", StartupMode::K3),
+    ] {
+        let mut stand = Stand::new(query);
+        let stores = stand.stores();
+        let wanted: Vec<u8> = vec![1, 3, 8];
+        let read = stand.programs(&wanted);
+        for (number, own) in read {
+            let held = stand.gateway.with_encoder(|encoder| *encoder.memory().program(program(number)));
+            assert_eq!(own.mask, held.mask, "{query}");
+            assert_eq!(own.cams, held.cams, "{query}");
+            assert!(own.cams.iter().all(Option::is_some), "{query}");
+        }
+        assert_eq!((stand.left(), stand.stores()), ((0, found), stores), "{query}");
+    }
+}
+
+#[test]
+fn a_mode_that_is_selected_stays() {
+    let mut stand = Stand::new("cams=demo&rpm=60");
+    for mode in [
+        StartupMode::Velocity,
+        StartupMode::Cams(program(2)),
+        StartupMode::Velocity,
+        StartupMode::Cams(program(7)),
+        StartupMode::Cams(program(1)),
+        K3,
+    ] {
+        let output = stand.run(InterbusJob::Select(mode)).unwrap();
+        assert!(matches!(output, InterbusOutput::Selected(own) if own == mode), "{mode:?}");
+        assert_eq!(stand.left(), (0, mode));
+        // What is asked in between changes nothing of it.
+        stand.run(InterbusJob::Identify).unwrap();
+        assert_eq!(stand.left(), (0, mode));
+        let reading = stand.session.sample().unwrap();
+        assert_eq!(reading.mode, Some(mode));
+        match mode {
+            StartupMode::Velocity => assert_eq!(reading.rpm(), Some(60)),
+            StartupMode::Cams(_) => assert!(reading.cams().is_some()),
+            _ => assert!(reading.position().is_some()),
+        }
+    }
+    let error = stand.run(InterbusJob::Select(StartupMode::parse(encoder_studio::protocol::interbus::Value::MAX)));
+    assert!(matches!(error, Err(JobError::Device(Error::NotSelectable { .. }))), "{error:?}");
+}
+
+#[test]
+fn each_step_of_the_handshake_is_told_with_its_words() {
+    let mut stand = Stand::new("busy=30&serial=7");
+    let (ended, steps) = stand.follow(InterbusJob::ReadOut(ReadOut::SERIAL_NUMBER));
+    assert!(ended.is_ok());
+    let told: Vec<(u32, u32)> = steps.iter().map(|step| (step.out, step.input)).collect();
+    assert!(told.contains(&(0x2021_0000, 0xA000_0007)), "{told:08X?}");
+    assert!(matches!(steps.last().map(|step| (step.out, step.says)), Some((0, Says::Runs))));
+    // No word twice in a row.
+    assert!(steps.windows(2).all(|pair| (pair[0].out, pair[0].says) != (pair[1].out, pair[1].says)));
+}
+
+#[test]
+fn what_is_saved_is_what_the_encoder_holds() {
+    let mut stand = Stand::new("steps=36000&revolutions=10&preset=5&cams=demo&serial=31");
+    let stores = stand.stores();
+    for programs in [false, true] {
+        let profile = match stand.run(InterbusJob::Save { programs }).unwrap() {
+            InterbusOutput::Saved(profile) => *profile,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!((profile.identity.serial_number.as_str(), profile.image.parameters.steps), ("31", 36_000));
+        assert_eq!(profile.image.known().count(), if programs { 8 } else { 0 });
+        assert_eq!(profile.image.shift.is_some(), programs);
+        assert!(profile.is_mounting(Item::Preset));
+    }
+    assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
+}
+
+#[test]
+fn several_encoders_behind_one_gateway_are_told_by_their_registers() {
+    let gateway = gateway("encoders=3&unit=5&input=100&output=200&order=low-first&serial=40");
+    for (query, serial) in
+        [("unit=5&input=100&output=200&order=low-first", "40"), ("unit=5&input=104&output=204&order=low-first", "42")]
+    {
+        let mut stand = Stand::with(gateway.connection(), station(query));
+        match stand.run(InterbusJob::Identify).unwrap() {
+            InterbusOutput::Identity(identity) => assert_eq!(identity.serial_number, serial),
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn what_was_left_in_parameterisation_is_named_and_led_back_on_demand() {
+    let mut stand = Stand::new("steps=4096&revolutions=1");
+    stand.gateway.with_encoder(|encoder| encoder.write(encoder_studio::units::Moment::START, 0x0200_00FF));
+    let error = stand.run(InterbusJob::Identify).unwrap_err();
+    assert_eq!(error.to_string(), "the encoder is being parameterised: IN is C20000FF");
+    assert_eq!(stand.sent(), Vec::<u32>::new(), "whoever is at it is not disturbed");
+    assert!(matches!(stand.run(InterbusJob::LeadBack).unwrap(), InterbusOutput::LedBack(mode) if mode == K3));
+    assert_eq!(stand.left(), (0, K3));
+    stand.gateway.with_encoder(|encoder| assert_eq!(encoder.mode(), Mode::Position));
+}
+
+#[test]
+fn a_cam_is_read_as_an_item() {
+    let mut stand = Stand::new("cams=demo&steps=3600&revolutions=1");
+    let stores = stand.stores();
+    let held = stand.gateway.with_encoder(|encoder| *encoder.memory().program(program(2)));
+    let first = held.cams[0].unwrap();
+    let item: Item = "cam:2:0".parse().unwrap();
+    let output = stand.run(InterbusJob::Read(item)).unwrap();
+    assert!(
+        matches!(output, InterbusOutput::Item(ItemValue::Cam(own)) if own == cam(first.start.get(), first.stop.get()))
+    );
+    let output = stand.run(InterbusJob::Read("cam-mask:2".parse().unwrap())).unwrap();
+    assert!(matches!(output, InterbusOutput::Item(ItemValue::Mask(own)) if own == held.mask));
+    assert!(matches!(stand.run(InterbusJob::Read(Item::Shift)).unwrap(), InterbusOutput::Item(ItemValue::Number(0))));
+    assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
+}

@@ -1,0 +1,9 @@
+//! A K3 encoder behind its gateway: the handshake, what is read and written with it, and how everything ends.
+
+mod cuts;
+mod handshake;
+mod jobs;
+mod scripted;
+mod support;
+mod wire;
+mod writing;

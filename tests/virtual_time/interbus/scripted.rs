@@ -1,0 +1,173 @@
+//! Process data that answer as a test writes it down, word by word.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::interbus::{Error, Handshake, Identity, Master, ProcessData, write};
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::interbus::{
+    Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, ProgramChange,
+};
+use encoder_studio::protocol::interbus::{CamNumber, Flags, Parameter, StartupMode, Value};
+use encoder_studio::units::Moment;
+
+use super::support::{program, station};
+
+/// The position while nothing else is written down.
+pub(crate) const POSITION: u32 = 1234;
+
+/// An encoder that acknowledges every word at once, but for those that are written down: each of these gives its IN words
+/// cycle by cycle, and the last one from then on. A value of a read-out stands until `00000000` or `80000000`.
+#[derive(Default)]
+pub(crate) struct Script {
+    /// By OUT word; of several lists the first is for the first time that it is written.
+    pub(crate) answers: HashMap<u32, VecDeque<Vec<u32>>>,
+    /// What the gateway says that OUT is, where it is not what was written.
+    pub(crate) output: Option<u32>,
+    /// `00000000` ends cam mode and velocity mode.
+    pub(crate) normal_ends_modes: bool,
+    /// `00000000` does not end the reading of cams.
+    pub(crate) normal_keeps_values: bool,
+    /// Every word that was written, each once where it stays.
+    pub(crate) sent: Arc<Mutex<Vec<u32>>>,
+    pub(crate) mode: u32,
+    pub(crate) out: u32,
+    pub(crate) standing: VecDeque<u32>,
+    pub(crate) input: u32,
+    pub(crate) now: Duration,
+}
+
+impl Script {
+    pub(crate) fn new() -> Self {
+        Script { mode: 1, input: POSITION, ..Script::default() }
+    }
+
+    pub(crate) fn in_mode(mode: u32) -> Self {
+        Script { mode, ..Script::new() }
+    }
+
+    /// To this word it answers with these.
+    pub(crate) fn on(mut self, out: u32, words: &[u32]) -> Self {
+        self.answers.entry(out).or_default().push_back(words.to_vec());
+        self
+    }
+
+    fn take(&mut self, out: u32) {
+        self.sent.lock().unwrap().push(out);
+        self.out = out;
+        let was = self.input;
+        if let Some(words) = self.answers.get_mut(&out).and_then(VecDeque::pop_front) {
+            self.standing = words.into();
+            return;
+        }
+        self.standing.clear();
+        let value = match out {
+            0 | 0x8000_0000 => {
+                if out == 0 && self.normal_ends_modes && self.mode > 1 {
+                    self.mode = 1;
+                }
+                let stays = out == 0 && self.normal_keeps_values && self.mode > 2 && was >> 29 == 0b101;
+                if stays { was } else { POSITION }
+            }
+            0x2021_0009 => 0xA000_0000 | self.mode,
+            0x2021_0003 => 0xA000_0003,
+            _ if out >> 16 == 0x2021 => 0xA000_0003 + (out & 0xF) * 100,
+            _ if out >> 16 == 0x2020 => 0xA000_0000,
+            0x2040_0000 | 0x2040_0001 if self.mode < 3 => {
+                self.mode = if out & 1 == 1 { 2 } else { 1 };
+                POSITION
+            }
+            _ => {
+                if out >> 16 == 0x2080 {
+                    self.mode = if out & 0xF == 0 { 1 } else { (out & 0xF) + 2 };
+                }
+                out | 0xC000_0000
+            }
+        };
+        self.standing.push_back(value);
+    }
+}
+
+impl ProcessData for Script {
+    fn cycle(&mut self, out: u32) -> Result<u32, Error> {
+        if out != self.out {
+            self.take(out);
+        }
+        self.now += Duration::from_millis(5);
+        self.input()
+    }
+
+    fn input(&mut self) -> Result<u32, Error> {
+        if let Some(word) = self.standing.pop_front() {
+            self.input = word;
+        }
+        Ok(self.input)
+    }
+
+    fn output(&mut self) -> Result<Option<u32>, Error> {
+        Ok(Some(self.output.unwrap_or(self.out)))
+    }
+
+    fn now(&self) -> Moment {
+        Moment::after_start(self.now)
+    }
+
+    fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        self.now += duration;
+        Ok(())
+    }
+
+    fn shield(&mut self, shielded: bool) -> bool {
+        shielded
+    }
+}
+
+/// The encoder that a script is.
+pub(crate) fn identity() -> Identity {
+    Identity {
+        serial_number: "3".to_owned(),
+        steps: 103,
+        revolutions: 203,
+        direction: Direction::Clockwise,
+        software_version: 703,
+        mode: StartupMode::K3,
+        flags: Flags::new(Value::default()),
+    }
+}
+
+/// Carries operations out with a script; how that ended, each step, and all words that were written then.
+pub(crate) fn carry_out(
+    script: Script,
+    ops: Vec<Op>,
+) -> (Result<write::Written, Box<write::Interrupted>>, Vec<Handshake>, Vec<u32>) {
+    let plan = InterbusPlan { base: Base::default(), ops };
+    let (mut station, sent) = (station(""), script.sent.clone());
+    let mut steps = Vec::new();
+    let ended = {
+        let mut master = Master::over(script, &mut station).telling(|step| steps.push(step));
+        let confirmed = write::confirm(&mut master, &plan, Consent::to(plan.id()), &identity()).unwrap();
+        sent.lock().unwrap().clear();
+        write::carry_out(&mut master, &confirmed, &mut |_| {})
+    };
+    let sent = sent.lock().unwrap().clone();
+    (ended, steps, sent)
+}
+
+/// Parameters in one parameterisation.
+pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
+    let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
+    vec![Op::Parameterise(changes.iter().map(change).collect())]
+}
+
+/// Program 1 with both edges of a cam, and its mask.
+pub(crate) fn cams(cam: u8, start: u32, stop: u32, mask: u8) -> Vec<Op> {
+    let change = |edge, to: u32| CamChange {
+        cam: CamNumber::new(cam).unwrap(),
+        edge,
+        from: Value::default(),
+        to: Value::new(to).unwrap(),
+    };
+    let cams = vec![change(Edge::Start, start), change(Edge::Stop, stop)];
+    vec![Op::Program(ProgramChange { program: program(1), cams, mask: Some((0, mask)), shift: None })]
+}

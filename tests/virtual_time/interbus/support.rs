@@ -1,0 +1,141 @@
+//! A virtual encoder behind a virtual gateway in virtual time, with a session on it, and all that went over the wire.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+use encoder_studio::device::interbus::{Carried, Handshake, Station, carried};
+use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
+use encoder_studio::profile::Consent;
+use encoder_studio::protocol::interbus::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
+use encoder_studio::sim::interbus::{Config, Gateway};
+use encoder_studio::store::Store;
+use encoder_studio::worker::interbus::{
+    Change, Commit, Committed, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, Remark,
+};
+use encoder_studio::worker::{Event, JobId, Session};
+
+use crate::support::{MARGIN, Tap, TestLink};
+
+/// A virtual gateway with a session on it.
+pub(crate) struct Stand {
+    pub(crate) gateway: Gateway,
+    pub(crate) clock: Arc<VirtualClock>,
+    pub(crate) tap: Arc<Mutex<Tap>>,
+    pub(crate) trace: Arc<Mutex<Vec<TraceEntry>>>,
+    pub(crate) folder: tempfile::TempDir,
+    pub(crate) session: Session<Interbus>,
+}
+
+pub(crate) fn gateway(query: &str) -> Gateway {
+    let pairs = query.split('&').filter_map(|item| item.split_once('='));
+    let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+    Gateway::new(&Config::from_pairs(&pairs).unwrap())
+}
+
+pub(crate) fn station(query: &str) -> Station {
+    Station::from_query(&query.parse().unwrap(), MARGIN).unwrap()
+}
+
+impl Stand {
+    /// An encoder as `sim:?…` describes it.
+    pub(crate) fn new(query: &str) -> Self {
+        Stand::with(gateway(query), station(""))
+    }
+
+    pub(crate) fn with(gateway: Gateway, station: Station) -> Self {
+        let clock = Arc::new(VirtualClock::default());
+        let tap = Arc::<Mutex<Tap>>::default();
+        let link = TestLink::new(Arc::new(Mutex::new(gateway.connection())), clock.clone(), tap.clone());
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path());
+        let motor = Some(gateway.shaft());
+        let mut session = Session::to_gateway(Box::new(link), clock.clone(), station, store, motor);
+        let trace = Arc::<Mutex<Vec<TraceEntry>>>::default();
+        let watched = trace.clone();
+        session.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
+        Stand { gateway, clock, tap, trace, folder, session }
+    }
+
+    pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {
+        self.tap.lock().unwrap()
+    }
+
+    pub(crate) fn run(&mut self, job: InterbusJob) -> Result<InterbusOutput, JobError> {
+        self.session.run_inline(job)
+    }
+
+    /// Runs a job; what it gives, and each step of the handshake.
+    pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
+        let mut steps = Vec::new();
+        let ended = self.session.run(JobId::default(), job, &mut |event| {
+            if let Event::Remark(Remark::Handshake(step)) = event {
+                steps.push(step);
+            }
+        });
+        let ended = match ended {
+            Event::Finished(_, output) => Ok(*output),
+            Event::Failed(_, error) | Event::Cancelled(_, error) => Err(*error),
+            other => panic!("{other:?}"),
+        };
+        (ended, steps)
+    }
+
+    pub(crate) fn prepare(&mut self, change: Change) -> Prepared {
+        match self.run(InterbusJob::Prepare(change)).unwrap() {
+            InterbusOutput::Prepared(prepared) => *prepared,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn commit(&mut self, prepared: Prepared) -> Result<Committed, JobError> {
+        let consent = Consent::to(prepared.plan.id());
+        let commit = Commit { prepared, consent, force_wear: false };
+        match self.run(InterbusJob::Commit(Box::new(commit)))? {
+            InterbusOutput::Committed(committed) => Ok(*committed),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn programs(&mut self, wanted: &[u8]) -> Vec<(u8, Program)> {
+        let wanted = wanted.iter().map(|number| program(*number)).collect();
+        match self.run(InterbusJob::Programs(wanted)).unwrap() {
+            InterbusOutput::Programs(read, _) => read.into_iter().map(|(number, own)| (number.get(), own)).collect(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// The OUT words that were written, each once where it was written again.
+    pub(crate) fn sent(&self) -> Vec<u32> {
+        let entries = self.trace.lock().unwrap();
+        let sent = entries.iter().filter(|entry| entry.direction == Direction::Sent);
+        let words = sent.filter_map(|entry| carried(true, &entry.bytes.to_bytes()?, WordOrder::HighFirst));
+        words
+            .map(|word| match word {
+                Carried::Out(word) => word,
+                Carried::In(word) => panic!("{word:08X} was not sent"),
+            })
+            .collect()
+    }
+
+    /// OUT as the encoder has it, and the mode that it would start with.
+    pub(crate) fn left(&self) -> (u32, StartupMode) {
+        self.gateway.with_encoder(|encoder| (encoder.out(), encoder.startup_mode()))
+    }
+
+    pub(crate) fn stores(&self) -> u32 {
+        self.gateway.with_encoder(|encoder| encoder.stores())
+    }
+
+    pub(crate) fn elapsed(&self) -> Duration {
+        use encoder_studio::link::Clock;
+        self.clock.now().since_start()
+    }
+}
+
+pub(crate) fn program(number: u8) -> ProgramNumber {
+    ProgramNumber::new(number).unwrap()
+}
+
+pub(crate) fn cam(start: u32, stop: u32) -> Cam {
+    Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
+}

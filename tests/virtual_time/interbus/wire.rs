@@ -1,0 +1,250 @@
+//! Bytes between us and a gateway, written by hand from the Modbus application protocol: what is sent, and what is made of
+//! everything that a gateway may say.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use encoder_studio::device::interbus::{
+    Asked, Carried, Damage, Error, Exception, Master, Reading, Station, carried, identify,
+};
+use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
+use encoder_studio::protocol::interbus::WordOrder;
+use encoder_studio::units::{CharacterFormat, Moment};
+
+use super::support::station;
+
+/// What comes after a request: so many milliseconds later these bytes.
+type Answer = Vec<(u64, Vec<u8>)>;
+
+/// A gateway that says what a test makes of each request and its number, from 0.
+struct Gateway<F> {
+    clock: Arc<VirtualClock>,
+    answer: F,
+    requests: Vec<Vec<u8>>,
+    coming: Vec<(Moment, Vec<u8>)>,
+}
+
+impl<F: FnMut(usize, &[u8]) -> Answer> Gateway<F> {
+    fn new(clock: Arc<VirtualClock>, answer: F) -> Self {
+        Gateway { clock, answer, requests: Vec::new(), coming: Vec::new() }
+    }
+}
+
+impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let (now, number) = (self.clock.now(), self.requests.len());
+        self.requests.push(bytes.to_vec());
+        let coming = (self.answer)(number, bytes).into_iter();
+        self.coming.extend(coming.map(|(after, bytes)| (now + Duration::from_millis(after), bytes)));
+        self.coming.sort_by_key(|(at, _)| *at);
+        Ok(())
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let next = self.coming.first().map(|(at, _)| *at).filter(|at| *at <= until.max(self.clock.now()));
+        match next {
+            Some(at) => {
+                self.clock.sleep_until(at);
+                into.extend(self.coming.remove(0).1);
+            }
+            None => self.clock.sleep_until(until),
+        }
+        Ok(())
+    }
+
+    fn set_format(&mut self, _format: CharacterFormat) -> Result<(), LinkError> {
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
+
+/// A reply to a request, with its number.
+fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
+    let length = u16::try_from(body.len()).unwrap().to_be_bytes();
+    [&request[..2], &[0, 0], &length, body].concat()
+}
+
+/// The reply to a reading of two registers.
+fn registers(request: &[u8], word: u32) -> Vec<u8> {
+    reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
+}
+
+/// What came of it, the requests, and how long it took.
+type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
+
+fn with<T>(
+    station: &mut Station,
+    answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static,
+    work: impl FnOnce(&mut Master<'_>) -> Result<T, Error>,
+) -> Seen<T> {
+    let (clock, cancel, mut trace) = (Arc::new(VirtualClock::default()), Cancel::default(), Trace::default());
+    let mut wire = Gateway::new(clock.clone(), answer);
+    let ended = {
+        let ctx = Ctx { wire: &mut wire as &mut dyn ByteLink, clock: &*clock, cancel: &cancel, trace: &mut trace };
+        work(&mut Master::new(ctx, station))
+    };
+    (ended, wire.requests, clock.now().since_start())
+}
+
+fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> Seen<Reading> {
+    with(&mut station(query), answer, |master| master.reading())
+}
+
+#[test]
+fn an_in_word_is_two_input_registers() {
+    let cases = [
+        ("", vec![0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 2], 0x0012_3456),
+        ("order=low-first", vec![0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 2], 0x3456_0012),
+        ("unit=17&input=0x1234", vec![0, 1, 0, 0, 0, 6, 17, 4, 0x12, 0x34, 0, 2], 0x0012_3456),
+    ];
+    for (query, request, word) in cases {
+        let (read, requests, _) = read(query, |_, request| vec![(3, registers(request, 0x0012_3456))]);
+        assert_eq!(read.unwrap().word, word, "{query}");
+        assert_eq!(requests, [request], "{query}");
+    }
+}
+
+#[test]
+fn an_out_word_is_two_holding_registers_written_at_once() {
+    let answer = |_: usize, request: &[u8]| match request[7] {
+        3 => vec![(1, registers(request, 0x2021_0009))],
+        4 => vec![(1, registers(request, 0))],
+        _ => vec![(1, reply(request, &[1, 16, 0, 8, 0, 2]))],
+    };
+    let (ended, requests, _) = with(&mut station("output=8&handshake=50"), answer, identify);
+    assert!(matches!(ended, Err(Error::TimeOut { .. })), "{ended:?}");
+    let writes: Vec<&Vec<u8>> = requests.iter().filter(|request| request[7] == 16).collect();
+    assert_eq!(writes[0][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0x20, 0x21, 0, 9]);
+    assert_eq!(writes[1][4..], [0, 11, 1, 16, 0, 8, 0, 2, 4, 0, 0, 0, 0], "and normal running at the end");
+    assert_eq!(writes.len(), 2, "a word that stands is not written again");
+    assert_eq!(carried(true, writes[0], WordOrder::HighFirst), Some(Carried::Out(0x2021_0009)));
+    assert_eq!(carried(true, writes[0], WordOrder::LowFirst), Some(Carried::Out(0x0009_2021)));
+    let input = registers(&requests[0], 0xC200_00FF);
+    assert_eq!(carried(false, &input, WordOrder::HighFirst), Some(Carried::In(0xC200_00FF)));
+    assert_eq!(carried(true, &requests[0], WordOrder::HighFirst), None);
+}
+
+/// Every request has its own number: what comes for an earlier one is let pass, be it its only answer.
+#[test]
+fn a_late_reply_is_not_taken_for_the_next() {
+    let answer = |number: usize, request: &[u8]| match number {
+        0 => vec![(1025, registers(request, 1))],
+        _ => vec![(10, registers(request, 2))],
+    };
+    let (ended, requests, _) = read("", answer);
+    assert_eq!((ended.unwrap().word, requests.len()), (2, 2));
+    assert_ne!(requests[0][..2], requests[1][..2]);
+    // In one piece with the right one behind it.
+    let answer = |number: usize, request: &[u8]| match number {
+        0 => vec![],
+        _ => {
+            let mut earlier = request.to_vec();
+            earlier[1] -= 1;
+            vec![(10, [registers(&earlier, 1), registers(request, 2)].concat())]
+        }
+    };
+    assert_eq!(read("", answer).0.unwrap().word, 2);
+}
+
+#[test]
+fn a_reply_may_come_byte_by_byte() {
+    let answer = |_: usize, request: &[u8]| {
+        let whole = registers(request, 0x0102_0304);
+        whole.iter().zip(1..).map(|(byte, at)| (at * 20, vec![*byte])).collect()
+    };
+    assert_eq!(read("", answer).0.unwrap().word, 0x0102_0304);
+}
+
+#[test]
+fn a_refusal_is_told_with_its_cause() {
+    let cases = [
+        (1, 1, "illegal function", "holding registers"),
+        (2, 1, "illegal data address", "input= and output="),
+        (3, 1, "illegal data value", "two registers"),
+        (4, 5, "server device failure", "INTERBUS runs"),
+        (6, 5, "server device busy", "busy"),
+        (0xA, 5, "gateway path unavailable", "unit="),
+        (0xB, 5, "gateway target device failed to respond", "lamps and cable"),
+        (0x63, 5, "unknown exception", "manual"),
+    ];
+    for (code, tries, name, cause) in cases {
+        let (ended, requests, took) = read("input=7", move |_, request| vec![(2, reply(request, &[1, 0x84, code]))]);
+        let error = ended.unwrap_err();
+        let asked = Asked::Input { register: 7 };
+        assert_eq!(error, Error::Exception { asked, exception: Exception::new(code) });
+        let text = error.to_string();
+        assert!(text.contains(name) && text.contains(cause), "{text}");
+        assert_eq!(requests.len(), tries, "{text}");
+        assert!(took < Duration::from_secs(12));
+    }
+    // Who was busy once answers then.
+    let (ended, requests, _) = read("", |number, request| match number {
+        0 | 1 => vec![(2, reply(request, &[1, 0x84, 6]))],
+        _ => vec![(2, registers(request, 5))],
+    });
+    assert_eq!((ended.unwrap().word, requests.len()), (5, 3));
+}
+
+#[test]
+fn what_is_no_reply_is_asked_for_again() {
+    let wrong: [(&str, Vec<u8>, Damage); 6] = [
+        ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), Damage::NoFrame { bytes: 28 }),
+        ("another unit", vec![2, 4, 4, 0, 0, 0, 1], Damage::Unit { asked: 1, got: 2 }),
+        ("another function", vec![1, 3, 4, 0, 0, 0, 1], Damage::Function { asked: 4, got: 3 }),
+        ("one register", vec![1, 4, 2, 0, 1], Damage::Registers),
+        ("three registers", vec![1, 4, 6, 0, 1, 0, 2, 0, 3], Damage::Registers),
+        ("a wrong count", vec![1, 4, 6, 0, 1, 0, 2], Damage::Registers),
+    ];
+    for (label, bytes, damage) in wrong {
+        let is_frame = label != "text";
+        let says = move |request: &[u8]| if is_frame { reply(request, &bytes) } else { bytes.clone() };
+        let once = says.clone();
+        let (ended, requests, _) = read("", move |number, request| match number {
+            0 => vec![(2, once(request))],
+            _ => vec![(2, registers(request, 9))],
+        });
+        assert_eq!((ended.unwrap().word, requests.len()), (9, 2), "{label}");
+        let (ended, requests, took) = read("", move |_, request| vec![(2, says(request))]);
+        let expected = Error::Damaged { asked: Asked::Input { register: 0 }, tries: 5, cause: damage };
+        assert_eq!((ended.unwrap_err(), requests.len()), (expected, 5), "{label}");
+        assert!(took < Duration::from_secs(12), "{label}");
+    }
+}
+
+#[test]
+fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
+    let (ended, requests, took) = read("", |_, _| vec![]);
+    assert_eq!(ended.unwrap_err(), Error::NoReply { asked: Asked::Input { register: 0 }, tries: 3 });
+    assert_eq!(requests.len(), 3);
+    assert!(took < Duration::from_secs(12), "{took:?}");
+    // It hangs after a while: also leading back ends soon.
+    for answered in 0..40 {
+        let answer = move |number: usize, request: &[u8]| match (number < answered, request[7]) {
+            (false, _) => vec![],
+            (true, 4) if number % 6 < 4 => vec![(2, registers(request, 0xA000_0001))],
+            (true, 4) => vec![(2, registers(request, 77))],
+            (true, _) => vec![(2, reply(request, &[1, 16, 0, 0, 0, 2]))],
+        };
+        let (ended, _, took) = with(&mut station(""), answer, identify);
+        assert!(ended.is_err() && took < Duration::from_secs(12), "{answered}: {took:?}");
+    }
+    let babble = |_: usize, _: &[u8]| (0..400).map(|at| (at * 10, vec![0xFF; 9])).collect();
+    let (ended, _, took) = read("", babble);
+    assert_eq!((ended.unwrap_err(), took < Duration::from_secs(12)), (Error::NeverSilent, true));
+}
+
+/// A recording answers with the numbers of its day.
+#[test]
+fn a_recording_answers_whatever_the_number() {
+    let mut station = station("");
+    station.recorded = true;
+    let answer = |_: usize, request: &[u8]| {
+        let mut other = registers(request, 42);
+        other[..2].copy_from_slice(&[0x77, 0x77]);
+        vec![(1, other)]
+    };
+    assert_eq!(with(&mut station, answer, |master| master.reading()).0.unwrap().word, 42);
+}

@@ -1,0 +1,324 @@
+//! What is written: only what differs, each read back, one store an operation; and what is refused before anything is.
+
+use std::time::Duration;
+
+use encoder_studio::device::interbus::Error;
+use encoder_studio::device::interbus::write::Left;
+use encoder_studio::link::{Cancel, Clock};
+use encoder_studio::profile::Body;
+use encoder_studio::profile::interbus::{Image, Item, ItemValue, Op, RestoreOptions};
+use encoder_studio::profile::{Consent, Document};
+use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, StartupMode};
+use encoder_studio::store::{Logbook, read_text};
+use encoder_studio::worker::NotBegun;
+use encoder_studio::worker::interbus::{
+    Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, WEAR_LIMIT, Wear,
+};
+
+use super::support::{Stand, cam, program};
+
+const SCALED: &str = "steps=3600&revolutions=1&preset=10&serial=77&cams=demo&position=100";
+
+/// The encoder as it is, with these programs.
+fn image(stand: &mut Stand, programs: &[u8]) -> Image {
+    let survey = match stand.run(InterbusJob::Survey).unwrap() {
+        InterbusOutput::Surveyed(survey) => *survey,
+        other => panic!("{other:?}"),
+    };
+    let mut image = Image::of(survey.parameters);
+    for (number, own) in stand.programs(programs) {
+        *image.program_mut(program(number)).unwrap() = Some(own);
+    }
+    image
+}
+
+fn edited(stand: &mut Stand, programs: &[u8], edit: impl FnOnce(&mut Image)) -> Change {
+    let mut wanted = image(stand, programs);
+    edit(&mut wanted);
+    stand.trace.lock().unwrap().clear();
+    Change::Write(Box::new(wanted))
+}
+
+/// The words that set something: no question, no normal running.
+fn setting(stand: &Stand) -> Vec<u32> {
+    let questions = |word: &u32| matches!(word >> 16, 0x2020 | 0x2021);
+    stand.sent().into_iter().filter(|word| *word != 0 && !questions(word)).collect()
+}
+
+#[test]
+fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
+    for faults in ["", "&busy=80&stale=6"] {
+        let mut stand = Stand::new(&format!("{SCALED}{faults}"));
+        let before = stand.stores();
+        let change = edited(&mut stand, &[], |wanted| {
+            (wanted.parameters.steps, wanted.parameters.revolutions) = (20_000, 4);
+            wanted.parameters.preset = 19_999;
+        });
+        let prepared = stand.prepare(change);
+        assert_eq!((prepared.plan.ops.len(), prepared.plan.write_cycles()), (1, 1));
+        assert_eq!((setting(&stand), stand.stores()), (vec![], before), "a plan writes nothing");
+        let done = stand.commit(prepared).unwrap();
+        assert_eq!((done.written.ops, done.written.written, done.written.verified), (1, 3, 3));
+        assert_eq!((done.written.write_cycles, stand.stores()), (1, before + 1));
+        // 20 000 = 4E20h, and 4 turns have room for them only once they are set.
+        assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
+        assert_eq!(stand.left(), (0, StartupMode::K3));
+        let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+        assert_eq!((kept.gear().steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
+        // The session knows the gear from then on.
+        assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
+        let backup = done.backup.unwrap();
+        let document = Document::parse(&read_text(&backup).unwrap()).unwrap();
+        assert!(matches!(document.body, Body::Interbus(own) if own.image.parameters.preset == 10));
+    }
+}
+
+/// The measure on the wire: of 64 cams four differ, in two programs.
+#[test]
+fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
+    let all: Vec<u8> = (1..=8).collect();
+    for faults in ["", "&busy=40&stale=3", "&selection=output", "&program=5"] {
+        let mut stand = Stand::new(&format!("{SCALED}{faults}"));
+        let (before, found) = (stand.stores(), stand.left().1);
+        let change = edited(&mut stand, &all, |wanted| {
+            for (number, own) in [(2, 1), (2, 6), (7, 0), (7, 7)] {
+                let item = Item::Cam(program(number), CamNumber::new(own).unwrap());
+                assert!(wanted.put(item, ItemValue::Cam(cam(3000 + u32::from(own), 7))));
+            }
+            assert!(wanted.put(Item::CamMask(program(7)), ItemValue::Mask(0x3C)));
+        });
+        let prepared = stand.prepare(change);
+        assert_eq!((prepared.plan.ops.len(), prepared.plan.write_cycles()), (2, 2));
+        stand.trace.lock().unwrap().clear();
+        let done = stand.commit(prepared).unwrap();
+        assert_eq!((done.written.ops, done.written.written, done.written.verified), (2, 5, 5), "{faults}");
+        assert_eq!((done.written.write_cycles, stand.stores()), (2, before + 2), "{faults}");
+        // Edges alone: 010 and 011 in front, of which 40000000 could be a preset elsewhere.
+        let edges = setting(&stand).into_iter().filter(|word| matches!(word >> 29, 0b010 | 0b011)).count();
+        assert_eq!(edges, 8, "{faults}");
+        assert_eq!(stand.left(), (0, found), "{faults}");
+        let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+        assert_eq!(kept.program(program(7)).cams[0], Some(cam(3000, 7)), "{faults}");
+        assert_eq!((kept.program(program(7)).mask, kept.program(program(2)).cams[6]), (0x3C, Some(cam(3006, 7))));
+        assert_eq!(kept.gear().steps(), 3600, "{faults}");
+    }
+}
+
+#[test]
+fn the_shift_of_the_window_rides_along_or_is_set_alone() {
+    for (programs, edges, stores) in [(&[3][..], 1, 1), (&[], 0, 1)] {
+        let mut stand = Stand::new(SCALED);
+        let before = stand.stores();
+        let change = edited(&mut stand, programs, |wanted| {
+            assert!(wanted.put(Item::Shift, ItemValue::Number(8)));
+            if edges > 0 {
+                assert!(wanted.put(Item::CamMask(program(3)), ItemValue::Mask(0x11)));
+            }
+        });
+        let prepared = stand.prepare(change);
+        stand.commit(prepared).unwrap();
+        assert_eq!(stand.stores(), before + stores);
+        assert!(setting(&stand).contains(&0x2010_0008));
+        assert_eq!(stand.gateway.with_encoder(|encoder| encoder.kept().shift().get()), 8);
+    }
+}
+
+#[test]
+fn a_preset_is_stored_and_fired_once_where_the_shaft_stands() {
+    for found in ["", "&program=2"] {
+        let mut stand = Stand::new(&format!("{SCALED}{found}"));
+        let before = stand.left();
+        let prepared = stand.prepare(Change::Preset { value: 1800 });
+        assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Preset, 1));
+        let done = stand.commit(prepared).unwrap();
+        assert_eq!((done.written.ops, done.written.verified), (2, 2));
+        assert_eq!(stand.sent().iter().filter(|word| **word == 0x4000_0000).count(), 1);
+        assert_eq!(stand.left(), before);
+        stand.run(InterbusJob::Select(StartupMode::K3)).unwrap();
+        assert_eq!(stand.session.sample().unwrap().position(), Some(1800));
+    }
+}
+
+#[test]
+fn a_preset_is_refused_while_the_shaft_turns() {
+    let mut stand = Stand::new(SCALED);
+    let prepared = stand.prepare(Change::Preset { value: 0 });
+    stand.session.motor().unwrap().set_rpm(5.0);
+    stand.trace.lock().unwrap().clear();
+    let error = stand.commit(prepared).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
+    assert_eq!((setting(&stand), stand.left()), (vec![], (0, StartupMode::K3)));
+}
+
+#[test]
+fn the_default_is_set_and_what_it_is_is_read() {
+    let mut stand = Stand::new(SCALED);
+    let before = stand.stores();
+    let prepared = stand.prepare(Change::Default);
+    let done = stand.commit(prepared).unwrap();
+    assert_eq!((done.written.ops, done.written.write_cycles, stand.stores()), (1, 1, before + 1));
+    assert!(setting(&stand).contains(&0x0E00_0000));
+    let delivered = stand.gateway.with_encoder(|encoder| encoder.memory().gear().steps());
+    assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(delivered));
+}
+
+#[test]
+fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
+    let mut first = Stand::new("steps=3600&revolutions=1&preset=99&serial=1&cams=demo");
+    let profile = match first.run(InterbusJob::Save { programs: true }).unwrap() {
+        InterbusOutput::Saved(profile) => profile,
+        other => panic!("{other:?}"),
+    };
+    let mut other = Stand::new("steps=720&revolutions=1&preset=5&serial=2");
+    let refused = other
+        .run(InterbusJob::Prepare(Change::Restore { profile: profile.clone(), options: RestoreOptions::default() }));
+    assert!(matches!(refused, Err(JobError::Plan(_))), "{refused:?}");
+    let options = RestoreOptions { allow_other_device: true, with_mounting: false };
+    let prepared = other.prepare(Change::Restore { profile: profile.clone(), options });
+    assert_eq!(prepared.mounting_left, [Item::Preset]);
+    other.commit(prepared).unwrap();
+    let kept = other.gateway.with_encoder(|encoder| encoder.kept().clone());
+    assert_eq!((kept.gear().steps(), kept.preset()), (3600, 5));
+    for number in ProgramNumber::all() {
+        let wanted = profile.image.program(number).unwrap();
+        assert_eq!((kept.program(number).mask, kept.program(number).cams), (wanted.mask, wanted.cams));
+    }
+    // Once more: nothing differs, nothing is written.
+    let (stores, prepared) = (other.stores(), other.prepare(Change::Restore { profile, options }));
+    assert!(prepared.plan.is_empty());
+    assert!(other.commit(prepared).unwrap().backup.is_none());
+    assert_eq!(other.stores(), stores);
+}
+
+#[test]
+fn what_changed_since_the_plan_stops_the_write() {
+    let moment = |stand: &Stand| stand.clock.now();
+    // Another master sets the preset: 08000001, and runs.
+    let mut stand = Stand::new(SCALED);
+    let change = edited(&mut stand, &[], |wanted| wanted.parameters.zero_shift = 5);
+    let prepared = stand.prepare(change);
+    let now = moment(&stand);
+    stand.gateway.with_encoder(|encoder| [0x0800_0001, 0x8000_0000, 0].map(|word| encoder.write(now, word)));
+    let error = stand.commit(prepared).unwrap_err();
+    assert_eq!(error.to_string(), "preset has changed since the plan was made");
+    assert_eq!(stand.left(), (0, StartupMode::K3));
+    // Or the mask of a program.
+    let change = edited(&mut stand, &[4], |wanted| {
+        assert!(wanted.put(Item::CamMask(program(4)), ItemValue::Mask(0xFF)));
+    });
+    let prepared = stand.prepare(change);
+    let now = moment(&stand);
+    let words = [0x2080_0004, 0x2040_0081, 0x8000_0000, 0x2080_0000, 0];
+    stand.gateway.with_encoder(|encoder| words.map(|word| encoder.write(now, word)));
+    let error = stand.commit(prepared).unwrap_err();
+    assert_eq!(error.to_string(), "cam program 4 has changed since the plan was made");
+}
+
+#[test]
+fn a_consent_is_for_its_plan_alone() {
+    let mut stand = Stand::new(SCALED);
+    let prepared = stand.prepare(Change::Preset { value: 1 });
+    let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
+    let commit = Commit { prepared, consent, force_wear: false };
+    let error = stand.run(InterbusJob::Commit(Box::new(commit))).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::OtherPlan)), "{error}");
+}
+
+#[test]
+fn a_worn_eeprom_is_written_only_by_force() {
+    let mut stand = Stand::new(SCALED);
+    let mut prepared = stand.prepare(Change::Default);
+    for (seen, refused) in [(Some(WEAR_LIMIT - 2), false), (Some(WEAR_LIMIT - 1), true), (None, false)] {
+        prepared.cycles_seen = seen;
+        assert_eq!(matches!(prepared.wear(), Some(Wear::Worn(_))), refused);
+        let prepared = stand.prepare(Change::Default);
+        let prepared = encoder_studio::worker::interbus::Prepared { cycles_seen: seen, ..prepared };
+        let consent = Consent::to(prepared.plan.id());
+        let job =
+            |force_wear| InterbusJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear }));
+        let ended = stand.run(job(false));
+        assert_eq!(matches!(ended, Err(JobError::NotBegun(NotBegun::Worn { .. }))), refused, "{seen:?}: {ended:?}");
+        if refused {
+            stand.run(job(true)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_logbook_counts_stores_by_serial_number() {
+    let mut stand = Stand::new(SCALED);
+    for value in [1, 2, 3] {
+        let prepared = stand.prepare(Change::Preset { value });
+        assert_eq!(prepared.cycles_seen, Some(u64::from(value - 1)));
+        stand.commit(prepared).unwrap();
+    }
+    assert!(Logbook::open(&stand.folder.path().join("logbook.sqlite")).is_ok());
+}
+
+/// Less one: the encoder's 3599 are 3600 steps.
+#[test]
+fn steps_less_one_are_read_and_written_as_they_are() {
+    let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
+    let identity = match stand.run(InterbusJob::Identify).unwrap() {
+        InterbusOutput::Identity(identity) => *identity,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((identity.steps, identity.flags.steps_minus_one()), (3599, true));
+    assert_eq!(identity.gear().map(|gear| gear.steps()), Ok(3600));
+    let change = edited(&mut stand, &[], |wanted| wanted.parameters.steps = 719);
+    let prepared = stand.prepare(change);
+    stand.commit(prepared).unwrap();
+    assert_eq!(stand.gateway.with_encoder(|encoder| encoder.kept().gear().steps()), 720);
+    assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
+}
+
+/// A wish to end is heard between two words; then the encoder runs again, in the mode in which it was.
+#[test]
+fn a_wish_to_end_leaves_an_encoder_that_runs() {
+    let wanted = |stand: &mut Stand| {
+        edited(stand, &[6], |wanted| {
+            wanted.parameters.zero_shift = 3;
+            assert!(wanted.put(Item::Cam(program(6), CamNumber::new(2).unwrap()), ItemValue::Cam(cam(1, 2))));
+        })
+    };
+    let mut interrupted_ones = 0;
+    for after in (0..1500).step_by(7) {
+        let mut stand = Stand::new(&format!("{SCALED}&program=4"));
+        let change = wanted(&mut stand);
+        let prepared = stand.prepare(change);
+        let consent = Consent::to(prepared.plan.id());
+        let stores = stand.stores();
+        stand.session.set_cancel(Cancel::after(after));
+        let ended = stand.run(InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })));
+        let spent = stand.stores() - stores;
+        assert_eq!(stand.left(), (0, StartupMode::Cams(program(4))), "after {after}");
+        match ended {
+            Err(JobError::Interrupted { interrupted, .. }) => {
+                interrupted_ones += 1;
+                assert!(interrupted.cause.is_cancelled(), "after {after}: {interrupted}");
+                assert_eq!(interrupted.left, Left::AsFound, "after {after}");
+                assert!(u64::from(spent) <= interrupted.done.write_cycles, "after {after}: {spent}");
+            }
+            Err(JobError::Device(error)) => assert_eq!((error.is_cancelled(), spent), (true, 0), "after {after}"),
+            Err(error) => panic!("{error}"),
+            Ok(_) => {
+                assert_eq!(spent, 2);
+                break;
+            }
+        }
+        stand.session.set_cancel(Cancel::default());
+        let reading = stand.session.sample().unwrap();
+        assert!(reading.is_valid() && reading.cams().is_some(), "after {after}");
+    }
+    assert!(interrupted_ones > 10);
+}
+
+#[test]
+fn an_operation_tells_what_it_changes() {
+    let mut stand = Stand::new(SCALED);
+    let prepared = stand.prepare(Change::Preset { value: 7 });
+    assert!(matches!(prepared.plan.ops.as_slice(), [Op::Parameterise(_), Op::FirePreset { value: 7 }]));
+    let started = stand.elapsed();
+    stand.commit(prepared).unwrap();
+    assert!(stand.elapsed() - started < Duration::from_secs(5));
+}
