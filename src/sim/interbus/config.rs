@@ -81,7 +81,7 @@ impl Config {
     /// | `program`, `cams` | the cam program that runs, 0 for none; `demo` for programs with cams, `none` |
     /// | `stores` | stores that the EEPROM has had |
     /// | `steps-minus-one` | `on`: steps are given less one, as in older encoders |
-    /// | `busy`, `stale` | milliseconds of busy words; how often an old IN word is read after a new OUT word |
+    /// | `busy`, `stale` | milliseconds of busy words; cycles in which the IN word is still the old one after a new OUT word |
     /// | `selection` | `echo` or `output`: what a selected program says first (`U`) |
     /// | `class` | `K1`, `K2` or `K3` |
     /// | `encoders`, `unit`, `input`, `output`, `order` | the gateway: 1…8 encoders, two registers each from `input` and `output` on, `high-first` or `low-first` |
@@ -120,6 +120,7 @@ impl Config {
 
     const MAX_ENCODERS: u8 = 8;
     const MAX_BUSY_MS: u32 = 60_000;
+    const MAX_STALE: u32 = 1000;
 
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`.
@@ -172,7 +173,7 @@ impl Config {
                 let allowed = "milliseconds from 0 to 60000";
                 self.busy = Duration::from_millis(below(setting, Self::MAX_BUSY_MS + 1, allowed)?.into());
             }
-            "stale" => self.stale = setting.number("a number of cycles")?,
+            "stale" => self.stale = below(setting, Self::MAX_STALE + 1, "a number of cycles from 0 to 1000")?,
             "selection" => {
                 self.acknowledges_selection = setting.one_of(&[("echo", true), ("output", false)], "echo or output")?;
             }
@@ -344,7 +345,7 @@ mod tests {
             assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
         }
         let wrong = "revolutions=0 revolutions=4097 steps=0 steps=33554432 direction=3 rpm=NaN position=33554432 serial=33554432 \
-                     temperature=NaN program=9 program=-1 cams=all stores=-1 busy=60001 stale=-1 class=K4 encoders=0 encoders=9 \
+                     temperature=NaN program=9 program=-1 cams=all stores=-1 busy=60001 stale=-1 stale=1001 class=K4 encoders=0 encoders=9 \
                      unit=256 input=65536 order=big exception=2 zero-shift=33554432";
         for query in wrong.split_whitespace() {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");

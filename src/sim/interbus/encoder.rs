@@ -43,8 +43,8 @@ pub struct Encoder {
     /// What its master says; it stands there until it says another word.
     out: u32,
     says: Says,
-    /// The IN word that is still read after a new OUT word, and how often.
-    old: (u32, u32),
+    /// The IN word that is still read after a new OUT word.
+    old: Old,
     busy_until: Moment,
     busy: Duration,
     stale: u32,
@@ -78,6 +78,16 @@ enum Says {
     Word(u32),
 }
 
+/// What was there before the OUT word changed. A cycle is every reading of the IN word; without one they go on by
+/// themselves.
+#[derive(Clone, Copy, Debug, Default)]
+struct Old {
+    word: u32,
+    /// In which it still stands there.
+    cycles: u32,
+    until: Moment,
+}
+
 /// Why a word is refused (reference 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
@@ -104,6 +114,8 @@ impl Fault {
 }
 
 impl Encoder {
+    /// Chosen: how long a cycle takes in which nobody reads.
+    const CYCLE: Duration = Duration::from_millis(5);
     /// Chosen; read-out 7.
     const SOFTWARE_VERSION: u32 = 204;
 
@@ -131,7 +143,7 @@ impl Encoder {
             power: true,
             out: 0,
             says: Says::Live,
-            old: (0, 0),
+            old: Old::default(),
             busy_until: Moment::START,
             busy: config.busy,
             stale: config.stale,
@@ -206,7 +218,7 @@ impl Encoder {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
         (self.doing, self.unstored) = (Doing::Running, None);
-        (self.says, self.old) = (Says::Live, (0, 0));
+        (self.says, self.old) = (Says::Live, Old::default());
     }
 
     /// Gives the power back to an encoder that has lost it. What its master still says it takes as something new.
@@ -225,7 +237,7 @@ impl Encoder {
         if word == before || !self.power || self.class != Class::K3 {
             return;
         }
-        self.old = (self.shown(now), self.stale);
+        self.old = Old { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
             Ok(command) => self.obey(now, command, before),
             Err(_) => self.wonder(now, word),
@@ -239,7 +251,7 @@ impl Encoder {
             return None;
         }
         let word = self.shown(now);
-        self.old.1 = self.old.1.saturating_sub(1);
+        self.old.cycles = self.old.cycles.saturating_sub(1);
         Some(word)
     }
 
@@ -340,11 +352,12 @@ impl Encoder {
 
     /// What stands in the IN word at `now`.
     fn shown(&self, now: Moment) -> u32 {
-        match (self.old, self.says) {
-            ((word, 1..), _) => word,
+        let old = &self.old;
+        match self.says {
+            _ if old.cycles > 0 && now < old.until => old.word,
             _ if now < self.busy_until => BUSY,
-            (_, Says::Word(word)) => word,
-            (_, Says::Live) => self.live(now),
+            Says::Word(word) => word,
+            Says::Live => self.live(now),
         }
     }
 

@@ -36,9 +36,15 @@ fn busy_words_come_for_the_time_that_was_asked_for() {
         })
         .collect();
     assert_eq!(words, [7, 7, 0xC000_0000, 0xC000_0000, 0xC200_0168]);
+    // Cycles go on where nobody reads.
+    master.write(0x0200_00B4);
+    master.wait(10);
+    assert_eq!(master.read(), 0xC000_0000);
+    master.wait(10);
+    assert_eq!(master.read(), 0xC200_00B4);
     // A position is there at once, behind what is old.
     master.write(0x8000_0000);
-    assert_eq!([master.read(), master.read()], [0xC200_0168, 0xC200_0168]);
+    assert_eq!([master.read(), master.read()], [0xC200_00B4, 0xC200_00B4]);
     assert_eq!(master.read() >> 31, 0);
 }
 
