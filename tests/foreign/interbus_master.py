@@ -5,7 +5,6 @@ Written from the project's reference of POSITAL's manual UME-IB alone, with the 
 
   WORD          writes the OUT word and waits for what belongs to it: the exact echo of what sets, the value of a
                 read-out, a word without bit 31 for everything else; prints the IN word, or `IN late` with the last one
-  =WORD         writes the OUT word and prints the next IN word as it is
   in, out       prints the IN word (function 4), or the OUT word as it stands (function 3)
   raw:HEX       sends a PDU and prints the reply's, or `exception 02`
   other:THING   one of these as another client beside this one
@@ -61,21 +60,19 @@ class Master:
         if thing.startswith("raw:"):
             pdu = bytes.fromhex(thing[4:])
             return (pdu[:1] + self.client.ask(pdu)).hex(" ").upper()
-        if thing.startswith("="):
-            self.write(int(thing[1:], 16))
-            return f"{self.read():08X}"
         out = int(thing, 16)
         before = self.read()
         self.write(out)
-        last, since, began = None, 0, time.monotonic()
+        last, since, reads, began = None, 0, 0, time.monotonic()
         while time.monotonic() - began < PATIENCE:
             word = self.read()
+            reads += 1
             since = since + 1 if word == last else 0
             last = word
             # What belongs to a word stands still for two cycles. What stood there before, and a position, cannot be told
             # from what is new, so that it is given time.
             told_apart = word >> 31 and word != before
-            settled = since >= 1 if told_apart else time.monotonic() - began > SETTLES
+            settled = since >= 1 if told_apart else reads > 8 and time.monotonic() - began > SETTLES
             if self.belongs(out, word) and settled:
                 return f"{word:08X}"
         return f"{last:08X} late"
