@@ -34,9 +34,10 @@ pub(super) struct Arguments {
 
 /// Which commands are for which kinds of device.
 const KINDS: &str = "\
-Kinds of device: hiperface, biss and ssi; diff, verify and restore find it in the profile. find is for hiperface alone; do
-has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its frame is
-made, and ssi explains frames offline. Of interbus and hiperdrive there is decode alone. Without hardware: --link sim:, as in
+Kinds of device: hiperface, biss, ssi and interbus; diff, verify and restore find it in the profile. find is for hiperface
+alone; do has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its
+frame is made, and ssi explains frames offline. Reading an INTERBUS encoder replaces its position for a moment. Of hiperdrive
+there is decode alone. Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -44,8 +45,8 @@ An address or a register is hexadecimal with 0x in front, else decimal.";
 
 #[derive(Args)]
 pub(super) struct Common {
-    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, bridge:PATH, bridge:tcp:HOST:PORT or replay:FILE, with
-    /// ?name=value&…
+    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, bridge:PATH, bridge:tcp:HOST:PORT or
+    /// replay:FILE, with ?name=value&…
     #[arg(long, global = true, value_name = "URL")]
     pub(super) link: Option<LinkUrl>,
     /// Print JSON.
@@ -111,7 +112,7 @@ pub(super) enum DeviceKind {
     Biss,
     /// SSI encoder; it sends its position and nothing else: --layout says how its frame is made.
     Ssi,
-    /// INTERBUS encoder (K1, K2, K3); its words are explained offline (decode), and it is not reached over a link.
+    /// INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); words of K1 and K2 are explained offline (decode).
     Interbus,
     /// HIPERDRIVE with EtherNet/IP; its words and packets are explained offline (decode), and it is not reached over a link.
     Hiperdrive,
@@ -168,6 +169,9 @@ pub(super) struct Read {
     ///
     /// biss: 0x66 (a direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h); with +COUNT a run of them, as
     /// 0x24:0x10+4.
+    ///
+    /// interbus: steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7),
+    /// cam-mask:P, temperature, operating-time.
     pub(super) item: String,
 }
 
@@ -241,8 +245,11 @@ pub(super) struct Write {
     ///
     /// biss: 0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (a run of four), 0x40 to 0x7F (direct). Registers that a procedure
     /// writes (filter, preset, calibration) are changed with "do biss …".
+    ///
+    /// interbus: what read has but for what is measured; a preset is stored and not fired.
     pub(super) item: String,
-    /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT).
+    /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT); interbus: cw or ccw for the
+    /// direction, START..STOP for a cam.
     #[arg(allow_hyphen_values = true)]
     pub(super) value: String,
     #[command(flatten)]
@@ -278,7 +285,7 @@ pub(super) enum Action {
     Reset,
     // Two kinds of device have it.
     #[value(
-        help = "hiperface: the start-up sequence with a verdict a line, with restart behind it after a restart; biss: identity, errors, position, data sheet, limits, wear with a verdict a line"
+        help = "hiperface: the start-up sequence with a verdict a line, with restart behind it after a restart; biss: identity, errors, position, data sheet, limits, wear with a verdict a line; interbus: gateway, word order, handshake, identity"
     )]
     Check,
     /// hiperface: POSITION, the nearest value that keeps the phase to the sine signal.
@@ -313,11 +320,16 @@ pub(super) enum Action {
     /// biss: balanced|dynamic.
     Filter,
     #[value(
-        help = "biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value; without a value the stored one"
+        help = "biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value; without a value the stored one; interbus: [POSITION], the same at standstill"
     )]
     Preset,
-    /// biss: back to operation and the password cleared, after a procedure was cut off.
+    // Two kinds of device have it.
+    #[value(
+        help = "biss: back to operation and the password cleared, after a procedure was cut off; interbus: out of a parameterisation that was left, to run"
+    )]
     LeadBack,
+    /// interbus: back to what was delivered; experimental, since only the manual's appendix has it.
+    Default,
     #[value(
         help = "biss: [calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant"
     )]

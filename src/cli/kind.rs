@@ -23,8 +23,8 @@ pub(super) struct Kind {
     pub(super) restore: fn(&Common, &Output, &Restore, Body) -> Result,
     /// The virtual device that is to be served.
     pub(super) simulated: fn(&Simulate) -> Result<Box<dyn Simulated>>,
-    /// The device as it is, for a comparison.
-    pub(super) present: fn(&Common, &Output) -> Result<Body>,
+    /// The device as it is, for a comparison: all of it, or at least what a profile says something about.
+    pub(super) present: fn(&Common, &Output, Option<&Body>) -> Result<Body>,
     /// What differs between two profiles, or that one of them is of another kind.
     pub(super) compare: fn(&Body, &Body) -> std::result::Result<Comparison, ProfileError>,
     /// That two profiles are not of the same device.

@@ -38,7 +38,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     let kind = kind::of_profile(&left);
     let (right, name) = match &diff.right {
         Some(path) => (load(path)?, path.as_path()),
-        None => ((kind.present)(common, output)?, Path::new("the device")),
+        None => ((kind.present)(common, output, None)?, Path::new("the device")),
     };
     let comparison = (kind.compare)(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
     let missing = comparison.missing();
@@ -48,7 +48,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(file)?;
     let kind = kind::of_profile(&profile);
-    let device = (kind.present)(common, output)?;
+    let device = (kind.present)(common, output, Some(&profile))?;
     // What is compared may be of two devices: that is allowed, and has to be known.
     if let Some(words) = (kind.other_device)(&profile, &device) {
         output.remark(&words);

@@ -104,22 +104,3 @@ fn what_must_not_be_sent_and_what_is_no_word_is_refused() {
     }
     bench.run(&["decode", "biss", "--mode", "cam", "024698000CF"]).fails(2, &["--mode", "interbus"]);
 }
-
-/// There is nothing yet that reaches one.
-#[test]
-fn other_commands_say_what_there_is() {
-    let bench = Bench::new();
-    let file = bench.file("cams.ron");
-    for arguments in [
-        &["identify", "interbus", "--link", "sim:"][..],
-        &["status", "interbus", "--link", "sim:"],
-        &["position", "interbus", "--link", "sim:"],
-        &["read", "interbus", "steps", "--link", "sim:"],
-        &["write", "interbus", "steps", "1", "--link", "sim:"],
-        &["save", "interbus", "--link", "sim:", "-o", &file],
-        &["do", "interbus", "preset", "--link", "sim:"],
-    ] {
-        bench.run(arguments).fails(2, &["interbus", "decode interbus"]);
-    }
-    assert!(!bench.path("cams.ron").exists());
-}

@@ -25,7 +25,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 /// The encoder as it is, for a comparison.
-pub(super) fn present(common: &Common, _output: &Output) -> Result<Body> {
+pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
     Ok(Body::Biss(saved(common)?))
 }
 

@@ -24,7 +24,7 @@ pub(super) const COMMANDS: Kind = Kind {
     decode: decode::decode,
     restore: |_, _, _, _| lacking("restore"),
     simulated: |_| lacking("simulate"),
-    present: |_, _| lacking("reading from a link"),
+    present: |_, _, _| lacking("reading from a link"),
     // There are no profiles of them: whatever is compared is of another kind.
     compare: |left, _| Err(left.is_not(KIND)),
     other_device: |_, _| None,

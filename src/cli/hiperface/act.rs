@@ -57,6 +57,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             | Action::Filter
             | Action::Preset
             | Action::LeadBack
+            | Action::Default
             | Action::Mounting),
             _,
         ) => return Err(no_action(other, KIND, ACTIONS)),

@@ -44,7 +44,7 @@ fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
 }
 
 /// The encoder as it is, for a comparison.
-pub(super) fn present(common: &Common, output: &Output) -> Result<Body> {
+pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
     let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
     name_locked(output, &saved, "compared without its bytes");
     Ok(Body::Hiperface(saved.profile))

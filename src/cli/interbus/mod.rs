@@ -1,37 +1,67 @@
-//! The commands for INTERBUS encoders: words of the process data in words of a person, and profiles, both offline. The
-//! encoder itself is not reached.
+//! The commands for INTERBUS encoders behind a gateway; words of the process data are explained offline as well.
 
+mod act;
 mod decode;
+mod inspect;
 mod meaning;
+mod plan;
+mod position;
 mod profiles;
+mod run;
 mod simulate;
+mod value;
+mod write;
 
-use super::kind::Kind;
+use super::kind::{Kind, lacking};
+use super::output::Output;
 use super::{Failure, Result};
+use crate::app::Text;
+use crate::profile::interbus::{Item, ItemError};
 use crate::protocol::interbus::KIND;
 
 /// What can be done with INTERBUS encoders.
 pub(super) const COMMANDS: Kind = Kind {
     name: KIND,
-    find: |_, _, _| lacking("find"),
-    identify: |_, _| lacking("identify"),
-    status: |_, _, _| lacking("status"),
-    position: |_, _, _| lacking("position"),
-    read: |_, _, _| lacking("read"),
-    save: |_, _, _| lacking("save"),
-    write: |_, _, _| lacking("write"),
-    act: |_, _, _| lacking("do"),
+    find: |_, _, _| lacking("find", KIND),
+    identify: inspect::identify,
+    status: |common, output, _| inspect::status(common, output),
+    position: position::position,
+    read: inspect::read,
+    save: profiles::save,
+    write: write::write,
+    act: act::act,
     decode: decode::decode,
-    restore: |_, _, _, _| lacking("restore"),
+    restore: profiles::restore,
     simulated: simulate::simulated,
-    present: |_, _| lacking("reading from a link"),
+    present: profiles::present,
     compare: profiles::compare,
     other_device: profiles::other_device,
 };
 
-/// A command that needs the encoder, and what there is.
-fn lacking<T>(command: &str) -> Result<T> {
-    Err(Failure::Usage(format!(
-        "{command} is not for {KIND} devices, which are not reached over a link: decode {KIND} explains their words"
-    )))
+/// The item that a user names. One of a program or a cam that there is not is understood, and out of range.
+fn item(text: &str) -> Result<Item> {
+    text.parse().map_err(|error: ItemError| match error {
+        ItemError::Unknown(_) => Failure::Usage(error.to_string()),
+        ItemError::Program { .. } | ItemError::Cam { .. } => Failure::Failed(vec![format!("{text}: {error}.")]),
+    })
+}
+
+/// What becomes of the process data, for whoever has a machine at them.
+#[derive(Clone, Copy)]
+enum Disturbs {
+    /// Values are read out.
+    Reading,
+    /// So are cam programs, each of which is selected for that.
+    Programs,
+}
+
+impl Disturbs {
+    /// Says it before it happens.
+    fn say(self, output: &Output) {
+        let id = match self {
+            Disturbs::Reading => "ib_disturbs.reading",
+            Disturbs::Programs => "ib_disturbs.programs",
+        };
+        output.remark(&Text::new(id).terminal());
+    }
 }

@@ -1,10 +1,69 @@
-//! What the commands about profiles do with an INTERBUS encoder.
+//! What the commands about profiles do with an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
 
-use crate::profile::interbus;
+use serde_json::json;
+
+use super::Disturbs;
+use super::plan::{commit, prepare, shown};
+use super::run::{Runner, programs, survey};
+use crate::app::explain;
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
+use crate::cli::output::{Output, count};
+use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Result};
+use crate::profile::interbus::{self, Image, InterbusProfile, Recorded, RestoreOptions, programs_needed};
 use crate::profile::{Body, Comparison, ProfileError};
+use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let profile = saved(common, output)?;
+    let programs = profile.image.known().count();
+    keep(&save.file, Body::Interbus(Box::new(profile)))?;
+    let json = json!({"file": save.file, "programs": programs});
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
+    Ok(Done::Well)
+}
+
+/// The encoder as it is, for a comparison: all of it, or as much as a profile says something about. Each program that is
+/// read switches the encoder's outputs.
+pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+    let profile = match profile.and_then(Body::interbus) {
+        None => saved(common, output)?,
+        Some(profile) => as_far_as(common, output, profile)?,
+    };
+    Ok(Body::Interbus(Box::new(profile)))
+}
+
+fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Programs.say(output);
+    match runner.run(InterbusJob::Save { programs: true })? {
+        InterbusOutput::Saved(profile) => Ok(*profile),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
+    let needed = programs_needed(profile);
+    let mut runner = Runner::open(common)?;
+    if needed.is_empty() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
+    let survey = survey(&mut runner)?;
+    let mut image = Image::of(survey.parameters);
+    if !needed.is_empty() {
+        let (read, shift) = programs(&mut runner, needed)?;
+        image.shift = Some(shift);
+        for (number, program) in read {
+            if let Some(place) = image.program_mut(number) {
+                *place = Some(program);
+            }
+        }
+    }
+    Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
+}
 
 /// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> Result<Comparison, ProfileError> {
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
     Ok(interbus::compare(&left.clone().into_interbus()?, &right.clone().into_interbus()?))
 }
 
@@ -13,4 +72,30 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let (profile, device) = (&profile.interbus()?.identity.serial_number, &device.interbus()?.identity.serial_number);
     (!profile.is_empty() && profile != device)
         .then(|| format!("The profile is of serial number {profile}, the encoder has {device}."))
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile = profile.into_interbus().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let options =
+        RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
+    let mut runner = Runner::open(common)?;
+    if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
+    let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+    for item in &prepared.missing {
+        output.remark(&format!("{item} is left alone: the encoder does not have it"));
+    }
+    for item in &prepared.mounting_left {
+        output.remark(&format!(
+            "{item} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone() };
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
+    show_restored(output, &spent, &left)
 }

@@ -29,7 +29,7 @@ pub(super) const COMMANDS: Kind = Kind {
     decode: |_, _| lacking("decode", "use ssi decode --layout FILE|SPEC FRAME"),
     restore: |_, _, _, _| lacking("restore", SET),
     simulated,
-    present: |_, _| refuse("reading a profile from a link", "compare two files with diff FILE FILE"),
+    present: |_, _, _| refuse("reading a profile from a link", "compare two files with diff FILE FILE"),
     compare: profiles::compare,
     other_device: |_, _| None,
 };

@@ -157,8 +157,8 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         (ChangeKind::Default, "brings them back"),
     ] {
         let lines = told(2, Left::AsFound, kind);
-        assert!(lines.len() == 4 && lines[3].contains("b.ron") && lines[3].contains(what), "{lines:?}");
-        assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[2].contains("shift"));
+        assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
+        assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[1].contains("shift"));
     }
     let standing = Standing { out: 0, parameterising: true, found: None, is: None };
     let lines = told(2, Left::Unknown(standing), ChangeKind::Restore);

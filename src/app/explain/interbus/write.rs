@@ -132,14 +132,17 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", encoder(cause))
     }];
-    texts.push(match left {
+    let untouched = done.write_cycles == 0 && done.written == 0;
+    let state = match left {
         Left::AsFound => Text::new("ib_left.as_found"),
         Left::Unknown(_) => Text::new("ib_left.unknown"),
+    };
+    texts.push(if untouched || unclear.is_empty() {
+        state
+    } else {
+        let items = Text::new("ib_left.unclear").with_list("items", unclear.iter().map(plain));
+        Text::new("ib_left.both").with_text("state", state).with_text("unclear", items)
     });
-    let untouched = done.write_cycles == 0 && done.written == 0;
-    if !untouched && !unclear.is_empty() {
-        texts.push(Text::new("ib_left.unclear").with_list("items", unclear.iter().map(plain)));
-    }
     let what_next = match kind {
         _ if untouched => Text::new("write.untouched"),
         ChangeKind::Restore => Text::new("write.backup"),
@@ -156,7 +159,7 @@ pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "ib_left.as_found" => Severity::Good,
         "write.backup" | "write.untouched" | "ib_left.edits" | "ib_left.preset" | "ib_left.default" => Severity::Note,
-        "write.cancelled" | "ib_left.unclear" => Severity::Warning,
+        "write.cancelled" | "ib_left.both" => Severity::Warning,
         _ => Severity::Error,
     }
 }

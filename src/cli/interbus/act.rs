@@ -1,0 +1,78 @@
+//! `do`: the preset, the default, the device check, and the way back to where an encoder was.
+
+use serde_json::json;
+
+use super::Disturbs;
+use super::inspect::mode;
+use super::plan::{commit, operations, prepare};
+use super::run::{Runner, survey};
+use super::value::value;
+use crate::app::{Text, explain};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::check;
+use crate::cli::consent::require_consent;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_done;
+use crate::cli::runner::unexpected;
+use crate::cli::{Done, Failure, Result};
+use crate::profile::interbus::{Item, ItemValue};
+use crate::protocol::interbus::KIND;
+use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
+    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    match (act.action, words.as_slice()) {
+        (Action::Check, []) => check_device(common, output),
+        (Action::LeadBack, []) => lead_back(common, output),
+        (Action::Default, []) => {
+            output.remark(&Text::new("ib_disturbs.default").terminal());
+            change(common, output, act, |_| Ok(Change::Default))
+        }
+        (Action::Preset, []) => {
+            change(common, output, act, |runner| Ok(Change::Preset { value: survey(runner)?.parameters.preset }))
+        }
+        (Action::Preset, [number]) => match value(Item::Preset, number)? {
+            ItemValue::Number(value) => change(common, output, act, |_| Ok(Change::Preset { value })),
+            _ => Err(takes("a position")),
+        },
+        (Action::Preset, _) => Err(takes("nothing or a position")),
+        (Action::Check | Action::LeadBack | Action::Default, _) => Err(takes("no argument")),
+        (other, _) => Err(no_action(other, KIND, "check, preset, default and lead-back")),
+    }
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    match runner.run(InterbusJob::Check)? {
+        InterbusOutput::Check(lines) => check::show(output, &explain::interbus::check(&lines)),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn lead_back(common: &Common, output: &Output) -> Result {
+    match Runner::open(common)?.run(InterbusJob::LeadBack)? {
+        InterbusOutput::LedBack(now) => {
+            let text = format!("the encoder runs, in mode {}\n", explain::interbus::startup(now).terminal());
+            output.show(&json!({"done": "lead-back", "mode": mode(now)}), &text)?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
+    require_consent(&act.consent)?;
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    let change = change(&mut runner)?;
+    let prepared = prepare(&mut runner, change)?;
+    let operations = operations(&prepared.plan);
+    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    show_done(output, &action_name(act.action), &operations, &spent, &[], "")
+}

@@ -1,0 +1,113 @@
+//! A plan for an INTERBUS encoder: shown, agreed to, carried out.
+
+use serde_json::{Value as Json, json};
+
+use super::run::Runner;
+use crate::app::{Text, explain};
+use crate::cli::Result;
+use crate::cli::args::Consenting;
+use crate::cli::consent::agree;
+use crate::cli::output::{Lines, Output};
+use crate::cli::profiles::{Shown, Spent};
+use crate::cli::runner::{Ended, unexpected};
+use crate::device::interbus::write::Written;
+use crate::profile::interbus::{InterbusPlan, Op};
+use crate::profile::{Consent, Operation as _};
+use crate::worker::NotBegun;
+use crate::worker::interbus::{
+    Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, WEAR_LIMIT, Wear,
+};
+
+/// Makes a plan for a change; nothing is written.
+pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
+    match runner.run(InterbusJob::Prepare(change))? {
+        InterbusOutput::Prepared(prepared) => Ok(*prepared),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+    if prepared.plan.is_empty() {
+        return Ok(Spent::default());
+    }
+    let wear = prepared.wear();
+    if let (Some(Wear::Worn(_)), false) = (wear, consent.force_wear) {
+        let (seen, cost) = (prepared.cycles_seen.unwrap_or(0), prepared.plan.write_cycles());
+        let worn = JobError::NotBegun(NotBegun::Worn { seen, cost, limit: WEAR_LIMIT });
+        return Err(Ended::<Interbus>::Job(Box::new(worn)).into_failure());
+    }
+    let said = explain::interbus::wear(&prepared).map(|text| text.terminal());
+    if let Some(said) = &said {
+        output.remark(said);
+    }
+    let stop = Text::new("ib_disturbs.writing").terminal();
+    agree(output, consent, &format!("{}{stop}", shown(&prepared).text))?;
+    if let (Some(Wear::Ask(_) | Wear::Worn(_)), Some(said)) = (wear, &said) {
+        // More than the maker names: once more.
+        agree(output, consent, said)?;
+    }
+    let granted = Consent::to(prepared.plan.id());
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
+    let committed = match runner.run(InterbusJob::Commit(Box::new(commit)))? {
+        InterbusOutput::Committed(committed) => *committed,
+        other => return Err(unexpected(&other)),
+    };
+    if let Some(why) = &committed.logbook_warning {
+        output.remark(&explain::logbook(why).terminal());
+    }
+    let Written { written, verified, write_cycles, .. } = committed.written;
+    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
+}
+
+/// The plan for a person and for a script: each item old → new, and what it costs.
+pub(super) fn shown(prepared: &Prepared) -> Shown {
+    let plan = &prepared.plan;
+    let write_cycles = plan.write_cycles();
+    if plan.is_empty() {
+        let text = "nothing to write: it is so already\n".to_owned();
+        return Shown { operations: Vec::new(), text, write_cycles };
+    }
+    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
+    let mut lines = Lines::default();
+    for line in plan.ops.iter().flat_map(lines_of) {
+        match &line.old {
+            Some(old) => lines.add(&line.item, format!("{old}  →  {}", line.new)),
+            None => lines.add(&line.item, &line.new),
+        };
+    }
+    lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen}, of {WEAR_LIMIT})"));
+    Shown { operations: operations(plan), text: lines.text(), write_cycles }
+}
+
+/// The operations as JSON; what is stored together costs nothing by itself.
+pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
+    let one =
+        |line: Line| json!({"item": line.item, "old": line.old, "new": line.new, "write_cycles": line.write_cycles});
+    plan.ops.iter().flat_map(lines_of).map(one).collect()
+}
+
+/// A line of a plan.
+struct Line {
+    item: String,
+    old: Option<String>,
+    new: String,
+    write_cycles: u64,
+}
+
+fn lines_of(op: &Op) -> Vec<Line> {
+    let cost = op.write_cycles();
+    let last = |item: &str, new: String| Line { item: item.to_owned(), old: None, new, write_cycles: cost };
+    let mut lines: Vec<Line> = op
+        .steps()
+        .into_iter()
+        .map(|step| Line { item: step.name, old: Some(step.from), new: step.to, write_cycles: 0 })
+        .collect();
+    lines.push(match op {
+        Op::Parameterise(_) => last("parameters", "stored".to_owned()),
+        Op::Program(change) => last(&format!("cam program {}", change.program.get()), "stored".to_owned()),
+        Op::FirePreset { value } => last("position", format!("becomes {value}")),
+        Op::Default => last("all parameters", "as delivered (experimental)".to_owned()),
+    });
+    lines
+}

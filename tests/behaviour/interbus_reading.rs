@@ -1,0 +1,196 @@
+//! What is read of a K3 encoder that is not our program, behind a gateway that is not either; and that reading changes
+//! nothing.
+
+use serde_json::{Value, json};
+
+use super::support::{Bench, Foreign, Ran};
+
+/// Programs of a foreign encoder: two of them, as JSON.
+const PROGRAMS: &str =
+    r#"{"1": {"mask": 9, "cams": {"0": [3000, 200], "3": [21, 531]}}, "3": {"mask": 128, "cams": {"7": [100, 100]}}}"#;
+
+fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
+    bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
+}
+
+/// OUT words since the last time, and what was stored or preset.
+fn done(encoder: &Foreign) -> Vec<String> {
+    encoder.requests().into_iter().filter(|line| line != "R").collect()
+}
+
+/// Only read-outs (reference 3, 5), the selection of a program, run and normal running; and nothing is stored.
+#[track_caller]
+fn only_read(encoder: &Foreign) {
+    for line in done(encoder) {
+        let reads = ["W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
+        assert!(reads.iter().any(|begin| line.starts_with(begin)), "{line}");
+    }
+}
+
+#[test]
+fn an_encoder_says_who_it_is() {
+    let bench = Bench::new();
+    let options = ["--serial-number=4711", "--steps=3600", "--turns=10", "--direction=ccw", "--flags=2", "--busy=20"];
+    let Some(encoder) = bench.gateway(&[&options[..], &["--stale=2", "--software-version=77"]].concat()) else {
+        return;
+    };
+    let told = ask(&bench, &encoder, &["identify", "interbus"]);
+    assert!(told.err.contains("instead of its position"), "{told:?}");
+    let expected = json!({
+        "device": "interbus", "profile": "K3", "serial_number": "4711", "steps": 3600, "revolutions": 10,
+        "direction": "ccw", "software_version": "77", "mode": "K3", "multiturn": true, "steps_minus_one": false,
+    });
+    assert_eq!(told.json(), expected);
+    only_read(&encoder);
+    let text = bench.run(&["identify", "interbus", "--link", &encoder.url]);
+    assert!(text.out.contains("3600 over 10 revolutions") && text.out.contains("counterclockwise"), "{text:?}");
+}
+
+#[test]
+fn every_item_is_read_by_its_name() {
+    let bench = Bench::new();
+    let options = ["--steps=3600", "--preset=500", "--zero-shift=7", "--shift=8", "--programs", PROGRAMS];
+    let Some(encoder) = bench.gateway(&[&options[..], &["--temperature=-100", "--operating-time=12"]].concat()) else {
+        return;
+    };
+    let cases = [
+        ("steps", json!(3600), Some("steps")),
+        ("revolutions", json!(1), Some("turns")),
+        ("direction", json!("cw"), None),
+        ("preset", json!(500), Some("steps")),
+        ("zero-shift", json!(7), Some("steps")),
+        ("shift", json!(8), Some("bits")),
+        ("cam-mask:1", json!(9), None),
+        ("cam:1:0", json!("3000..200"), Some("steps")),
+        ("cam:3:7", json!("100..100"), Some("steps")),
+        ("temperature", json!(-10.0), Some("°C")),
+        ("operating-time", json!(120), Some("min")),
+    ];
+    for (item, value, unit) in cases {
+        let ran = ask(&bench, &encoder, &["read", "interbus", item]);
+        assert_eq!(ran.err.contains("Cam programs are selected"), item.contains("cam") || item == "shift", "{ran:?}");
+        let told = ran.json();
+        assert_eq!((&told["item"], &told["value"]), (&json!(item), &value), "{told}");
+        assert_eq!(told.get("unit").and_then(Value::as_str), unit, "{told}");
+    }
+    only_read(&encoder);
+    // In position mode, as it was found, and OUT is 0.
+    assert_eq!(encoder_mode(&bench, &encoder), "K3");
+}
+
+fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
+    ask(bench, encoder, &["identify", "interbus"]).json()["mode"].as_str().unwrap().to_owned()
+}
+
+/// Reference 7: 12345 steps of the disc are 542 of 360 a turn: turn 1, 182 steps of 360, which are 182°.
+#[test]
+fn a_position_lies_within_the_programmed_turns() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.gateway(&["--position=12345", "--steps=720", "--turns=2"]) else { return };
+    let ran = ask(&bench, &encoder, &["position", "interbus", "--count", "3", "--interval", "1"]);
+    let lines: Vec<Value> = ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((ran.status, lines.len()), (Some(0), 3), "{ran:?}");
+    for told in &lines {
+        assert_eq!((&told["raw"], &told["turns"], &told["steps"]), (&json!(542), &json!(1), &json!(182)), "{told}");
+        assert_eq!((&told["degrees"], &told["valid"]), (&json!(182.0), &json!(true)));
+        assert!(told["t_s"].as_f64() >= Some(0.0));
+    }
+    only_read(&encoder);
+    let table = bench.run(&["position", "interbus", "--link", &encoder.url, "--csv", "--count", "1"]);
+    assert!(table.out.starts_with("t_s,raw,turns,steps,degrees,valid\n"), "{table:?}");
+    assert!(table.out.trim_end().ends_with(",542,1,182,182,true"), "{table:?}");
+}
+
+/// Reference 5: position 1000 of 3600 under the window, cam 3 from 900 on; speed; and an encoder that has an error.
+#[test]
+fn what_is_no_position_is_not_taken_for_one() {
+    let bench = Bench::new();
+    let programs = r#"{"2": {"mask": 8, "cams": {"3": [900, 1100]}}}"#;
+    let position = ["--position=2276", "--steps=3600"];
+    let Some(encoder) = bench.gateway(&[&position[..], &["--mode=4", "--programs", programs]].concat()) else { return };
+    let told = ask(&bench, &encoder, &["position", "interbus"]).json();
+    // 2276 · 3600 / 8192 = 1000.2; 1000 = 3E8h.
+    assert_eq!((&told["raw"], &told["position"]), (&json!(0x0003_E808), &json!(1000)), "{told}");
+    assert_eq!((&told["mode"], &told["cams"], &told["valid"]), (&json!("cam 2"), &json!([3]), &json!(true)));
+    // It is in the program in which it was found.
+    assert_eq!(encoder_mode(&bench, &encoder), "cam 2");
+    only_read(&encoder);
+    let Some(encoder) = bench.gateway(&["--mode=2", "--rpm=120"]) else { return };
+    let told = ask(&bench, &encoder, &["position", "interbus"]).json();
+    assert_eq!((&told["rpm"], &told["turns"], &told["mode"]), (&json!(120), &Value::Null, &json!("velocity")));
+    let Some(encoder) = bench.gateway(&["--lost"]) else { return };
+    let told = ask(&bench, &encoder, &["status", "interbus"]).json();
+    assert_eq!((&told["ok"], &told["errors"][0]["code"]), (&json!(false), &json!(3)), "{told}");
+    assert!(told["errors"][0]["text"].as_str().unwrap().contains("restore a profile"), "{told}");
+    let told = ask(&bench, &encoder, &["position", "interbus"]).json();
+    assert_eq!((&told["raw"], &told["valid"], &told["turns"]), (&json!(0x8600_0000_u32), &json!(false), &Value::Null));
+}
+
+#[test]
+fn a_healthy_encoder_has_nothing_to_say() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.gateway(&["--temperature=253"]) else { return };
+    let told = ask(&bench, &encoder, &["status", "interbus"]).json();
+    assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])));
+    assert_eq!((&told["temperature_c"], &told["operating_minutes"]), (&json!(25.3), &json!(10_000)));
+    let told = ask(&bench, &encoder, &["do", "interbus", "check"]).json();
+    assert_eq!((&told["ok"], &told["steps"][0]["verdict"]), (&json!(true), &json!("good")), "{told}");
+    only_read(&encoder);
+}
+
+#[test]
+fn what_is_saved_is_what_is_there() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.gateway(&["--steps=3600", "--preset=500", "--mode=5", "--programs", PROGRAMS]) else {
+        return;
+    };
+    let file = bench.file("saved.ron");
+    let ran = ask(&bench, &encoder, &["save", "interbus", "-o", &file]);
+    assert_eq!(ran.json()["programs"], json!(8));
+    assert!(ran.err.contains("Cam programs are selected"), "{ran:?}");
+    let text = bench.read("saved.ron");
+    for line in ["steps: 3600,", "preset: 500,", "(cam: 0, start: 3000, stop: 200),", "mask: 0x80,", "startup_mode: 5,"]
+    {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    let told = ask(&bench, &encoder, &["verify", &file]).json();
+    assert_eq!(
+        (&told["equal"], &told["compared"], &told["missing"]),
+        (&json!(true), &json!(5 + 1 + 8 * 9), &json!([]))
+    );
+    assert_eq!(ask(&bench, &encoder, &["diff", &file]).json()["equal"], json!(true));
+    only_read(&encoder);
+    assert_eq!(encoder_mode(&bench, &encoder), "cam 3", "as it was found");
+    // What a profile does not say is not read: no program is selected.
+    let short = bench.write(
+        "short.ron",
+        r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "ccw", preset: 500,
+            zero_shift: 0))"#,
+    );
+    encoder.requests();
+    let told = ask(&bench, &encoder, &["verify", &short]).json_with(3);
+    assert_eq!(told["differences"], json!([{"item": "direction", "left": "ccw", "right": "cw"}]), "{told}");
+    let selected = done(&encoder).into_iter().filter(|line| line.starts_with("W 2080"));
+    assert!(selected.clone().all(|line| line == "W 20800003"), "{:?}", selected.collect::<Vec<_>>());
+    // Two files need no encoder.
+    let told = bench.run(&["diff", &file, &short, "--json"]).json_with(3);
+    assert_eq!((&told["compared"], told["missing"].as_array().map(Vec::len)), (&json!(5), Some(1 + 8 * 9)), "{told}");
+}
+
+/// The virtual encoder in this process and the same served over TCP say the same.
+#[test]
+fn the_virtual_encoder_is_read_either_way() {
+    use super::support::Simulated;
+    let bench = Bench::new();
+    let settings = ["steps=3600", "revolutions=1", "cams=demo", "position=5000", "serial=99"];
+    let set: Vec<&str> = settings.iter().flat_map(|setting| ["--set", setting]).collect();
+    let port = Simulated::start(&bench, &[&["interbus", "--listen", "127.0.0.1:0"], &set[..]].concat());
+    let links = [format!("sim:?{}", settings.join("&")), format!("modbus:{}", port.place)];
+    for command in
+        [&["identify", "interbus"][..], &["read", "interbus", "cam:2:5"], &["read", "interbus", "cam-mask:1"]]
+    {
+        let told = links.each_ref().map(|link| bench.run(&[command, &["--link", link, "--json"]].concat()).json());
+        assert_eq!(told[0], told[1]);
+    }
+    port.end("INT");
+}
