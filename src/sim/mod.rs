@@ -7,6 +7,7 @@
 pub mod biss;
 pub mod bridge;
 mod fault;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod line;

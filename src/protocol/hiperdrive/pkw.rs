@@ -169,8 +169,16 @@ impl PkwError {
     pub const READ_ONLY: PkwError = PkwError(1);
     /// 2: beyond its limits.
     pub const RANGE: PkwError = PkwError(2);
+    /// 3: the text or array ends before.
+    pub const NO_ELEMENT: PkwError = PkwError(3);
+    /// 4: it has no elements.
+    pub const NO_ARRAY: PkwError = PkwError(4);
+    /// 5: a word where it is a double word, or the other way; a text.
+    pub const TYPE: PkwError = PkwError(5);
     /// 17: not in this state.
     pub const STATE: PkwError = PkwError(17);
+    /// 18: whatever else.
+    pub const OTHER: PkwError = PkwError(18);
 
     /// Any number is a code.
     pub const fn new(code: u32) -> Self {

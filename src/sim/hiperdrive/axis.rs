@@ -1,0 +1,168 @@
+//! The spindle: it speeds up, slows down, hits what stands in its way. In steps of which a turn has 65536, and milliseconds.
+
+use std::time::Duration;
+
+/// What the spindle has to move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Percent of the nominal torque that it takes. With less effective torque nothing moves.
+    pub percent: u8,
+    /// It cannot turn below this place, in steps of 65536 a turn as the drive was built.
+    pub wall_below: Option<f64>,
+    /// It cannot turn beyond this place.
+    pub wall_above: Option<f64>,
+    /// Degrees Celsius around the drive.
+    pub ambient: f64,
+}
+
+impl Default for Load {
+    fn default() -> Self {
+        Load { percent: 10, wall_below: None, wall_above: None, ambient: 25.0 }
+    }
+}
+
+/// Where the spindle is and how fast it turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Axis {
+    place: f64,
+    /// Steps a second.
+    speed: f64,
+}
+
+/// What is wanted of the spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Wanted {
+    /// That it stands.
+    Rest,
+    /// That it gets there, no faster than this.
+    Place { at: f64, speed: f64 },
+    /// That it turns like this, with its sign.
+    Speed(f64),
+}
+
+/// What came of a millisecond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Came {
+    /// It is under way.
+    OnTheWay,
+    /// It stands where it should, or as it should.
+    There,
+    /// Something stands in its way, below it or above.
+    Held { above: bool },
+}
+
+/// Steps of a turn.
+pub(super) const TURN: f64 = 65536.0;
+pub(super) const TICK: Duration = Duration::from_millis(1);
+const TICK_S: f64 = 1e-3;
+/// Chosen: 35 rpm are reached, or lost, in a tenth of a second.
+const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
+
+impl Axis {
+    pub(super) const fn place(&self) -> f64 {
+        self.place
+    }
+
+    pub(super) fn rpm(&self) -> f64 {
+        self.speed / TURN * 60.0
+    }
+
+    pub(super) const fn stands(&self) -> bool {
+        self.speed == 0.0
+    }
+
+    /// It stands at once.
+    pub(super) const fn halt(&mut self) {
+        self.speed = 0.0;
+    }
+
+    /// A millisecond.
+    pub(super) fn tick(&mut self, wanted: Wanted, load: &Load) -> Came {
+        let gain = ACCELERATION * TICK_S;
+        let aim = match wanted {
+            Wanted::Rest => 0.0,
+            Wanted::Speed(speed) => speed,
+            // No faster than it can still stop.
+            Wanted::Place { at, speed } => {
+                let way = at - self.place;
+                way.signum() * speed.min((2.0 * ACCELERATION * way.abs()).sqrt())
+            }
+        };
+        self.speed += (aim - self.speed).clamp(-gain, gain);
+        let next = self.place + self.speed * TICK_S;
+        if let Some(held) = walls(load, next) {
+            (self.place, self.speed) = (held.0, 0.0);
+            let arrived = wanted == Wanted::Rest || matches!(wanted, Wanted::Place { at, .. } if at == self.place);
+            return if arrived { Came::There } else { Came::Held { above: held.1 } };
+        }
+        self.place = next;
+        match wanted {
+            Wanted::Place { at, .. } if self.speed.abs() <= 4.0 * gain && (at - self.place).abs() <= 2.0 => {
+                (self.place, self.speed) = (at, 0.0);
+                Came::There
+            }
+            Wanted::Rest if self.stands() => Came::There,
+            _ => Came::OnTheWay,
+        }
+    }
+}
+
+/// The wall that a place lies behind, and whether it is the upper one.
+fn walls(load: &Load, place: f64) -> Option<(f64, bool)> {
+    let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
+    below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ticks_until(axis: &mut Axis, wanted: Wanted, load: &Load) -> (u32, Came) {
+        for tick in 1..100_000 {
+            match axis.tick(wanted, load) {
+                Came::OnTheWay => {}
+                came => return (tick, came),
+            }
+        }
+        panic!("it never ends: {axis:?}");
+    }
+
+    /// 35 rpm: 0.1 s up, 0.1 s down, 1/60 · 35 · 0.1 = 0.0583 turns together. A turn takes 0.2 + (1 − 0.0583) / 0.5833 s.
+    #[test]
+    fn a_turn_takes_its_time() {
+        let mut axis = Axis::default();
+        let speed = 35.0 / 60.0 * TURN;
+        let (ticks, came) = ticks_until(&mut axis, Wanted::Place { at: TURN, speed }, &Load::default());
+        assert_eq!((came, axis.place(), axis.stands()), (Came::There, TURN, true));
+        assert!((1800..=1830).contains(&ticks), "{ticks} ms where 1814 were expected");
+    }
+
+    #[test]
+    fn it_stops_in_a_tenth_of_a_second() {
+        let mut axis = Axis::default();
+        let load = Load::default();
+        for _ in 0..500 {
+            axis.tick(Wanted::Speed(-35.0 / 60.0 * TURN), &load);
+        }
+        assert!((axis.rpm() + 35.0).abs() < 1e-9);
+        let (ticks, _) = ticks_until(&mut axis, Wanted::Rest, &load);
+        assert!((99..=101).contains(&ticks), "{ticks} ms");
+    }
+
+    #[test]
+    fn it_is_held_by_a_wall_and_comes_back_from_behind() {
+        let load = Load { wall_above: Some(1000.0), ..Load::default() };
+        let mut axis = Axis::default();
+        let to = |at| Wanted::Place { at, speed: TURN };
+        assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, Came::Held { above: true });
+        assert_eq!(axis.place(), 1000.0);
+        assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, Came::There);
+        // Turned round at full speed, it overshoots and returns.
+        for _ in 0..300 {
+            axis.tick(Wanted::Speed(-TURN), &load);
+        }
+        let turned = axis.place();
+        assert_eq!(ticks_until(&mut axis, to(turned), &load).1, Came::There);
+        assert_eq!(axis.place(), turned);
+    }
+}

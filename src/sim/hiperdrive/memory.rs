@@ -1,0 +1,55 @@
+//! Parameters that can be written: what they are now, and what of them is kept without supply.
+
+use std::collections::BTreeMap;
+
+use crate::protocol::hiperdrive::{Family, PARAMETERS, ParameterRow, Topology};
+
+/// By the number of drive 1, or of the device.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    factory: BTreeMap<u16, i64>,
+    now: BTreeMap<u16, i64>,
+    kept: BTreeMap<u16, i64>,
+}
+
+/// Chosen: what the drive finds for parameter 192.
+const COMPLETE_TIME_MS: i64 = 5;
+
+impl Memory {
+    /// From the factory, what `holds` chooses of the table.
+    pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
+        let value = |row: &ParameterRow| {
+            let found = (row.number == 192).then_some(COMPLETE_TIME_MS);
+            row.factory_value(topology, family).or(found).map(|value| (row.number, value))
+        };
+        let factory: BTreeMap<u16, i64> = PARAMETERS.iter().filter(|row| holds(row)).filter_map(value).collect();
+        Memory { now: factory.clone(), kept: factory.clone(), factory }
+    }
+
+    /// `None` for a parameter that is not held here.
+    pub(super) fn get(&self, number: u16) -> Option<i64> {
+        self.now.get(&number).copied()
+    }
+
+    /// Nothing of one that is not held here.
+    pub(super) fn set(&mut self, number: u16, value: i64) {
+        if let Some(held) = self.now.get_mut(&number) {
+            *held = value;
+        }
+    }
+
+    pub(super) fn keep(&mut self) {
+        let saved = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.saved);
+        self.kept.extend(self.now.iter().filter(|(number, _)| saved(number)));
+    }
+
+    /// As saved last; what is never saved from the factory.
+    pub(super) fn recall(&mut self) {
+        self.now = self.kept.clone();
+    }
+
+    /// From the factory, not saved yet.
+    pub(super) fn forget(&mut self) {
+        self.now = self.factory.clone();
+    }
+}

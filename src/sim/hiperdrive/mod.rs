@@ -1,0 +1,23 @@
+//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): what process data and parameters do to them, in
+//! virtual time, without any network in front of them. Whatever the manual leaves open (`U`) follows one documented choice.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `axis` | the spindle: speed and place, millisecond by millisecond, with what holds it |
+//! | `memory` | parameters that can be written, and what of them survives the supply |
+//! | `drive` | a drive: its state, its motion, its faults |
+//! | `parameters` | what reading and writing a drive's parameters does |
+//! | `station` | the drives together: process data, parameter words, save and reset, the lost master |
+
+mod axis;
+mod drive;
+mod memory;
+mod parameters;
+mod station;
+#[cfg(test)]
+mod tests;
+
+pub use axis::Load;
+pub use drive::Drive;
+pub use parameters::Refused;
+pub use station::{Setup, Station};

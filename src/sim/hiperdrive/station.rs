@@ -1,0 +1,309 @@
+//! The drives of an adapter or a hub together: process data, parameter words, parameters, saving, the lost master.
+//!
+//! Chosen here (`U`): a connection that ends, in whatever way, is a lost master; a packet with an idle header stops as control
+//! words of 0 do; while it saves or resets, 47 is 1 and nothing is written; a reset drive has its saved parameters; of an empty
+//! place only 120 and 152 can be read, both 0; a text is read in elements of four characters, the first one lowest.
+
+use std::time::Duration;
+
+use super::axis::Load;
+use super::drive::Drive;
+use super::memory::Memory;
+use super::parameters::{Refused, element};
+use crate::protocol::hiperdrive::{
+    Access, Actual, DriveNumber, Family, InImage, Kind, OutData, OutImage, ParameterNumber, ParameterRow, Pkw,
+    PkwError, Task, Topology, Value, Variant,
+};
+use crate::units::Moment;
+
+/// What a station is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// Places for drives.
+    pub topology: Topology,
+    /// What is plugged in, from the first place on.
+    pub drives: Vec<Option<(Variant, Load)>>,
+    /// Parameter 17.
+    pub serial_number: u16,
+}
+
+/// A virtual adapter or hub with its drives.
+#[derive(Clone, Debug)]
+pub struct Station {
+    setup: Setup,
+    /// As many as there are places.
+    drives: Vec<Option<Drive>>,
+    memory: Memory,
+    master: Option<Master>,
+    busy_until: Moment,
+    /// The parameter word that is answered, with its answer.
+    words: (Pkw, Pkw),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Master {
+    timeout: Duration,
+    heard: Moment,
+}
+
+/// Chosen, within what the manual promises.
+const SAVES: Duration = Duration::from_millis(150);
+const RESETS: Duration = Duration::from_secs(1);
+
+impl Default for Setup {
+    /// An adapter with a drive HDA30A.
+    fn default() -> Self {
+        let drives = vec![Some((Variant::new(7), Load::default()))];
+        Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
+    }
+}
+
+impl Station {
+    /// A station from the factory, switched on at the start of the clock.
+    pub fn new(setup: Setup) -> Self {
+        let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
+        let drives = places
+            .take(setup.topology.drives().into())
+            .map(|place| place.map(|(variant, load)| Drive::new(variant, setup.topology, load)))
+            .collect();
+        let memory = Memory::new(setup.topology, Family::Short, |row| row.number < 100);
+        Station { setup, drives, memory, master: None, busy_until: Moment::START, words: Default::default() }
+    }
+
+    /// A drive that is plugged in.
+    pub fn drive(&mut self, number: DriveNumber) -> Option<&mut Drive> {
+        self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
+    }
+
+    /// A master has opened the cyclic connection. Without a packet for so long it is lost.
+    pub fn open(&mut self, now: Moment, timeout: Duration) {
+        self.advance(now);
+        self.master = Some(Master { timeout, heard: now });
+    }
+
+    /// The connection ends.
+    pub fn close(&mut self, now: Moment) {
+        self.advance(now);
+        if self.master.take().is_some() {
+            self.present().for_each(|drive| drive.abandon(now));
+        }
+    }
+
+    /// Whether a master has the cyclic connection.
+    pub fn is_open(&mut self, now: Moment) -> bool {
+        self.advance(now);
+        self.master.is_some()
+    }
+
+    /// Process data have come. Without a connection, and while drives are being reset, they are dropped.
+    pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
+        self.advance(now);
+        let Some(master) = &mut self.master else { return };
+        master.heard = now;
+        if now < self.busy_until {
+            return;
+        }
+        for (drive, out) in self.drives.iter_mut().zip(&image.drives) {
+            let out = if runs { *out } else { OutData { control: 0, ..*out } };
+            if let Some(drive) = drive {
+                drive.command(now, out);
+            }
+        }
+        if let Some(request) = image.pkw.filter(|request| *request != self.words.0) {
+            self.words = (request, self.answer(now, request));
+        }
+    }
+
+    /// Process data as they are sent at a moment.
+    pub fn image(&mut self, now: Moment) -> InImage {
+        self.advance(now);
+        let actual = |drive: &mut Option<Drive>| drive.as_mut().map_or(Actual::default(), |drive| drive.actual(now));
+        InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
+    }
+
+    /// Switch S3 is turned. Away from 0 nothing moves from the bus.
+    pub fn turn_s3(&mut self, now: Moment, position: u8) {
+        self.advance(now);
+        self.present().for_each(|drive| drive.allow(position == 0));
+    }
+
+    /// The supply goes and comes back.
+    pub fn power_cycle(&mut self, now: Moment) {
+        self.advance(now);
+        self.memory.recall();
+        (self.master, self.busy_until, self.words) = (None, now, Default::default());
+        self.reset(now);
+    }
+
+    /// Reads a parameter.
+    ///
+    /// # Errors
+    /// [`Refused`] for one that there is not, also of a drive that is not there.
+    pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
+        self.advance(now);
+        let row = number.row().ok_or(Refused::Unknown)?;
+        let Some(drive) = number.drive() else { return self.read_own(now, row).ok_or(Refused::Unknown) };
+        if drive.get() > self.setup.topology.drives() {
+            return Err(Refused::Unknown);
+        }
+        match (self.drive(drive), row.number) {
+            (Some(drive), own) => drive.read(now, own).ok_or(Refused::Unknown),
+            (None, 120 | 152) => Ok(Value::Number(0)),
+            (None, _) => Err(Refused::State),
+        }
+    }
+
+    /// Writes a parameter.
+    ///
+    /// # Errors
+    /// [`Refused`]; nothing was written.
+    pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
+        self.advance(now);
+        let row = number.row().ok_or(Refused::Unknown)?;
+        let place = number.drive().filter(|drive| drive.get() > self.setup.topology.drives());
+        match (row.access, place, value) {
+            (_, Some(_), _) => Err(Refused::Unknown),
+            (Access::Read, ..) => Err(Refused::ReadOnly),
+            _ if now < self.busy_until => Err(Refused::State),
+            (_, _, Value::Text(_)) => Err(Refused::Value),
+            (_, _, Value::Number(value)) => self.write_number(now, number, row, *value),
+        }
+    }
+
+    fn write_number(
+        &mut self,
+        now: Moment,
+        own: ParameterNumber,
+        row: &ParameterRow,
+        value: i64,
+    ) -> Result<(), Refused> {
+        let fits = row.check(own, value).is_ok();
+        match own.drive() {
+            Some(number) => {
+                let drive = self.drive(number).ok_or(Refused::State)?;
+                if fits { drive.write(now, row.number, value) } else { Err(drive.refuses()) }
+            }
+            None if !fits => Err(Refused::Value),
+            None if own == ParameterNumber::SAVE => {
+                self.keep_or_reset(now, value);
+                Ok(())
+            }
+            None => {
+                self.memory.set(row.number, value);
+                Ok(())
+            }
+        }
+    }
+
+    /// Parameter 47 is written.
+    fn keep_or_reset(&mut self, now: Moment, value: i64) {
+        let each: fn(&mut Memory) = match value {
+            1 => Memory::keep,
+            -1 => Memory::forget,
+            -2 => Memory::recall,
+            -3 => |memory| {
+                memory.forget();
+                memory.keep();
+            },
+            -4 => {
+                self.reset(now);
+                self.busy_until = now + RESETS;
+                return;
+            }
+            _ => return,
+        };
+        self.present().for_each(|drive| each(&mut drive.memory));
+        each(&mut self.memory);
+        self.busy_until = now + SAVES;
+    }
+
+    fn reset(&mut self, now: Moment) {
+        self.present().for_each(|drive| {
+            drive.memory.recall();
+            drive.reset(now);
+        });
+    }
+
+    fn read_own(&self, now: Moment, row: &ParameterRow) -> Option<Value> {
+        let text = |text: &str| Some(Value::Text(text.to_owned()));
+        let number = match row.number {
+            9 => 240,
+            11 => 31,
+            12 => 0,
+            13 => return text(self.setup.topology.category()),
+            15 => return text("HIPERDRIVE"),
+            16 => return text("7800.0100"),
+            17 => self.setup.serial_number.into(),
+            18 => return text("14/2024"),
+            19 => return text("1.02"),
+            47 => i64::from(now < self.busy_until),
+            number => self.memory.get(number)?,
+        };
+        Some(Value::Number(number))
+    }
+
+    /// The answer to a parameter word.
+    fn answer(&mut self, now: Moment, request: Pkw) -> Pkw {
+        let reply = |code: u16, value: u32| Pkw { pke: code << 12 | request.number(), ind: request.ind, pwe: value };
+        let refused = |error: PkwError| reply(7, error.code());
+        let number = ParameterNumber::new(request.number());
+        let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
+            return if request.task() == Some(Task::None) { Pkw::default() } else { refused(PkwError::NO_PARAMETER) };
+        };
+        let wide = row.kind.length() == Some(4);
+        match (request.task(), row.kind) {
+            (Some(Task::None), _) => Pkw::default(),
+            (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),
+            (Some(Task::Read), _) => match self.read(now, number) {
+                // Of a smaller number its lower bits are all there is.
+                Ok(Value::Number(value)) => {
+                    reply(if wide { 2 } else { 1 }, if wide { value as u32 } else { (value as u16).into() })
+                }
+                Ok(Value::Text(_)) => refused(PkwError::TYPE),
+                Err(why) => refused(why.error()),
+            },
+            (Some(Task::WriteWord), _) if wide || row.kind == Kind::Text => refused(PkwError::TYPE),
+            (Some(Task::WriteDouble), _) if !wide => refused(PkwError::TYPE),
+            (Some(Task::WriteWord | Task::WriteDouble), kind) => {
+                let value = match kind {
+                    Kind::I32 => i64::from(request.pwe.cast_signed()),
+                    Kind::I8 | Kind::I16 => i64::from((request.pwe as u16).cast_signed()),
+                    _ if wide => request.pwe.into(),
+                    _ => (request.pwe & 0xFFFF).into(),
+                };
+                match self.write(now, number, &Value::Number(value)) {
+                    Ok(()) => reply(if wide { 2 } else { 1 }, request.pwe),
+                    Err(why) => refused(why.error()),
+                }
+            }
+            (Some(Task::ReadElement | Task::Count), Kind::Text) => {
+                let text = match self.read(now, number) {
+                    Ok(Value::Text(text)) => text,
+                    Ok(Value::Number(_)) => return refused(PkwError::TYPE),
+                    Err(why) => return refused(why.error()),
+                };
+                if request.task() == Some(Task::Count) {
+                    // A text has some dozen characters.
+                    return reply(6, text.len().div_ceil(4) as u32);
+                }
+                element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))
+            }
+            (Some(Task::WriteElementWord | Task::WriteElementDouble), Kind::Text) => refused(PkwError::READ_ONLY),
+            (Some(_), _) => refused(PkwError::NO_ARRAY),
+            (None, _) => refused(PkwError::OTHER),
+        }
+    }
+
+    fn present(&mut self) -> impl Iterator<Item = &mut Drive> {
+        self.drives.iter_mut().flatten()
+    }
+
+    /// A master that was not heard for too long is lost at that moment, not when somebody looks.
+    fn advance(&mut self, now: Moment) {
+        let Some(Master { timeout, heard }) = self.master else { return };
+        if now.since(heard) >= timeout {
+            self.master = None;
+            self.present().for_each(|drive| drive.abandon(heard + timeout));
+        }
+    }
+}
