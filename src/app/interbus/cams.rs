@@ -6,6 +6,7 @@
 mod grid;
 mod moving;
 mod snap;
+pub mod table_words;
 #[cfg(test)]
 mod tests;
 pub mod words;

@@ -18,7 +18,7 @@ mod tests;
 
 pub use difference::{Differs, Place};
 pub use draft::Kept;
-pub use edit::{Edit, EditError, Filled, LONGEST_NAME};
+pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
 use crate::profile::interbus::{Image, Names, Parameters};

@@ -10,6 +10,7 @@ mod plan;
 mod record;
 mod restore;
 mod scale;
+mod table;
 #[cfg(test)]
 mod test_profiles;
 mod text;
@@ -24,3 +25,7 @@ pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, Program
 pub use record::{InterbusProfile, Kept, MountingMark, Names, ProfileIdentity, Recorded};
 pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore, programs_needed};
 pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
+pub use table::{
+    CamTable, Column, Filled, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong,
+    emit_table,
+};

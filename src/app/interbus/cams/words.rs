@@ -2,8 +2,8 @@
 
 use super::{Chart, Lamp, Lane};
 use crate::app::Text;
-use crate::app::interbus::staged::{EditError, LONGEST_NAME, Mark};
-use crate::profile::interbus::{Edge, Scale, Unit};
+use crate::app::interbus::staged::{EditError, Mark};
+use crate::profile::interbus::{Edge, LONGEST_NAME, Scale, Unit};
 use crate::protocol::interbus::{Cam, CamNumber, GearError, Parameter, ProgramNumber, TURNS};
 
 /// A cam by its number, and its name where it has one.

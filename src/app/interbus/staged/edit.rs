@@ -1,13 +1,10 @@
 //! The edits: what each makes of what is wanted, and why it may not be.
 
 use super::{Ground, Wanted};
-use crate::profile::interbus::{Direction, Edge};
+use crate::profile::interbus::{Direction, Edge, Filled, LONGEST_NAME};
 use crate::protocol::interbus::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
-
-/// The most characters of a cam's name.
-pub const LONGEST_NAME: usize = 40;
 
 /// A change. Each is one step, however much it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,17 +97,6 @@ pub enum Edit {
     },
     /// Programs as a table has them.
     Table(Vec<Filled>),
-}
-
-/// A program as a table has it: its cams work, and no others. The edges of those others stay as they are.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Filled {
-    /// Which one.
-    pub program: ProgramNumber,
-    /// Its cams.
-    pub cams: [Option<Cam>; Program::CAMS],
-    /// What they are called; empty where they have no name.
-    pub names: [String; Program::CAMS],
 }
 
 /// Why something cannot be changed. Nothing is, then.

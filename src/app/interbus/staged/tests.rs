@@ -1,7 +1,7 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Differs, Edit, EditError, Filled, Kept, Mark, Place, Staged, Wanted};
-use crate::profile::interbus::{Direction, Edge, Image, Names, Parameters};
+use super::{Differs, Edit, EditError, Kept, Mark, Place, Staged, Wanted};
+use crate::profile::interbus::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::protocol::interbus::{Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift};
 
 fn parameters(steps: u32, revolutions: u32) -> Parameters {

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 use crate::app::interbus::cams::{Chart, pulled};
-use crate::app::interbus::staged::{Edit, Filled, Staged};
-use crate::profile::interbus::{Direction, Edge, Image, Names, Parameters};
+use crate::app::interbus::staged::{Edit, Staged};
+use crate::profile::interbus::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber, Value};
 
 /// Steps of one session.
