@@ -16,6 +16,8 @@ use crate::units::Moment;
 
 /// An echo or a value stands when it came in so many cycles, one after the other (reference 4).
 const STANDS: u32 = 2;
+/// A reply that is lost can take all the patience: an answer has so many cycles at least, an old word among them.
+const LEAST: u32 = STANDS + 2;
 /// A word that may be the answer to the one before stands after so many.
 const STAYS: u32 = 20;
 /// The words of an encoder at work, without anything beside it: also the echo of cam 0's start at 0.
@@ -272,15 +274,16 @@ impl<'a> Master<'a> {
         mut judge: impl FnMut(u32, u32) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
-        let (mut last, mut same) = (None, 0);
+        let (mut last, mut same, mut cycles) = (None, 0, 0);
         loop {
             let word = self.cycle(command)?;
+            cycles += 1;
             same = if last == Some(word) { same + 1 } else { 1 };
             last = Some(word);
             if let Some(ended) = judge(word, same) {
                 return ended;
             }
-            if self.data.now().since(begun) >= self.patience {
+            if cycles >= LEAST && self.data.now().since(begun) >= self.patience {
                 return Err(self.too_late(command, awaited, word));
             }
         }
