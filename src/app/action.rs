@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::biss;
 use super::connect;
 use super::hiperface;
+use super::interbus;
 use super::keep::SettingsRead;
 use super::recorder::{self, Exported};
 use super::review::Permit;
@@ -23,6 +24,7 @@ use crate::protocol::ssi::Families;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
+use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;
 use crate::worker::{OpenError, Worker};
 
@@ -90,6 +92,8 @@ pub enum Action {
     Biss(SessionId, biss::Action),
     /// Something in the SSI tab, about one session.
     Ssi(SessionId, ssi::Action),
+    /// Something in the INTERBUS tab, about one session.
+    Interbus(SessionId, interbus::Action),
     /// A layout of an SSI encoder that is in no file yet.
     NewLayout,
     /// Something in the Signals tab.
@@ -130,6 +134,8 @@ pub enum Done {
     OpenedBiss(Attempt<Biss>),
     /// A link to an SSI encoder was opened, or not.
     OpenedSsi(Attempt<Ssi>),
+    /// A link to an INTERBUS encoder was opened, or not.
+    OpenedInterbus(Attempt<Interbus>),
     /// The families of SSI encoders were read, with what is wrong with those of the user's own.
     Families(Arc<Families>, Vec<StoreError>),
     /// A link was opened for a search.
@@ -196,6 +202,8 @@ pub enum Done {
     },
     /// In the SSI tab, for one session.
     Ssi(SessionId, ssi::Done),
+    /// In the INTERBUS tab, for one session.
+    Interbus(SessionId, interbus::Done),
     /// In the Signals tab.
     Signals(signals::Done),
 }
@@ -313,6 +321,20 @@ pub enum FileQuestion {
         /// A name to begin with.
         suggested: PathBuf,
     },
+    /// Which table of cams to open.
+    OpenCams {
+        /// For whom.
+        session: SessionId,
+    },
+    /// Where to write the cams as a table.
+    Cams {
+        /// Whose they are.
+        session: SessionId,
+        /// With a decimal comma instead of a point.
+        decimal_comma: bool,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
     /// Where to write a table of samples.
     Table {
         /// Whose they are.
@@ -338,9 +360,10 @@ impl FileQuestion {
             FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
             FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
             FileQuestion::Recording => &["trace", "txt"],
-            FileQuestion::Table { .. } => &["csv"],
+            FileQuestion::Table { .. } | FileQuestion::Cams { .. } => &["csv"],
             FileQuestion::Picture { .. } => &["png"],
             FileQuestion::OpenFrames { .. } => &["txt", "csv"],
+            FileQuestion::OpenCams { .. } => &["csv", "txt", "tsv"],
             FileQuestion::Frames { .. } => &["txt"],
             FileQuestion::Export { format, .. } => format.endings(),
         }
@@ -352,10 +375,12 @@ impl FileQuestion {
             FileQuestion::Open
             | FileQuestion::OpenCapture
             | FileQuestion::Recording
-            | FileQuestion::OpenFrames { .. } => None,
+            | FileQuestion::OpenFrames { .. }
+            | FileQuestion::OpenCams { .. } => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Export { suggested, .. }
             | FileQuestion::Frames { suggested, .. }
+            | FileQuestion::Cams { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),
         }

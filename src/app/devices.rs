@@ -12,6 +12,7 @@ pub use wish::Wish;
 use super::action::{Known, ReadError, ReviewAction};
 use super::biss;
 use super::hiperface;
+use super::interbus;
 use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
@@ -33,6 +34,8 @@ pub enum AnyDevice {
     Biss(Box<biss::Encoder>),
     /// An SSI encoder.
     Ssi(Box<ssi::Encoder>),
+    /// An INTERBUS encoder.
+    Interbus(Box<interbus::Encoder>),
 }
 
 /// The same for every kind.
@@ -42,6 +45,7 @@ macro_rules! each {
             AnyDevice::Hiperface($own) => $do,
             AnyDevice::Biss($own) => $do,
             AnyDevice::Ssi($own) => $do,
+            AnyDevice::Interbus($own) => $do,
         }
     };
 }
@@ -52,6 +56,7 @@ macro_rules! each_with_memory {
         match $device {
             AnyDevice::Hiperface($own) => $do,
             AnyDevice::Biss($own) => $do,
+            AnyDevice::Interbus($own) => $do,
             AnyDevice::Ssi(_) => $none,
         }
     };
@@ -64,19 +69,20 @@ impl AnyDevice {
             Tab::Hiperface => Some(AnyDevice::Hiperface(Box::new(hiperface::Encoder::at_link(id, url)))),
             Tab::Biss => Some(AnyDevice::Biss(Box::new(biss::Encoder::at_link(id, url)))),
             Tab::Ssi => Some(AnyDevice::Ssi(Box::new(ssi::Encoder::at_link(id, url, services)))),
+            Tab::Interbus => Some(AnyDevice::Interbus(Box::new(interbus::Encoder::at_link(id, url)))),
             Tab::Signals => None,
         }
     }
 
-    /// A profile; `None` of a kind that no tab shows.
+    /// A profile.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Option<Self> {
-        Some(match &document.body {
+    ) -> Self {
+        match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -85,8 +91,10 @@ impl AnyDevice {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
             Body::Ssi(_) => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
-            Body::Interbus(_) => return None,
-        })
+            Body::Interbus(_) => {
+                AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
+            }
+        }
     }
 
     /// Its number in the studio.
@@ -100,6 +108,7 @@ impl AnyDevice {
             AnyDevice::Hiperface(_) => Tab::Hiperface,
             AnyDevice::Biss(_) => Tab::Biss,
             AnyDevice::Ssi(_) => Tab::Ssi,
+            AnyDevice::Interbus(_) => Tab::Interbus,
         }
     }
 
@@ -187,7 +196,7 @@ impl AnyDevice {
     /// Its positions can come as a stream, thousands a second.
     pub fn streams(&self) -> bool {
         match self {
-            AnyDevice::Hiperface(_) => false,
+            AnyDevice::Hiperface(_) | AnyDevice::Interbus(_) => false,
             AnyDevice::Biss(own) => own.streams(),
             // There is always an adapter.
             AnyDevice::Ssi(_) => true,
@@ -402,5 +411,14 @@ impl AnyDevice {
 
     pub(super) fn ssi_mut(&mut self) -> Option<&mut ssi::Encoder> {
         if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
+    }
+
+    /// As an INTERBUS encoder.
+    pub fn interbus(&self) -> Option<&interbus::Encoder> {
+        if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
+    }
+
+    pub(super) fn interbus_mut(&mut self) -> Option<&mut interbus::Encoder> {
+        if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
     }
 }

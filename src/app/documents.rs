@@ -26,11 +26,7 @@ impl Studio {
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(path, key, *document));
                 } else {
-                    let device = AnyDevice::in_file(id, (path.clone(), key), *document, known, &mut self.services);
-                    let Some(device) = device else {
-                        let text = Text::new("profile.not_shown").with("path", path.display());
-                        return self.services.tell(Severity::Error, vec![text], None);
-                    };
+                    let device = AnyDevice::in_file(id, (path, key), *document, known, &mut self.services);
                     self.devices.push(device);
                 }
                 if let Some(tab) = self.device(id).map(AnyDevice::tab) {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
 use super::closing::MUCH;
 use super::connect;
+use super::interbus;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
 use super::ssi;
@@ -35,6 +36,12 @@ impl Studio {
             FileQuestion::Frames { session, .. } => self.act(Action::Ssi(session, ssi::Action::SaveFrames(path))),
             FileQuestion::Export { session, format, .. } => {
                 self.act(Action::Ssi(session, ssi::Action::Export(format, path)));
+            }
+            FileQuestion::OpenCams { session } => {
+                self.act(Action::Interbus(session, interbus::Action::OpenTable(path)));
+            }
+            FileQuestion::Cams { session, decimal_comma, .. } => {
+                self.act(Action::Interbus(session, interbus::Action::SaveTable { path, decimal_comma }));
             }
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {

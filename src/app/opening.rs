@@ -13,6 +13,7 @@ use super::{AnyDevice, Severity, Text, explain, ssi};
 use crate::link::{LinkUrl, TraceEntry};
 use crate::worker::biss::Biss;
 use crate::worker::hiperface::Hiperface;
+use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;
 use crate::worker::{Ring, Session, Worker};
 
@@ -110,6 +111,7 @@ impl Studio {
                     move |session: &mut Session<Ssi>| asking.into_iter().for_each(|own| session.ask_like(own));
                 self.open_task(url, earlier, prepare, opened(id, attempt))
             }
+            Tab::Interbus => self.open_task(url, earlier, |_: &mut Session<Interbus>| (), opened(id, attempt)),
             // No device is shown there.
             Tab::Signals => return,
         };

@@ -17,6 +17,7 @@ use crate::protocol::ssi::Families;
 use crate::store::{Store, StoreError};
 use crate::worker::biss::{self, Biss};
 use crate::worker::hiperface::{self, Hiperface};
+use crate::worker::interbus::{self, Interbus};
 use crate::worker::ssi::{self, Ssi};
 use crate::worker::{JobId, OpenError, Session};
 
@@ -34,6 +35,8 @@ pub struct World {
     pub open_biss: Opener<Biss>,
     /// Opens links to SSI encoders.
     pub open_ssi: Opener<Ssi>,
+    /// Opens links to INTERBUS encoders.
+    pub open_interbus: Opener<Interbus>,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -52,6 +55,7 @@ impl World {
             open_hiperface: Arc::new(hiperface::open),
             open_biss: Arc::new(biss::open),
             open_ssi: Arc::new(ssi::open),
+            open_interbus: Arc::new(interbus::open),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),

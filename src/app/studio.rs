@@ -113,7 +113,7 @@ impl Studio {
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
                     Tab::Signals => FileQuestion::OpenCapture,
-                    Tab::Hiperface | Tab::Biss | Tab::Ssi => FileQuestion::Open,
+                    Tab::Hiperface | Tab::Biss | Tab::Ssi | Tab::Interbus => FileQuestion::Open,
                 });
             }
             Action::Open(path) if is_capture(&path) => {
@@ -137,6 +137,7 @@ impl Studio {
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Biss(id, action) => self.act_biss(id, action),
             Action::Ssi(id, action) => self.act_ssi(id, action),
+            Action::Interbus(id, action) => self.act_interbus(id, action),
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -320,6 +321,10 @@ impl Studio {
             Done::OpenedSsi(attempt) => self.opened(attempt, |studio, id, opened| {
                 studio.with_ssi(id, |encoder, services| encoder.connect(opened, services));
             }),
+            Done::OpenedInterbus(attempt) => self.opened(attempt, |studio, id, opened| {
+                studio.with_interbus(id, |encoder, services| encoder.connect(opened, services));
+            }),
+            Done::Interbus(id, done) => self.with_interbus(id, |encoder, services| encoder.done(done, services)),
             Done::Families(families, broken) => self.take_families(families, &broken),
             Done::Ssi(id, done) => self.with_ssi(id, |encoder, services| encoder.done(done, services)),
             Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {

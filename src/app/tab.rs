@@ -1,8 +1,8 @@
 //! The tabs of the window.
 
-use super::connect::{BissForm, SsiForm};
+use super::connect::{BissForm, InterbusForm, SsiForm};
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, biss, hiperface, ssi};
+use crate::worker::{OpenError, biss, hiperface, interbus, ssi};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -14,13 +14,15 @@ pub enum Tab {
     Biss,
     /// SSI encoders and their frames.
     Ssi,
+    /// INTERBUS encoders and their cams.
+    Interbus,
     /// Captures of sine and cosine, whatever encoder they are from.
     Signals,
 }
 
 impl Tab {
     /// The tabs that show devices.
-    pub const DEVICES: [Tab; 3] = [Tab::Hiperface, Tab::Biss, Tab::Ssi];
+    pub const DEVICES: [Tab; 4] = [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus];
 
     /// The name of its bus, the same in every language; `None` for a tab that shows no device.
     pub fn bus(self) -> Option<&'static str> {
@@ -28,6 +30,7 @@ impl Tab {
             Tab::Hiperface => Some("HIPERFACE"),
             Tab::Biss => Some("BiSS"),
             Tab::Ssi => Some("SSI"),
+            Tab::Interbus => Some("INTERBUS"),
             Tab::Signals => None,
         }
     }
@@ -39,6 +42,7 @@ impl Tab {
         match self {
             Tab::Biss => biss::check(url),
             Tab::Ssi => ssi::check(url),
+            Tab::Interbus => interbus::check(url),
             Tab::Hiperface | Tab::Signals => hiperface::check(url),
         }
     }
@@ -48,6 +52,7 @@ impl Tab {
         match self {
             Tab::Biss => BissForm::usual(),
             Tab::Ssi => SsiForm::usual(),
+            Tab::Interbus => InterbusForm::usual(),
             Tab::Hiperface | Tab::Signals => LinkUrl::sim(),
         }
     }

@@ -11,6 +11,8 @@ mod foot;
 mod header;
 mod hiperface;
 pub mod icons;
+mod interbus;
+mod navigation;
 mod panels;
 pub mod plot;
 mod review;
@@ -32,6 +34,7 @@ pub fn pages(tab: crate::app::Tab) -> Vec<&'static str> {
         crate::app::Tab::Hiperface => hiperface::Page::ALL.into_iter().map(hiperface::Page::word).collect(),
         crate::app::Tab::Biss => biss::Page::ALL.into_iter().map(biss::Page::word).collect(),
         crate::app::Tab::Ssi => ssi::Page::ALL.into_iter().map(ssi::Page::word).collect(),
+        crate::app::Tab::Interbus => interbus::Page::ALL.into_iter().map(interbus::Page::word).collect(),
         crate::app::Tab::Signals => signals::Page::ALL.into_iter().map(signals::Page::word).collect(),
     }
 }

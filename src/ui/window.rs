@@ -8,8 +8,8 @@ use egui::{Key, Modifiers, Panel, Ui};
 
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
-use super::hiperface::{self, Page};
-use super::{Skin, biss, header, icons, review, signals, ssi};
+use super::navigation::navigation_ui;
+use super::{Skin, biss, header, hiperface, interbus, review, signals, ssi};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -22,6 +22,8 @@ pub struct Views {
     biss: BTreeMap<SessionId, biss::View>,
     /// The SSI tab, for each session.
     ssi: BTreeMap<SessionId, ssi::View>,
+    /// The INTERBUS tab, for each session.
+    interbus: BTreeMap<SessionId, interbus::View>,
     pub(super) signals: signals::View,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
@@ -53,6 +55,13 @@ impl Views {
     /// The SSI tab of a session.
     pub(super) fn ssi(&mut self, encoder: &crate::app::ssi::Encoder) -> &mut ssi::View {
         self.ssi.entry(encoder.session.id).or_default()
+    }
+
+    /// The INTERBUS tab of a session.
+    pub(super) fn interbus(&mut self, encoder: &crate::app::interbus::Encoder) -> &mut interbus::View {
+        let view = self.interbus.entry(encoder.session.id).or_default();
+        view.follow(encoder);
+        view
     }
 }
 
@@ -139,7 +148,7 @@ impl Window {
             .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
-                navigation(ui, skin, studio, views, docks, actions);
+                navigation_ui(ui, skin, studio, views, docks, actions);
             });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
             docks.ui(ui, skin, studio, views, actions);
@@ -174,6 +183,10 @@ impl Window {
             }
             Tab::Ssi => {
                 let page = self.studio.ssi().map(|encoder| self.views.ssi(encoder).page).unwrap_or_default();
+                (page.word(), page.help())
+            }
+            Tab::Interbus => {
+                let page = self.studio.interbus().map(|own| self.views.interbus(own).page).unwrap_or_default();
                 (page.word(), page.help())
             }
             Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
@@ -233,6 +246,7 @@ impl Window {
             (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
             (Modifiers::COMMAND, Key::Num2, Action::ShowTab(Tab::Biss)),
             (Modifiers::COMMAND, Key::Num3, Action::ShowTab(Tab::Ssi)),
+            (Modifiers::COMMAND, Key::Num4, Action::ShowTab(Tab::Interbus)),
             (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
@@ -240,7 +254,7 @@ impl Window {
             keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
             // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
-            if device.tab() == Tab::Ssi && !ctx.text_edit_focused() {
+            if matches!(device.tab(), Tab::Ssi | Tab::Interbus) && !ctx.text_edit_focused() {
                 keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
                 keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
                 keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));
@@ -290,6 +304,8 @@ impl Window {
         }
         self.views.hiperface.retain(|id, _| self.studio.device(*id).is_some());
         self.views.biss.retain(|id, _| self.studio.device(*id).is_some());
+        self.views.ssi.retain(|id, _| self.studio.device(*id).is_some());
+        self.views.interbus.retain(|id, _| self.studio.device(*id).is_some());
         if self.studio.is_live() {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
@@ -309,105 +325,4 @@ fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     let bar = egui::Rect::from_min_size(egui::pos2(left, screen.top()), egui::vec2(width, 3.0));
     ui.ctx().debug_painter().rect_filled(bar, 0.0, skin.palette.accent);
     ui.ctx().request_repaint_after(Duration::from_millis(33));
-}
-
-/// The tabs, with the pages of the open one.
-fn navigation(
-    ui: &mut Ui,
-    skin: &Skin,
-    studio: &Studio,
-    views: &mut Views,
-    docks: &mut Docks,
-    actions: &mut Vec<Action>,
-) {
-    ui.spacing_mut().item_spacing.y = skin.space.inside;
-    for tab in Tab::DEVICES.into_iter().chain([Tab::Signals]) {
-        let word = tab.bus().map_or_else(|| skin.say("tab.signals"), str::to_owned);
-        let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
-        if entry(ui, false, text, &word).clicked() {
-            views.plot.make_small();
-            actions.push(Action::ShowTab(tab));
-        }
-        match tab {
-            _ if tab != studio.settings.tab => {}
-            Tab::Hiperface => hiperface_pages(ui, skin, studio, views),
-            Tab::Biss => biss_pages(ui, skin, studio, views),
-            Tab::Ssi => ssi_pages(ui, skin, studio, views),
-            Tab::Signals => signals_pages(ui, skin, views),
-        }
-    }
-    // At the foot, so that it is drawn wherever the rest ends.
-    let foot = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
-    let mut foot = ui.new_child(egui::UiBuilder::new().max_rect(foot));
-    if super::controls::icon_button(&mut foot, true, icons::ARROWS_CLOCKWISE, &skin.say("shell.reset_layout")).clicked()
-    {
-        docks.reset();
-    }
-}
-
-fn hiperface_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
-    let Some(encoder) = studio.hiperface() else { return };
-    let shown = views.hiperface(encoder).page;
-    for page in Page::ALL {
-        let word = skin.say(page.word());
-        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
-        let edited = page == Page::Memory && encoder.staged.is_dirty();
-        if edited {
-            text = text.color(skin.palette.staged);
-        }
-        if entry(ui, shown == page, text, &word).clicked() {
-            views.plot.make_small();
-            views.hiperface(encoder).page = page;
-        }
-    }
-}
-
-fn biss_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
-    let Some(encoder) = studio.biss() else { return };
-    let shown = views.biss(encoder).page;
-    for page in biss::Page::ALL {
-        let word = skin.say(page.word());
-        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
-        if page == biss::Page::Data && encoder.is_dirty() {
-            text = text.color(skin.palette.staged);
-        }
-        if entry(ui, shown == page, text, &word).clicked() {
-            views.plot.make_small();
-            views.biss(encoder).page = page;
-        }
-    }
-}
-
-fn ssi_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
-    let Some(encoder) = studio.ssi() else { return };
-    let shown = views.ssi(encoder).page;
-    for page in ssi::Page::ALL {
-        let word = skin.say(page.word());
-        let mut text = egui::RichText::new(format!("{}  {word}", page.icon()));
-        if page == ssi::Page::Frame && encoder.is_dirty() {
-            text = text.color(skin.palette.staged);
-        }
-        if entry(ui, shown == page, text, &word).clicked() {
-            views.plot.make_small();
-            views.ssi(encoder).page = page;
-        }
-    }
-}
-
-fn signals_pages(ui: &mut Ui, skin: &Skin, views: &mut Views) {
-    for page in signals::Page::ALL {
-        let word = skin.say(page.word());
-        let text = egui::RichText::new(format!("{}  {word}", page.icon()));
-        if entry(ui, views.signals.page == page, text, &word).clicked() {
-            views.plot.make_small();
-            views.signals.page = page;
-        }
-    }
-}
-
-/// An entry of the navigation, as wide as it.
-fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
-    let size = egui::vec2(ui.available_width(), 32.0);
-    let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);
-    super::controls::name(ui.add(button.min_size(size)), true, word)
 }

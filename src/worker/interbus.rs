@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, InterbusJob, InterbusOutput, JobError, Prepared, Remark, WEAR_ASK,
-    WEAR_LIMIT, WEAR_WARNING, Wear, device_key,
+    WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key,
 };
 pub use open::{check, open};
 

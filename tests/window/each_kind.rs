@@ -8,7 +8,7 @@ use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, ReviewAction, Severity, Studio, Tab, Wish};
 
-use crate::support::{ADAPTER, Desk, KIT, PORT};
+use crate::support::{ADAPTER, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
 
 /// A kind of device at a cable.
@@ -88,8 +88,12 @@ fn review(desk: &mut Desk, action: ReviewAction) {
 #[track_caller]
 fn until_ready(desk: &mut Desk) {
     desk.until("it is read", |studio| {
-        // There are no backups of what is never written.
-        let is_read = |own: &AnyDevice| own.backups().is_some() || own.ssi().is_some_and(|own| own.last().is_some());
+        // There are no backups of what is never written, nor of what may not be disturbed yet.
+        let has_word = |own: &AnyDevice| {
+            let ssi = own.ssi().is_some_and(|own| own.last().is_some());
+            ssi || own.interbus().is_some_and(|own| own.record.last().is_some())
+        };
+        let is_read = |own: &AnyDevice| own.backups().is_some() || has_word(own);
         let is_ready = |own: &AnyDevice| own.is_ready() && *own.phase() == Phase::Connected && is_read(own);
         shown(studio).is_some_and(is_ready)
     });
@@ -294,6 +298,9 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
         (Tab::Biss, "bridge:tcp:adapter:5000".to_owned()),
         (Tab::Ssi, "sim:".to_owned()),
         (Tab::Ssi, "sim:?ssi=ahm36,code=gray&rpm=6".to_owned()),
+        (Tab::Interbus, "sim:?rpm=6&cams=demo".to_owned()),
+        (Tab::Interbus, format!("modbus:{GATE}")),
+        (Tab::Interbus, format!("modbus:{GATE}?unit=1&handshake=500")),
     ];
     let mut desk = Desk::fresh("");
     for (tab, link) in links {
@@ -306,6 +313,7 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
                 let form = match tab {
                     Tab::Biss => Connect::EditBiss(Box::new(dialog.biss.clone())),
                     Tab::Ssi => Connect::EditSsi(Box::new(dialog.ssi.clone())),
+                    Tab::Interbus => Connect::EditInterbus(Box::new(dialog.interbus.clone())),
                     _ => Connect::Edit(Box::new(dialog.form.clone())),
                 };
                 desk.connect(form);

@@ -13,6 +13,7 @@ mod commutation;
 mod connecting;
 mod drafts;
 mod each_kind;
+mod interbus;
 mod leaving;
 mod losing;
 mod monkey;

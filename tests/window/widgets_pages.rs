@@ -4,12 +4,13 @@ use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::interbus::Action as Interbus;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Field, Input};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab, Theme};
 
 use crate::screen::Screen;
-use crate::support::{HANGING, Outside, PORT};
+use crate::support::{GATE, HANGING, Outside, PORT};
 
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
@@ -71,6 +72,28 @@ fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
         screen.until("it is checked", |studio| studio.ssi().unwrap().check.is_some());
         look_at_everything(&mut screen, size);
     }
+}
+
+#[test]
+fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
+    for (link, size) in [("sim:?steps=3600&revolutions=1&cams=demo&rpm=6", LARGE), ("sim:?program=3&cams=demo", SMALL)]
+    {
+        let mut screen = Screen::opened_in(Tab::Interbus, link, size);
+        screen.until("it is read", |studio| {
+            studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+        });
+        let id = screen.studio().interbus().unwrap().session.id;
+        screen.act(Action::Interbus(id, Interbus::Check));
+        screen.until("it is checked", |studio| studio.interbus().unwrap().check.is_some());
+        look_at_everything(&mut screen, size);
+    }
+}
+
+#[test]
+fn every_page_is_drawn_of_an_interbus_encoder_that_may_not_be_disturbed() {
+    let mut screen = Screen::opened_in(Tab::Interbus, &format!("modbus:{GATE}"), SMALL);
+    screen.until("a word is read", |studio| studio.interbus().is_some_and(|own| own.record.last().is_some()));
+    look_at_everything(&mut screen, SMALL);
 }
 
 #[test]

@@ -6,7 +6,8 @@ use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, V
 use encoder_studio::sim::biss::Port;
 use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::sim::hiperface::Bus;
-use encoder_studio::sim::{ByteDevice, biss, bridge, hiperface};
+use encoder_studio::sim::interbus::Gateway;
+use encoder_studio::sim::{ByteDevice, biss, bridge, hiperface, interbus};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;
@@ -28,6 +29,8 @@ enum End {
     Pin(Arc<Mutex<Port>>),
     /// An adapter on a BiSS encoder's bus.
     Adapter(Arc<Mutex<Adapter>>),
+    /// A gateway before an INTERBUS encoder.
+    Gateway(Arc<Mutex<Gateway>>),
 }
 
 impl End {
@@ -36,6 +39,7 @@ impl End {
             End::Hiperface(bus) => bus.clone(),
             End::Pin(port) => port.clone(),
             End::Adapter(adapter) => adapter.clone(),
+            End::Gateway(gateway) => gateway.clone(),
         }
     }
 
@@ -45,6 +49,8 @@ impl End {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
+            // Behind number, protocol, length and unit.
+            End::Gateway(_) => frame.get(7).copied(),
         }
     }
 }
@@ -70,6 +76,11 @@ impl Wire {
     /// To the configuration pin of a BiSS encoder.
     pub(crate) fn to_pin(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Pin(Arc::new(Mutex::new(port(query)))))
+    }
+
+    /// To a gateway before an INTERBUS encoder.
+    pub(crate) fn to_gateway(target: &str, query: &str) -> Arc<Self> {
+        Self::to(target, End::Gateway(Arc::new(Mutex::new(gateway(query)))))
     }
 
     /// To an adapter on the bus of a BiSS encoder.
@@ -111,6 +122,7 @@ impl Wire {
         match &self.end {
             End::Hiperface(own) => *own.lock().unwrap() = bus(query),
             End::Pin(own) => *own.lock().unwrap() = port(query),
+            End::Gateway(own) => *own.lock().unwrap() = gateway(query),
             End::Adapter(_) => panic!("the encoder is behind it"),
         }
     }
@@ -243,6 +255,10 @@ fn pairs(query: &str) -> Vec<(String, String)> {
 
 fn bus(query: &str) -> Bus {
     Bus::new(&hiperface::Config::from_pairs(&pairs(query)).unwrap())
+}
+
+fn gateway(query: &str) -> Gateway {
+    Gateway::new(&interbus::Config::from_pairs(&pairs(query)).unwrap())
 }
 
 fn port(query: &str) -> Port {

@@ -39,12 +39,14 @@ impl Studio {
             Action::Edit(form) => self.edit(|connect| (connect.form, connect.typed) = (*form, None)),
             Action::EditBiss(form) => self.edit(|connect| (connect.biss, connect.typed) = (*form, None)),
             Action::EditSsi(form) => self.edit(|connect| (connect.ssi, connect.typed) = (*form, None)),
+            Action::EditInterbus(form) => self.edit(|connect| (connect.interbus, connect.typed) = (*form, None)),
             Action::Use(link) => self.edit(|connect| connect.take(link)),
             Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
             Action::Recording(path) => self.edit(|connect| {
                 let path = path.display().to_string();
                 (connect.form.file, connect.biss.file) = (path.clone(), path.clone());
-                (connect.ssi.file, connect.typed) = (path, None);
+                (connect.ssi.file, connect.interbus.file) = (path.clone(), path);
+                connect.typed = None;
             }),
             Action::Connect => {
                 let Some(connect) = &mut self.connect else { return };

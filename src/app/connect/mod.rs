@@ -4,12 +4,14 @@
 mod act;
 mod biss_form;
 mod form;
+mod interbus_form;
 mod ports;
 mod ssi_form;
 mod target;
 
 pub use biss_form::{BissForm, BissWay};
 pub use form::{LinkForm, LinkKind};
+pub use interbus_form::{InterbusForm, InterbusWay};
 pub use ports::{Offer, offered_ports};
 pub use ssi_form::{SsiForm, SsiWay};
 pub use target::is_missing;
@@ -42,6 +44,8 @@ pub enum Action {
     EditBiss(Box<BissForm>),
     /// The form for an SSI encoder was edited.
     EditSsi(Box<SsiForm>),
+    /// The form for an INTERBUS encoder was edited.
+    EditInterbus(Box<InterbusForm>),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
     /// Ask for a recording.
@@ -68,6 +72,8 @@ pub struct Connect {
     pub biss: BissForm,
     /// The link to an SSI encoder as a form.
     pub ssi: SsiForm,
+    /// The link to an INTERBUS encoder as a form.
+    pub interbus: InterbusForm,
     /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
     pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
@@ -100,7 +106,8 @@ impl Connect {
         let form = LinkForm::from_url(&last(Tab::Hiperface).unwrap_or_else(LinkUrl::sim));
         let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
         let ssi = SsiForm::from_url(&last(Tab::Ssi).unwrap_or_else(SsiForm::usual));
-        Connect { device, form, biss, ssi, typed: None, ports: None, problem: None, search: None }
+        let interbus = InterbusForm::from_url(&last(Tab::Interbus).unwrap_or_else(InterbusForm::usual));
+        Connect { device, form, biss, ssi, interbus, typed: None, ports: None, problem: None, search: None }
     }
 
     /// The link that was typed, else the one that the form stands for.
@@ -113,6 +120,7 @@ impl Connect {
             None => match self.device {
                 Tab::Biss => self.biss.url(),
                 Tab::Ssi => self.ssi.url(),
+                Tab::Interbus => self.interbus.url(),
                 Tab::Hiperface | Tab::Signals => self.form.url(),
             },
         }
@@ -131,6 +139,7 @@ impl Connect {
             match self.device {
                 Tab::Biss => self.biss = BissForm::from_url(&url),
                 Tab::Ssi => self.ssi = SsiForm::from_url(&url),
+                Tab::Interbus => self.interbus = InterbusForm::from_url(&url),
                 Tab::Hiperface | Tab::Signals => self.form = LinkForm::from_url(&url),
             }
         }

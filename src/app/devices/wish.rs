@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::app::{biss, hiperface, ssi};
+use crate::app::{biss, hiperface, interbus, ssi};
 
 /// What can be wished of every device.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,6 +61,7 @@ impl AnyDevice {
             AnyDevice::Hiperface(device) => Action::Hiperface(device.session.id, own!(hiperface, wish)),
             AnyDevice::Biss(device) => Action::Biss(device.session.id, own!(biss, wish)),
             AnyDevice::Ssi(device) => Action::Ssi(device.session.id, own!(ssi, wish)),
+            AnyDevice::Interbus(device) => Action::Interbus(device.session.id, own!(interbus, wish)),
         }
     }
 }

@@ -6,7 +6,7 @@ mod item;
 mod write;
 
 pub use check::check;
-pub use item::{direction, parameter, startup};
+pub use item::{direction, parameter, read_out, startup};
 pub use write::{change, op, plan, wear, weight, written};
 
 use super::{link, plain};

@@ -94,6 +94,8 @@ pub struct Session<D: Kind> {
     pub backups: Option<Result<Vec<Backup>, Text>>,
     /// Writes of this device that the logbook knows, or why it does not tell.
     pub writes: Option<Result<Vec<Entry>, Text>>,
+    /// Write cycles that the logbook has seen of this device; `None` where it does not tell, or was not asked.
+    pub cycles: Option<u64>,
     /// Nothing has been read since the link was opened.
     pub(in crate::app) just_connected: bool,
     /// Where the profile goes that is being read.
@@ -134,6 +136,7 @@ impl<D: Kind> Session<D> {
             trace: TraceLog::default(),
             backups: None,
             writes: None,
+            cycles: None,
             just_connected: false,
             save_to: None,
         }
@@ -396,6 +399,7 @@ impl<D: Kind> Session<D> {
     /// Takes the lists of backups and writes.
     pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
+        self.cycles = listed.cycles;
         self.writes = Some(
             listed
                 .writes
@@ -410,6 +414,8 @@ pub struct Listed {
     pub backups: Result<Vec<Backup>, FileError>,
     /// Writes, the newest first, or why the logbook does not tell.
     pub writes: Result<Vec<Entry>, LogbookError>,
+    /// Write cycles in all; `None` where the logbook does not tell.
+    pub cycles: Option<u64>,
 }
 
 impl Listed {
@@ -419,10 +425,13 @@ impl Listed {
     /// Asks the disk.
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list(&key.kind, &key.serial_number);
-        let writes = match store.logbook_path() {
-            path if !path.exists() => Ok(Vec::new()),
-            path => Logbook::open(&path).and_then(|logbook| logbook.history(key, Self::WRITES)),
+        let (writes, cycles) = match store.logbook_path() {
+            path if !path.exists() => (Ok(Vec::new()), Some(0)),
+            path => match Logbook::open(&path) {
+                Ok(logbook) => (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok()),
+                Err(error) => (Err(error), None),
+            },
         };
-        Listed { backups, writes }
+        Listed { backups, writes, cycles }
     }
 }

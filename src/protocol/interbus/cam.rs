@@ -61,6 +61,8 @@ impl CamNumber {
 impl ProgramNumber {
     /// How many there are.
     pub const COUNT: usize = 8;
+    /// 1.
+    pub const FIRST: ProgramNumber = ProgramNumber(1);
 
     /// All of them, rising.
     pub fn all() -> impl Iterator<Item = ProgramNumber> {

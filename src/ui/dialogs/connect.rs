@@ -2,6 +2,7 @@
 //! settings nobody remembers.
 
 mod biss;
+mod interbus;
 mod ssi;
 
 use std::time::Duration;
@@ -49,6 +50,7 @@ pub(in crate::ui) fn connect_ui(
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
     let (mut form, mut biss, mut ssi) = (dialog.form.clone(), dialog.biss.clone(), dialog.ssi.clone());
+    let mut interbus = dialog.interbus.clone();
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
             ui.label(skin.heading(skin.say("connect.title")));
@@ -62,6 +64,7 @@ pub(in crate::ui) fn connect_ui(
             match dialog.device {
                 Tab::Biss => biss::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
                 Tab::Ssi => ssi::form_ui(ui, skin, dialog, &mut ssi, &mut view.more, actions),
+                Tab::Interbus => interbus::form_ui(ui, skin, &mut interbus, &mut view.more, actions),
                 Tab::Hiperface | Tab::Signals => hiperface(ui, skin, dialog, &mut form, view, actions),
             }
         });
@@ -87,6 +90,9 @@ pub(in crate::ui) fn connect_ui(
     }
     if biss != dialog.biss {
         actions.insert(0, Action::Connect(Connect::EditBiss(Box::new(biss))));
+    }
+    if interbus != dialog.interbus {
+        actions.insert(0, Action::Connect(Connect::EditInterbus(Box::new(interbus))));
     }
     if ssi != dialog.ssi {
         actions.insert(0, Action::Connect(Connect::EditSsi(Box::new(ssi))));
@@ -218,11 +224,16 @@ fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, port: &mut String, actions:
 }
 
 fn network(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String) {
+    place(ui, skin, host, port, "4001");
+    ui.label(skin.caption(skin.say("connect.tcp_words")));
+}
+
+/// Host and port.
+fn place(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String, usual: &str) {
     entry(ui, skin, &skin.say("connect.host"), |ui| {
         text_entry(ui, host, 220.0, &skin.say("connect.host"), "192.168.0.7");
-        text_entry(ui, port, 72.0, &skin.say("connect.tcp_port"), "4001");
+        text_entry(ui, port, 72.0, &skin.say("connect.tcp_port"), usual);
     });
-    ui.label(skin.caption(skin.say("connect.tcp_words")));
 }
 
 fn recording(ui: &mut Ui, skin: &Skin, file: &mut String, actions: &mut Vec<Action>) {

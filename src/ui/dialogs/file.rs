@@ -71,7 +71,7 @@ fn kind(question: &FileQuestion) -> &'static str {
         FileQuestion::Recording => "file.recordings",
         FileQuestion::OpenFrames { .. } | FileQuestion::Frames { .. } => "file.frames",
         FileQuestion::Export { format, .. } => format.word(),
-        FileQuestion::Table { .. } => "file.tables",
+        FileQuestion::Table { .. } | FileQuestion::OpenCams { .. } | FileQuestion::Cams { .. } => "file.tables",
         FileQuestion::Picture { .. } => "file.pictures",
     }
 }
@@ -96,6 +96,8 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::OpenFrames { .. } => ("file.open_frames_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::Frames { .. } => ("file.frames_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::OpenCams { .. } => ("file.open_cams_title", "file.open", icons::FOLDER_OPEN),
+        FileQuestion::Cams { .. } => ("file.cams_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Export { .. } => ("file.export_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),

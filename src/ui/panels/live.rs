@@ -1,6 +1,7 @@
 //! The position, large, and the plot of what was recorded.
 
 mod biss;
+mod interbus;
 mod ssi;
 
 use std::time::Duration;
@@ -41,6 +42,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
         AnyDevice::Hiperface(encoder) => value(ui, skin, encoder, ink),
         AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder, ink),
         AnyDevice::Ssi(encoder) => ssi::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Interbus(encoder) => interbus::value_ui(ui, skin, encoder, ink),
     }
     if paused {
         ui.label(skin.caption(skin.say("live.paused_by_job")));
@@ -169,8 +171,8 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
         match device {
             AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
             AnyDevice::Biss(encoder) => biss::watch_menu(ui, skin, encoder, actions),
-            // It has no other values.
-            AnyDevice::Ssi(_) => {}
+            // They have no other values beside the position.
+            AnyDevice::Ssi(_) | AnyDevice::Interbus(_) => {}
         }
         if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
             views.rate = rate;

@@ -18,6 +18,8 @@ use crate::worker::NotBegun;
 pub const WEAR_WARNING: u64 = 150;
 /// Stores beyond which somebody has to say once more that a write is wanted.
 pub const WEAR_ASK: u64 = 200;
+/// Stores that the maker guarantees at the very most.
+pub const WEAR_LAST: u64 = 500;
 /// Stores at which the EEPROM counts as worn.
 pub const WEAR_LIMIT: u64 = 450;
 

@@ -61,7 +61,7 @@ pub fn startup(mode: StartupMode) -> Text {
 }
 
 /// What is read out.
-pub(super) fn read_out(read_out: ReadOut) -> Text {
+pub fn read_out(read_out: ReadOut) -> Text {
     match (read_out.number(), read_out.register()) {
         (_, Some(register)) => Text::new("ib_doing.chip").with("register", register),
         (0x0, _) => Text::new("ib_doing.serial"),

@@ -126,7 +126,8 @@ pub fn refused(error: &EditError) -> Text {
     }
 }
 
-fn gear(error: &GearError) -> Text {
+/// Why steps and turns do not go together.
+pub fn gear(error: &GearError) -> Text {
     match *error {
         GearError::Turns { turns } => Text::new("cams.gear_turns").with("turns", turns).with("most", TURNS),
         GearError::Steps { steps, turns, most } => {

@@ -1,0 +1,53 @@
+//! Edits of an encoder's parameters and cams, kept over a crash.
+
+use std::path::PathBuf;
+
+use super::encoder::Encoder;
+use super::staged::Kept;
+use crate::app::session::{Drafted, Drafting, Session};
+use crate::profile::Document;
+use crate::protocol::interbus::KIND;
+use crate::worker::interbus::Interbus;
+
+/// What is edited, each with its place.
+pub(in crate::app) type Edits = Vec<Kept>;
+
+impl Drafted for Encoder {
+    const KIND: &'static str = KIND;
+    type Device = Interbus;
+    type Edits = Edits;
+
+    fn session(&self) -> &Session<Interbus> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Interbus> {
+        &mut self.session
+    }
+
+    fn drafting(&self) -> &Drafting<Edits> {
+        &self.drafting
+    }
+
+    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
+        &mut self.drafting
+    }
+
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+
+    fn edited(&self) -> Edits {
+        self.staged.edits()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
+    }
+
+    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        let Some(profile) = document.body.interbus() else { return };
+        self.staged.saved(profile.image.clone(), profile.names.clone());
+        self.session.take_document(path, key, document);
+    }
+}

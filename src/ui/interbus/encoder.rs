@@ -1,0 +1,164 @@
+//! Who the encoder is, what it sends, and how it is wired.
+
+use egui::{RichText, Ui};
+
+use crate::app::Action;
+use crate::app::explain::interbus as explain;
+use crate::app::interbus::{Action as Interbus, Encoder, said, words};
+use crate::protocol::interbus::{ProgramNumber, ReadOutValue, StartupMode};
+use crate::sim::Motor;
+use crate::ui::check::lines_ui;
+use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, name, paragraph, row, two_columns};
+use crate::ui::{Skin, icons};
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let is_profile = encoder.profile().is_some();
+    two_columns(
+        ui,
+        skin,
+        &mut *actions,
+        |ui, actions| {
+            identity(ui, skin, encoder, actions);
+            if !is_profile {
+                ui.add_space(skin.space.groups);
+                check(ui, skin, encoder, actions);
+            }
+        },
+        |ui, actions| {
+            if is_profile {
+                wiring(ui, skin);
+                return;
+            }
+            sends(ui, skin, encoder, actions);
+            if let Some(motor) = &encoder.motor {
+                ui.add_space(skin.space.groups);
+                turning(ui, skin, encoder, motor, actions);
+            }
+        },
+    );
+    if !is_profile {
+        ui.add_space(skin.space.groups);
+        wiring(ui, skin);
+    }
+}
+
+fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let ready = encoder.session.is_readable() && (encoder.is_stopped() || encoder.profile().is_some());
+    let read = |ui: &mut Ui| {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
+            actions.push(Action::Interbus(encoder.session.id, Interbus::Read));
+        }
+    };
+    card_with(ui, skin, "encoder_card.title", read, |ui| {
+        let serial = skin.say("encoder_card.serial");
+        if let Some(survey) = &encoder.survey {
+            let identity = &survey.identity;
+            ui.label(skin.value(skin.say("ib_card.class")));
+            ui.add_space(skin.space.inside);
+            row(ui, skin, &serial, skin.mono(&identity.serial_number));
+            row(ui, skin, &skin.say("ib_card.version"), skin.mono(identity.software_version.to_string()));
+            row(ui, skin, &skin.say("ib_card.flags"), skin.words(&words::flags(identity.flags)));
+            row(ui, skin, &skin.say("ib_card.mode"), skin.words(&explain::startup(identity.mode)));
+            let range = words::range(identity.steps, identity.revolutions);
+            row(ui, skin, &skin.say("ib_card.range"), skin.words(&range));
+            let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
+            row(ui, skin, &skin.say("ib_card.time"), skin.words(&time));
+            let celsius = words::celsius(survey.temperature_tenths);
+            row(ui, skin, &skin.say("ib_card.temperature"), skin.words(&celsius));
+        } else if let Some(profile) = encoder.profile() {
+            ui.label(skin.value(skin.say("ib_card.class")));
+            ui.add_space(skin.space.inside);
+            row(ui, skin, &serial, skin.mono(&profile.identity.serial_number));
+            let parameters = &profile.image.parameters;
+            let range = words::range(parameters.steps, parameters.revolutions);
+            row(ui, skin, &skin.say("ib_card.range"), skin.words(&range));
+            let programs = profile.image.known().count();
+            row(ui, skin, &skin.say("ib_card.programs"), programs.to_string());
+        } else {
+            empty(ui, skin, &skin.say("ib_card.nothing"), None);
+        }
+    });
+}
+
+fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let run = |ui: &mut Ui| {
+        let ready = encoder.session.is_ready() && encoder.is_stopped();
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Interbus(encoder.session.id, Interbus::Check));
+        }
+    };
+    card_with(ui, skin, "check_card.title", run, |ui| {
+        lines_ui(ui, skin, encoder.check.as_deref(), "ib_check.nothing");
+    });
+}
+
+/// The word that comes, and what comes: position, speed, or the outputs of a program.
+fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    card(ui, skin, "ib_sends.title", |ui| {
+        match encoder.record.last() {
+            None => {
+                empty(ui, skin, &skin.say("ib_sends.nothing"), None);
+            }
+            Some(reading) => {
+                row(ui, skin, &skin.say("ib_sends.word"), skin.mono(format!("0x{:08X}", reading.word)));
+                let says = said::told(reading.word, &encoder.known());
+                row(ui, skin, &skin.say("ib_sends.says"), skin.words(&says));
+                if let Some(warning) = said::stray(reading.word) {
+                    paragraph(ui, RichText::new(skin.words(&warning)).color(skin.palette.warn));
+                    paragraph(ui, skin.caption(skin.say("ib_sends.swapped")));
+                }
+            }
+        }
+        ui.add_space(skin.space.inside);
+        let ready = encoder.session.is_ready() && encoder.is_stopped();
+        if encoder.record.last().is_some_and(|reading| !reading.is_valid()) {
+            paragraph(ui, skin.label(skin.say("ib_sends.left")));
+            if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
+                actions.push(Action::Interbus(encoder.session.id, Interbus::LeadBack));
+            }
+        }
+        let Some(own) = encoder.mode() else {
+            paragraph(ui, skin.caption(skin.say("ib_sends.mode_unknown")));
+            return;
+        };
+        let word = skin.say("ib_sends.mode");
+        let mut wanted = own;
+        let programs = ProgramNumber::all().map(StartupMode::Cams);
+        let usual = if own == StartupMode::K2 { StartupMode::K2 } else { StartupMode::K3 };
+        let modes = [usual, StartupMode::Velocity].into_iter().chain(programs);
+        ui.add_enabled_ui(ready, |ui| {
+            entry(ui, skin, &word, |ui| {
+                choice(ui, &word, &mut wanted, modes.map(|mode| (mode, skin.words(&explain::startup(mode)))));
+            });
+        });
+        if wanted != own {
+            actions.push(Action::Interbus(encoder.session.id, Interbus::Select(wanted)));
+        }
+        paragraph(ui, skin.caption(skin.say("ib_sends.mode_words")));
+    });
+}
+
+/// What turns the virtual encoder.
+fn turning(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
+    card(ui, skin, "motor_card.title", |ui| {
+        paragraph(ui, skin.caption(skin.say("motor_card.words")));
+        ui.horizontal_wrapped(|ui| {
+            for rpm in [-60.0, -6.0, 0.0, 6.0, 60.0] {
+                let is_own = (motor.rpm() - rpm).abs() < 1e-9;
+                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                let response = ui.add(egui::Button::selectable(is_own, &word));
+                if name(response, true, &word).clicked() {
+                    actions.push(Action::Interbus(encoder.session.id, Interbus::Turn(rpm)));
+                }
+            }
+        });
+    });
+}
+
+fn wiring(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "wiring.title", |ui| {
+        for note in ["ib_wiring.bus", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"] {
+            paragraph(ui, skin.label(skin.say(note)));
+        }
+    });
+}

@@ -1,0 +1,172 @@
+//! The INTERBUS tab by actions: what is read and when, parameters and cams beside what is wanted, a write with its review,
+//! tables of cams, and what is asked before a running machine is disturbed.
+
+use encoder_studio::app::interbus::{Action as Interbus, Edit, Encoder};
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::{Action, ReviewAction, Severity, Tab, Wish};
+use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, ReadOut, StartupMode};
+
+use crate::support::{Desk, GATE};
+
+/// An encoder that is read, with cams in it.
+const CAMS: &str = "sim:?steps=3600&revolutions=1&cams=demo";
+
+fn connected(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Interbus));
+    desk.open(link);
+    desk
+}
+
+fn read(link: &str) -> Desk {
+    let mut desk = connected(link);
+    until_read(&mut desk);
+    desk
+}
+
+#[track_caller]
+fn until_read(desk: &mut Desk) {
+    desk.until("everything is read", |studio| {
+        studio.interbus().is_some_and(|own| own.survey.is_some() && own.programs_read() == 8 && own.session.is_ready())
+    });
+    desk.settle();
+}
+
+#[track_caller]
+fn until_ready(desk: &mut Desk) {
+    desk.until("it is ready", |studio| studio.interbus().is_some_and(|own| own.session.is_ready()));
+}
+
+fn encoder(desk: &Desk) -> &Encoder {
+    desk.studio.interbus().unwrap()
+}
+
+fn act(desk: &mut Desk, action: Interbus) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Interbus(id, action));
+}
+
+fn edit(desk: &mut Desk, edit: Edit) {
+    act(desk, Interbus::Edit(Box::new(edit)));
+}
+
+fn wish(desk: &mut Desk, wish: Wish) {
+    let action = desk.studio.shown().unwrap().wish(wish);
+    desk.act(action);
+}
+
+fn program(number: u8) -> ProgramNumber {
+    ProgramNumber::new(number).unwrap()
+}
+
+fn cam(number: u8) -> CamNumber {
+    CamNumber::new(number).unwrap()
+}
+
+/// Reviews what is edited and writes it; what the plan costs.
+#[track_caller]
+fn write(desk: &mut Desk) -> String {
+    wish(desk, Wish::Review);
+    desk.until("the plan is there", |studio| {
+        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+    });
+    until_ready(desk);
+    let sheet = desk.studio.shown().unwrap().sheet().unwrap();
+    let Stage::Ready(plan) = sheet.stage else { panic!("no plan") };
+    let id = encoder(desk).session.id;
+    desk.act(Action::Review(id, ReviewAction::Write(plan)));
+    desk.until("it is written", |studio| {
+        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+    });
+    until_ready(desk);
+    desk.settle();
+    sheet.cost.unwrap().words(encoder_studio::app::Language::English)
+}
+
+#[test]
+fn a_virtual_encoder_is_read_by_itself() {
+    let desk = read(CAMS);
+    let own = encoder(&desk);
+    let parameters = own.staged.device().unwrap().parameters;
+    assert_eq!((parameters.steps, parameters.revolutions), (3600, 1));
+    assert!(own.position().is_some() && !own.is_dirty());
+    assert_eq!(own.stores(), Some(0), "reading stores nothing");
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
+    let mut desk = read(CAMS);
+    edit(&mut desk, Edit::Gear { steps: 7200, revolutions: 2 });
+    edit(&mut desk, Edit::Cam { program: program(2), cam: cam(5), start: 7000, stop: 40, on: true });
+    edit(&mut desk, Edit::Cam { program: program(2), cam: cam(6), start: 100, stop: 200, on: true });
+    assert!(encoder(&desk).edits_parameters() && encoder(&desk).edits_cams());
+    wish(&mut desk, Wish::Undo);
+    wish(&mut desk, Wish::Redo);
+    // One parameterisation and one program.
+    let cost = write(&mut desk);
+    assert!(cost.starts_with("2 EEPROM stores; this computer has seen 0"), "{cost}");
+    let own = encoder(&desk);
+    assert!(!own.is_dirty() && own.stores() == Some(2), "{:?}", own.stores());
+    let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
+    assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
+    // Refused where it stands, and nothing changes.
+    edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
+    assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
+}
+
+#[test]
+fn what_an_encoder_sends_is_chosen_and_followed() {
+    let mut desk = read(CAMS);
+    act(&mut desk, Interbus::Select(StartupMode::Cams(program(1))));
+    desk.until("outputs come", |studio| {
+        studio.interbus().unwrap().record.last().is_some_and(|reading| reading.cams().is_some())
+    });
+    until_ready(&mut desk);
+    act(&mut desk, Interbus::Select(StartupMode::Velocity));
+    desk.until("a speed comes", |studio| {
+        studio.interbus().unwrap().record.last().is_some_and(|reading| reading.rpm().is_some())
+    });
+    until_ready(&mut desk);
+    act(&mut desk, Interbus::Select(StartupMode::K3));
+    desk.until("a position comes", |studio| studio.interbus().unwrap().position().is_some());
+    until_ready(&mut desk);
+    act(&mut desk, Interbus::ReadOut(ReadOut::chip_register(5).unwrap()));
+    desk.until("it is read out", |studio| {
+        studio.interbus().unwrap().read_out(ReadOut::chip_register(5).unwrap()).is_some()
+    });
+    assert_eq!(encoder(&desk).mode(), Some(StartupMode::K3));
+    assert!(!encoder(&desk).handshake.is_empty());
+}
+
+#[test]
+fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
+    let mut desk = connected(&format!("modbus:{GATE}"));
+    desk.until("a word has come", |studio| {
+        studio.interbus().is_some_and(|own| own.record.last().is_some() && own.session.is_ready())
+    });
+    desk.settle();
+    assert!(encoder(&desk).survey.is_none() && encoder(&desk).asks_for_standstill());
+    // Function 16 writes an OUT word.
+    let sent = |desk: &Desk| desk.outside.wire(GATE).count(16);
+    assert_eq!(sent(&desk), 0, "no OUT word");
+    wish(&mut desk, Wish::Read);
+    desk.settle();
+    assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (1, 0));
+    act(&mut desk, Interbus::Stopped(true));
+    wish(&mut desk, Wish::Read);
+    desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
+    until_ready(&mut desk);
+    assert_eq!(encoder(&desk).programs_read(), 0, "another program switches outputs: only when asked");
+    act(&mut desk, Interbus::ReadPrograms(vec![program(3)]));
+    desk.until("the program is read", |studio| studio.interbus().unwrap().programs_read() == 1);
+    until_ready(&mut desk);
+    // Nobody knows after a lost connection.
+    desk.outside.wire(GATE).unplug();
+    desk.until("it is lost", |studio| matches!(studio.interbus().unwrap().session.phase, Phase::Lost(_)));
+    desk.outside.wire(GATE).plug();
+    act(&mut desk, Interbus::Reconnect);
+    until_ready(&mut desk);
+    assert!(!encoder(&desk).is_stopped());
+}
