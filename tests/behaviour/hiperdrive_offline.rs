@@ -8,7 +8,7 @@ use super::support::Bench;
 #[test]
 fn golden_words_and_process_data_are_explained() {
     let bench = Bench::new();
-    let cases: [(&[&str], &[&str]); 22] = [
+    let cases: [(&[&str], &[&str]); 24] = [
         (&["0400"], &["OUT: control word, keeps it ready: bits 10 control by PLC"]),
         (
             &["0x0439"],
@@ -35,6 +35,9 @@ fn golden_words_and_process_data_are_explained() {
             &["39 04 32 4B 00 00 FF FF 00 00 00 00 00 00 00 00"],
             &["speed 50 %, torque 75 %, target -65536 (turn -1, 0.000°"],
         ),
+        // 32 % and 100 % may be taken for the class of a CIP request.
+        (&["39 04 20 64 00 80 02 00"], &["OUT: drive 1: control word 0439", "speed 32 %, torque 100 %"]),
+        (&["0E 03 20 65 24 01 30 6B", "--direction", "in"], &["IN: drive 1: status word 030E"]),
         (&["04 79 64 64 00 02 80 00", "--order", "big"], &["control word 0479", "target 163840"]),
         (
             &["37 1A 20 03 A0 86 01 00"],

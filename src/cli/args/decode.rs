@@ -48,7 +48,7 @@ pub(in crate::cli) enum Protocol {
 /// What tells the meaning of a word, where it may have several.
 #[derive(Args)]
 pub(in crate::cli) struct Words {
-    /// interbus, hiperdrive: from the device (in) or to it (out); both are told without it.
+    /// interbus, hiperdrive: from the device (in) or to it (out); both are told without it, where both fit.
     #[arg(long, value_enum)]
     pub(in crate::cli) direction: Option<Direction>,
     /// interbus: the mode that the encoder was in; with --direction out, a word that is not legal in it is an error.

@@ -12,16 +12,21 @@ use crate::protocol::ethernet_ip::{
 
 /// A message with what it is; `None` for bytes that are none.
 pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec<String>)> {
-    let request = Request::parse(bytes).ok().filter(|request| {
-        // Anything may look like a request: one for an object begins with its class.
-        matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }))
-    });
+    let request = Request::parse(bytes).ok().filter(|request| is_request(request, device));
     if let Some(request) = request {
         return Some(("request", request_lines(&request, device)));
     }
     let reply = Reply::parse(bytes).ok()?;
     let known = reply.service.name(None).is_some() && bytes.get(1) == Some(&0);
     known.then(|| ("reply", reply_lines(&reply)))
+}
+
+/// Anything may look like a request, process data too. One goes to an object, and drives have no services of their own.
+fn is_request(request: &Request, device: Device) -> bool {
+    let class_first = matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }));
+    let whole = !request.path.0.iter().any(|segment| matches!(segment, Segment::Unknown(_)));
+    let known = device == Device::Any || request.service.name(request.class()).is_some();
+    class_first && request.path.number(LogicalKind::Instance).is_some() && whole && known
 }
 
 fn request_lines(request: &Request, device: Device) -> Vec<String> {

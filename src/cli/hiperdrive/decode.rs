@@ -68,9 +68,11 @@ fn lines(readings: &[Reading]) -> Said {
     Said { lines: readings.iter().flat_map(Reading::lines).collect(), more, data: None }
 }
 
-/// A packet, or process data by their length.
+/// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
 fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<Said, String> {
-    if let Some(said) = ethernet_ip::explain(bytes, Device::Hiperdrive) {
+    let fits = Layout::of_length(bytes.len()).next().is_some();
+    let packet = ethernet_ip::explain(bytes, Device::Hiperdrive).filter(|_| !fits || known.direction.is_none());
+    if let Some(said) = packet {
         let mut said = said?;
         if let Some((data, to_target)) = said.data.take() {
             let readings = image::cyclic(&data, to_target, known);
@@ -79,7 +81,7 @@ fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<Said, String> {
         }
         return Ok(said);
     }
-    if Layout::of_length(bytes.len()).next().is_none() {
+    if !fits {
         return Err(format!(
             "no process data (8, 16, 32, 40, 64 or 72 bytes, not {}) and no EtherNet/IP packet; a single word is written as \
              0439",

@@ -48,8 +48,9 @@ fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
     InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
-/// Process data of a cyclic packet, which tells the way itself. Nothing of a length that there is not.
+/// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
 pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<Reading> {
+    let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
             return from_drives(data, layout);

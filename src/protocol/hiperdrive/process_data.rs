@@ -216,6 +216,15 @@ impl Percent {
     }
 }
 
+impl Setpoint {
+    /// What follows speed mode and opens every connection: ready, nothing to move with, and the target where the drive
+    /// stands, so that no stale one is left.
+    pub const fn standing(actual: Actual) -> Self {
+        let none = Percent(0);
+        Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
+    }
+}
+
 impl From<Setpoint> for OutData {
     fn from(setpoint: Setpoint) -> Self {
         let Setpoint { control, speed, torque, target } = setpoint;

@@ -273,6 +273,10 @@ fn the_published_process_data_to_a_drive() {
         assert_eq!(hex(&with.emit(SINGLE)), format!("{text} {zeros}"));
         assert_eq!(with.drives[0].control(), Ok(setpoint.control));
     }
+    // Where a drive stands, nothing begins: 0400, 0 %, 100000 = 186A0h.
+    let actual = Actual { status: status(0x3E37), speed: 0, position: 100_000 };
+    let image = OutImage { drives: vec![Setpoint::standing(actual).into()], pkw: None };
+    assert_eq!(hex(&image.emit(BARE)), "00 04 00 00 A0 86 01 00");
     let big = Layout { order: ByteOrder::Big, ..BARE };
     let image = OutImage { drives: vec![setpoint(0x0479, 100, 100, 163_840).into()], pkw: None };
     assert_eq!(hex(&image.emit(big)), "04 79 64 64 00 02 80 00");
