@@ -6,7 +6,7 @@ use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran};
+use super::support::{Bench, Foreign, Ran, asked};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
@@ -240,8 +240,19 @@ fn the_stores_of_an_eeprom_are_counted() {
     let warned = write(&[]);
     assert!(warned.status == Some(0) && warned.err.contains("150th"), "{warned:?}");
     wear_to(200);
-    let asked = write(&[]);
-    assert!(asked.status == Some(0) && asked.err.contains("201") && asked.err.contains("200 only"), "{asked:?}");
+    let told = write(&[]);
+    assert!(told.status == Some(0) && told.err.contains("201") && told.err.contains("200 only"), "{told:?}");
+    // On a terminal one is asked for the plan, and beyond 200 once more.
+    encoder.requests();
+    let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
+    for no in ["n\n", "y\nn\n"] {
+        let ran = asked(&bench, &typed, no);
+        assert!(ran.status == Some(1) && ran.out.contains("nothing was written"), "{ran:?}");
+    }
+    assert!(written(&encoder).is_empty());
+    let ran = asked(&bench, &typed, "y\ny\n");
+    assert!(ran.status == Some(0) && ran.out.contains("has to stand still"), "{ran:?}");
+    assert_eq!(written(&encoder), ["W 0A000005", "STORE parameters"]);
     wear_to(449);
     encoder.requests();
     let refused = write(&[]);
