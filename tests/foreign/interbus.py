@@ -154,7 +154,7 @@ class K3:
                 self.armed = self.armed and word == 0x60000000
         elif word in (0x20400000, 0x20400001) and self.state == RUNNING:
             self.mode = 1 + (word & 1)
-        elif word >> 29 == 0:
+        elif word >> 29 == 0 and word >> 25:
             taken = UNKNOWN_CODE if self.state == READING or self.mode == 2 else self.parameter(word >> 25, word & DATA)
             self.echo(word, taken, "parameters")
 
@@ -237,7 +237,7 @@ class K3:
             elif asked in (1, 2) and cam < 8:
                 value = VALUE | program["cams"][cam][asked - 1]
             self.state, self.fixed = READING, value
-        elif word >> 29 == 0:
+        elif word >> 29 == 0 and word >> 25:
             self.echo(word, UNKNOWN_CODE, what)
 
     def value(self, number):

@@ -19,7 +19,7 @@ use std::time::Duration;
 use super::config::Config;
 use super::memory::{Eeprom, Ended, Memory, Stored};
 use super::shaft::Shaft;
-use crate::protocol::interbus::{Class, Command, Gear, Mode, Parameter, ProgramNumber, StartupMode, Value};
+use crate::protocol::interbus::{Class, Code, Command, Gear, Mode, Parameter, ProgramNumber, StartupMode, Value};
 use crate::sim::{Faults, Motor};
 use crate::units::Moment;
 
@@ -295,7 +295,7 @@ impl Encoder {
     fn wonder(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
-            (0b000, _) => self.set(now, Err(Fault::UnknownCode)),
+            (0b000, _) if Code::of_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
             (0b010 | 0b011, _) if of_cams => self.set(now, Err(Fault::UnknownCode)),
             (_, 0x2010) if of_cams => self.set(now, Err(Fault::WrongData)),
             (_, 0x2020) if of_cams => self.show(None),

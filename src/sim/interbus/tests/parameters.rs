@@ -90,7 +90,7 @@ fn codes_that_the_manual_does_not_have_are_unknown() {
         master.exchange(&[(code << 25, 0x8400_0000), (0x8000_0000, 0), (0, 0)]);
     }
     // Words that mean nothing get no reaction.
-    for word in [0x2041_0000, 0x2080_0009, 0x2040_0002, 0x2020_0000, 0xA000_0000] {
+    for word in [0x0009_2021, 0x2041_0000, 0x2080_0009, 0x2040_0002, 0x2020_0000, 0xA000_0000] {
         master.exchange(&[(word, 0), (0, 0)]);
     }
     assert_eq!(master.encoder.stores(), 3);
