@@ -34,6 +34,7 @@ mod support;
 mod texts;
 mod widgets_commutation;
 mod widgets_idle;
+mod widgets_interbus;
 mod widgets_pages;
 mod widgets_plot;
 mod widgets_ssi;

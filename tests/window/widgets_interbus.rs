@@ -1,0 +1,153 @@
+//! The cam page as a person uses it: by pointer, by key, typed and pasted; chart and table say the same.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Vec2};
+use egui_kittest::Node;
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::interbus::{Action as Interbus, Edit};
+use encoder_studio::app::{Action, Language, Tab};
+use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber};
+
+use crate::screen::Screen;
+
+/// So tall that chart and table are drawn.
+const TALL: [f32; 2] = [1280.0, 1600.0];
+
+fn program() -> ProgramNumber {
+    ProgramNumber::new(1).unwrap()
+}
+
+fn cam(number: u8) -> CamNumber {
+    CamNumber::new(number).unwrap()
+}
+
+/// The cam page of an encoder with 3600 steps a turn and cams of 450 steps in program 1.
+fn page() -> Screen {
+    let mut screen = Screen::opened_in(Tab::Interbus, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
+    screen.until("it is read", |studio| {
+        studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+    });
+    screen.click("page.cams");
+    screen
+}
+
+impl Screen {
+    fn cam(&self, number: u8) -> (u32, u32) {
+        let wanted = self.studio().interbus().unwrap().staged.wanted().unwrap();
+        let own = wanted.cam(program(), cam(number)).unwrap();
+        (own.start.get(), own.stop.get())
+    }
+
+    fn edit_cams(&mut self, edit: Edit) {
+        let id = self.studio().interbus().unwrap().session.id;
+        self.act(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+    }
+
+    fn of_role<'a>(&'a self, role: Role, label: &'a str) -> Node<'a> {
+        self.harness.get_by_role_and_label(role, label)
+    }
+
+    /// What chart and table say of an edge.
+    fn said(&self, label: &str) -> (String, String) {
+        let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
+        (value(Role::Slider), value(Role::TextInput))
+    }
+}
+
+#[test]
+fn an_edge_is_moved_in_the_chart_and_typed_in_the_table() {
+    let mut screen = page();
+    let (start, stop) = screen.cam(2);
+    assert_eq!(screen.said("Cam 2: start"), (start.to_string(), start.to_string()));
+    screen.of_role(Role::Slider, "Cam 2: start").focus();
+    screen.steps();
+    screen.key(Key::ArrowRight);
+    assert_eq!(screen.cam(2), (start + 1, stop));
+    assert_eq!(screen.said("Cam 2: start").1, (start + 1).to_string());
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    screen.steps();
+    assert_eq!(screen.cam(2), (start, stop));
+
+    screen.of_role(Role::TextInput, "Cam 2: stop").focus();
+    screen.steps();
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    screen.of_role(Role::TextInput, "Cam 2: stop").type_text("1234");
+    screen.key(Key::Enter);
+    assert_eq!((screen.cam(2), screen.said("Cam 2: stop").0), ((start, 1234), "1234".to_owned()));
+}
+
+#[test]
+fn a_drag_is_one_step() {
+    let mut screen = page();
+    let before = screen.cam(0);
+    let from = screen.of_role(Role::Slider, "Cam 0: stop").rect().center();
+    screen.harness.drag_at(from);
+    screen.steps();
+    for part in [20.0, 40.0, 60.0, 80.0] {
+        screen.harness.hover_at(from + Vec2::new(part, 0.0));
+        screen.steps();
+    }
+    assert_eq!(screen.cam(0), before, "it is shown, and not yet so");
+    screen.harness.drop_at(from + Vec2::new(80.0, 0.0));
+    screen.steps();
+    let after = screen.cam(0);
+    assert!(after.0 == before.0 && after.1 > before.1 + 100, "{before:?} {after:?}");
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    screen.steps();
+    assert_eq!(screen.cam(0), before);
+    assert!(!screen.studio().interbus().unwrap().staged.can_undo());
+}
+
+#[test]
+fn a_pasted_table_is_looked_at_before_it_is_taken() {
+    let mut screen = page();
+    let before = screen.cam(0);
+    let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\nlate;3600;10\n";
+    screen.harness.event(Event::Paste(text.to_owned()));
+    screen.steps();
+    assert!(screen.shows("Program 1: glue has 2 pulses, which take cams 1, 2."));
+    assert!(screen.shows("Line 5, column 2: The start at 3600 is beyond the measuring range, which is 0 to 3599."));
+    assert_eq!(screen.cam(0), before);
+    screen.check_language();
+    screen.act(Action::SetLanguage(Language::German));
+    screen.check_language();
+    screen.act(Action::SetLanguage(Language::English));
+    screen.click("ib_table.take");
+    assert_eq!((screen.cam(0), screen.cam(1), screen.cam(2)), ((100, 200), (300, 350), (700, 750)));
+    let own = screen.studio().interbus().unwrap();
+    assert_eq!(own.staged.program(program()).unwrap().mask, 0b111);
+    assert_eq!(own.staged.wanted().unwrap().name(program(), cam(2)), Some("glue"));
+}
+
+#[test]
+fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
+    let mut screen = page();
+    for number in [1, 2] {
+        screen.edit_cams(Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() });
+    }
+    assert!(!screen.shows("are pulses of one track"));
+    let (start, _) = screen.cam(2);
+    let (own, _) = screen.cam(1);
+    screen.edit_cams(Edit::Cam { program: program(), cam: cam(1), start: own, stop: start, on: true });
+    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and meet at {start}.")));
+    screen.edit_cams(Edit::Steps(3000));
+    assert!(screen.shows("Program 1: cam 7 is beyond the measuring range, which ends at 2999."));
+    screen.act(Action::SetLanguage(Language::German));
+    assert!(screen.shows("Programm 1: Nocken 7 liegt jenseits des Messbereichs"));
+    screen.check_language();
+}
+
+#[test]
+fn the_ring_moves_the_same_cams() {
+    let mut screen = page();
+    screen.click("ib_cams.ring");
+    let (start, stop) = screen.cam(3);
+    screen.of_role(Role::Slider, "Cam 3: stop, on the ring").focus();
+    screen.steps();
+    screen.key(Key::ArrowLeft);
+    assert_eq!(screen.cam(3), (start, stop - 1));
+    screen.key(Key::Delete);
+    let own = screen.studio().interbus().unwrap().staged.wanted().unwrap();
+    assert!(!own.is_on(program(), cam(3)));
+    screen.check_language();
+}
