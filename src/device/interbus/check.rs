@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use super::error::Implausible;
 use super::identify::read_survey;
-use super::reading::swapped;
 use super::{Error, Identity, Master, Survey};
 use crate::device::check;
 use crate::protocol::interbus::{ErrorWord, ReadOut, Reply, StartupMode};
@@ -161,7 +160,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
     }
     let slowest_ms = slowest.as_millis() as u64;
     let answers = line(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
-    let (order, fits) = match swapped(word) {
+    let (order, fits) = match master.suspected_order(word)? {
         Some(swapped) => ((Verdict::Bad, Finding::OrderSwapped { input: word, swapped }), false),
         None => ((Verdict::Good, Finding::OrderFits), true),
     };

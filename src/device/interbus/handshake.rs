@@ -39,10 +39,17 @@ pub enum Says {
     Unknown,
 }
 
+/// The exact echo; that of a parameter may have the manufacturer's bit (reference 2). In one of cams that bit tells the edge.
+pub(super) fn is_echo(command: Command, input: u32) -> bool {
+    const MANUFACTURER: u32 = 1 << 29;
+    let echo = Reply::echo_of(command).emit();
+    input == echo || matches!(command, Command::Set(..)) && input == echo | MANUFACTURER
+}
+
 impl Says {
     /// What `input` says to `command`.
     pub fn of(command: Command, input: u32) -> Self {
-        if Reply::echo_of(command).emit() == input && !matches!(command, Command::Normal | Command::Run) {
+        if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
             return Says::Echoed;
         }
         match Reply::parse(input) {

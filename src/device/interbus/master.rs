@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use super::data::ProcessData;
 use super::error::{Asked, Awaited, Meddled};
-use super::handshake::{Handshake, Says, Standing};
-use super::reading::swapped;
+use super::handshake::{Handshake, Says, Standing, is_echo};
+use super::reading::{swapped, swapped_unexplained};
 use super::{Error, Gateway, Known, Reading, Station};
 use crate::link::Ctx;
 use crate::protocol::interbus::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
@@ -16,8 +16,8 @@ use crate::units::Moment;
 
 /// An echo or a value stands when it came in so many cycles, one after the other (reference 4).
 const STANDS: u32 = 2;
-/// A reply that is lost can take all the patience: an answer has so many cycles at least, an old word among them.
-const LEAST: u32 = STANDS + 2;
+/// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
+const LEAST: u32 = 10;
 /// A word that may be the answer to the one before stands after so many.
 const STAYS: u32 = 20;
 /// The words of an encoder at work, without anything beside it: also the echo of cam 0's start at 0.
@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
             let reply = Reply::parse(word);
             runs = if matches!(reply, Reply::Run { .. }) { runs + 1 } else { 0 };
             match reply {
-                _ if word == echo => (same >= stands).then_some(Ok(())),
+                _ if is_echo(command, word) => (same >= stands).then_some(Ok(())),
                 Reply::Error(error) if word != before && same >= STANDS => {
                     Some(Err(Error::Refused { sent: command, error }))
                 }
@@ -313,6 +313,17 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
+    /// What an IN word would be with its halves exchanged, where nothing else explains it: OUT asks for nothing.
+    ///
+    /// # Errors
+    /// The way to the encoder.
+    pub(super) fn suspected_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
+        if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
+            return Ok(None);
+        }
+        Ok(swapped_unexplained(input))
+    }
+
     /// Why nothing came, as far as that can be seen.
     fn too_late(&mut self, command: Command, awaited: Awaited, input: u32) -> Error {
         let sent = command.emit();
@@ -321,7 +332,8 @@ impl<'a> Master<'a> {
             Err(error) => return error,
             Ok(_) => {}
         }
-        if let Some(swapped) = swapped(input) {
+        let suspected = if self.is.is_none() { swapped_unexplained(input) } else { swapped(input) };
+        if let Some(swapped) = suspected {
             return Error::WordOrder { input, swapped };
         }
         match Reply::parse(input) {

@@ -105,6 +105,16 @@ pub(super) fn swapped(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
+/// The same of a word that is no position at all, and of which nothing explains why it should be there: with its halves
+/// exchanged it is one. An error without anything beside it is just that.
+pub(super) fn swapped_unexplained(word: u32) -> Option<u32> {
+    match Reply::parse(word) {
+        Reply::Run { .. } => swapped(word),
+        Reply::Error(error) if error.data.get() == 0 => None,
+        _ => Some(word.rotate_left(16)).filter(|other| matches!(Reply::parse(*other), Reply::Run { stray: 0, .. })),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,5 +161,8 @@ mod tests {
         assert_eq!(swapped(0x0012_3456), None);
         // Stray bits either way tell nothing.
         assert_eq!(swapped(0x3456_3456), None);
+        // 2DC6C0h; and parameters lost, which is no position.
+        assert_eq!((swapped(0xC6C0_002D), swapped_unexplained(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
+        assert_eq!(swapped_unexplained(0x8600_0000), None);
     }
 }

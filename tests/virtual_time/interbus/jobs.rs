@@ -1,9 +1,13 @@
 //! What is read: with which words, and how the encoder is afterwards.
 
+use encoder_studio::device::interbus::check::{Finding, Line, Step, Verdict};
 use encoder_studio::device::interbus::{Error, Says};
+use encoder_studio::link::{write_entry, write_header};
 use encoder_studio::profile::interbus::{Direction, Item, ItemValue};
 use encoder_studio::protocol::interbus::{Mode, ReadOut, StartupMode};
-use encoder_studio::worker::interbus::{InterbusJob, InterbusOutput, JobError};
+use encoder_studio::store::Store;
+use encoder_studio::units::Moment;
+use encoder_studio::worker::interbus::{InterbusJob, InterbusOutput, JobError, open};
 
 use super::support::{Stand, cam, gateway, program, station};
 
@@ -189,7 +193,7 @@ fn several_encoders_behind_one_gateway_are_told_by_their_registers() {
 #[test]
 fn what_was_left_in_parameterisation_is_named_and_led_back_on_demand() {
     let mut stand = Stand::new("steps=4096&revolutions=1");
-    stand.gateway.with_encoder(|encoder| encoder.write(encoder_studio::units::Moment::START, 0x0200_00FF));
+    stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let error = stand.run(InterbusJob::Identify).unwrap_err();
     assert_eq!(error.to_string(), "the encoder is being parameterised: IN is C20000FF");
     assert_eq!(stand.sent(), Vec::<u32>::new(), "whoever is at it is not disturbed");
@@ -213,4 +217,79 @@ fn a_cam_is_read_as_an_item() {
     assert!(matches!(output, InterbusOutput::Item(ItemValue::Mask(own)) if own == held.mask));
     assert!(matches!(stand.run(InterbusJob::Read(Item::Shift)).unwrap(), InterbusOutput::Item(ItemValue::Number(0))));
     assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
+}
+
+fn checked(stand: &mut Stand) -> Vec<Line> {
+    match stand.run(InterbusJob::Check).unwrap() {
+        InterbusOutput::Check(lines) => lines,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn verdict(lines: &[Line], step: Step) -> Option<Verdict> {
+    lines.iter().find(|line| line.step == step).map(|line| line.verdict)
+}
+
+#[test]
+fn the_device_check_has_a_verdict_a_line_and_sets_nothing() {
+    let mut stand = Stand::new("steps=3600&revolutions=1&serial=8&temperature=41&program=2&cams=demo");
+    let stores = stand.stores();
+    let lines = checked(&mut stand);
+    assert!(lines.iter().all(|line| line.verdict == Verdict::Good), "{lines:?}");
+    let steps: Vec<Step> = lines.iter().map(|line| line.step).collect();
+    use Step::{Gateway, Handshake, Identity, InputWord, Temperature, Wear, WordOrder};
+    assert_eq!(steps, [Gateway, WordOrder, InputWord, Handshake, Identity, Temperature, Wear]);
+    let found = |finding: Finding| lines.iter().any(|line| line.findings.contains(&finding));
+    assert!(found(Finding::SerialNumber("8".to_owned())) && found(Finding::Temperature(410)));
+    assert!(found(Finding::Gear { steps: 3600, turns: 1 }) && found(Finding::Wear { seen: 0, limit: 450 }));
+    assert_eq!((stand.left(), stand.stores()), ((0, StartupMode::Cams(program(2))), stores));
+}
+
+#[test]
+fn the_device_check_says_what_is_wrong() {
+    // Halves exchanged: a step less than 3 000 000 is 2DC6BFh, which looks like an echo then, and OUT asks for nothing.
+    let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
+    let mut stand = Stand::with(far, station(""));
+    let lines = checked(&mut stand);
+    assert_eq!(verdict(&lines, Step::WordOrder), Some(Verdict::Bad), "{lines:?}");
+    assert_eq!((verdict(&lines, Step::Identity), stand.sent()), (None, vec![]), "nothing is sent into the wrong half");
+    let error = stand.run(InterbusJob::Identify).unwrap_err();
+    assert_eq!(error.to_string(), "IN C6BF002D makes sense as 002DC6BF only: the word order may be swapped");
+    // Left in parameterisation.
+    let mut stand = Stand::new("steps=4096&revolutions=1");
+    stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
+    let lines = checked(&mut stand);
+    assert_eq!(verdict(&lines, Step::InputWord), Some(Verdict::Bad), "{lines:?}");
+    assert_eq!(stand.sent(), Vec::<u32>::new());
+    // No K3: OUT changes nothing.
+    let mut stand = Stand::new("class=K2&position=77");
+    let lines = checked(&mut stand);
+    assert_eq!(verdict(&lines, Step::Handshake), Some(Verdict::Bad), "{lines:?}");
+    let mut stand = Stand::new("steps=100&revolutions=1&preset=10&steps-minus-one=on&temperature=90");
+    let lines = checked(&mut stand);
+    for step in [Step::Identity, Step::Temperature] {
+        assert_eq!(verdict(&lines, step), Some(Verdict::Attention), "{lines:?}");
+    }
+}
+
+/// A recording is played back by the same jobs, whatever the numbers of the requests are.
+#[test]
+fn a_recorded_trace_answers_as_the_encoder_did() {
+    let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");
+    stand.run(InterbusJob::Identify).unwrap();
+    let mut file = Vec::new();
+    write_header(&mut file).unwrap();
+    for entry in stand.trace.lock().unwrap().iter() {
+        write_entry(&mut file, entry).unwrap();
+    }
+    let path = stand.folder.path().join("words.trace");
+    std::fs::write(&path, file).unwrap();
+    let url = format!("replay:{}?cycle=1", path.display()).parse().unwrap();
+    let mut session = open(&url, Store::at(stand.folder.path())).unwrap();
+    for _ in 0..2 {
+        match session.run_inline(InterbusJob::Identify).unwrap() {
+            InterbusOutput::Identity(identity) => assert_eq!(identity.serial_number, "4711"),
+            other => panic!("{other:?}"),
+        }
+    }
 }

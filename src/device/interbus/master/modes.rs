@@ -87,7 +87,11 @@ impl Master<'_> {
             let waited = self.data.now().since(begun);
             match Reply::parse(self.input) {
                 Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
-                    return Err(Error::NotRunning { input: self.input });
+                    let input = self.input;
+                    return Err(match self.suspected_order(input)? {
+                        Some(swapped) => Error::WordOrder { input, swapped },
+                        None => Error::NotRunning { input },
+                    });
                 }
                 Reply::Echo { .. } | Reply::Busy { .. } => {}
                 _ if looks >= LOOKS => break,

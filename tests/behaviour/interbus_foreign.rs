@@ -1,0 +1,117 @@
+//! The host's side of the handshake against a gateway and a K3 encoder that are not our program, with every trouble that
+//! these can make. What the encoder stored is told by its own log.
+
+use encoder_studio::device::interbus::{Error, Meddled};
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::interbus::{Image, Item, ItemValue};
+use encoder_studio::protocol::interbus::{ProgramNumber, StartupMode};
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+use encoder_studio::worker::interbus::{
+    Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
+};
+
+use super::support::{Bench, Foreign};
+
+const ENCODER: [&str; 6] =
+    ["--steps=3600", "--serial-number=4001", "--mode=4", "--shift=2", "--preset=7", "--programs"];
+/// Programs 2 and 5, of which the second runs or not.
+const PROGRAMS: &str = r#"{"2": {"mask": 129, "cams": {"0": [10, 20], "7": [3000, 100]}}, "5": {"mask": 8}}"#;
+
+fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Interbus> {
+    let url = format!("{}{query}", foreign.url).parse().unwrap();
+    open(&url, Store::at(&bench.path("store"))).unwrap()
+}
+
+fn prepare(session: &mut Session<Interbus>) -> Result<Prepared, JobError> {
+    let program = ProgramNumber::new(2).unwrap();
+    let profile = match session.run_inline(InterbusJob::Save { programs: false })? {
+        InterbusOutput::Saved(profile) => profile,
+        other => panic!("{other:?}"),
+    };
+    let mut wanted = Image::of(profile.image.parameters);
+    wanted.parameters.zero_shift = 99;
+    assert!(wanted.put(Item::CamMask(program), ItemValue::Mask(0x41)));
+    match session.run_inline(InterbusJob::Prepare(Change::Write(Box::new(wanted))))? {
+        InterbusOutput::Prepared(prepared) => Ok(*prepared),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn commit(session: &mut Session<Interbus>, prepared: Prepared) -> Result<u64, JobError> {
+    let consent = Consent::to(prepared.plan.id());
+    let job = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
+    match session.run_inline(job)? {
+        InterbusOutput::Committed(done) => Ok(done.written.verified),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Words that the encoder got, and what it stored.
+fn log(foreign: &Foreign) -> Vec<String> {
+    foreign.requests().into_iter().filter(|line| line != "R").collect()
+}
+
+#[test]
+fn whatever_the_gateway_is_like_the_encoder_is_read_written_and_led_back() {
+    let cases: [(&[&str], &str); 5] = [
+        (&[], "?cycle=1"),
+        (&["--busy=40", "--stale=3", "--early"], "?cycle=1"),
+        (&["--straight", "--stale=2", "--pieces", "--foreign-reply"], "?cycle=1"),
+        (&["--manufacturer", "--complement=bit", "--narrow", "--cut=70", "--late=90:90"], "?cycle=1&timeout=60"),
+        (
+            &["--order=low-first", "--unit=9", "--input=40", "--output=80", "--exception=6:60"],
+            "?cycle=1&order=low-first&unit=9&input=40&output=80",
+        ),
+    ];
+    let bench = Bench::new();
+    for (options, query) in cases {
+        let Some(foreign) = bench.gateway(&[&ENCODER[..], &[PROGRAMS], options].concat()) else { return };
+        let mut session = session(&bench, &foreign, query);
+        let prepared = prepare(&mut session).unwrap_or_else(|error| panic!("{options:?}: {error}"));
+        assert_eq!((prepared.identity.serial_number.as_str(), prepared.plan.ops.len()), ("4001", 2), "{options:?}");
+        let cams = StartupMode::Cams(ProgramNumber::new(2).unwrap());
+        assert_eq!(prepared.identity.mode, cams, "{options:?}");
+        assert!(!log(&foreign).iter().any(|line| line.starts_with("STORE")), "{options:?}");
+        let verified = commit(&mut session, prepared).unwrap_or_else(|error| panic!("{options:?}: {error}"));
+        assert_eq!(verified, 2, "{options:?}");
+        let log = log(&foreign);
+        let stores: Vec<&String> = log.iter().filter(|line| line.starts_with("STORE")).collect();
+        assert_eq!(stores, ["STORE parameters", "STORE program 2"], "{options:?}");
+        assert_eq!(
+            log.iter().rfind(|line| line.starts_with('W')).map(String::as_str),
+            Some("W 00000000"),
+            "{options:?}"
+        );
+        let reading = session.sample().unwrap();
+        assert!(reading.mode == Some(cams) && reading.cams().is_some(), "{options:?}: {reading:?}");
+    }
+}
+
+#[test]
+fn what_the_encoder_or_another_master_does_wrong_is_told() {
+    type Told = fn(&Error) -> bool;
+    let cases: [(&[&str], Told); 6] = [
+        (&["--error=1:82000000"], |error| matches!(error, Error::Refused { .. })),
+        (&["--deaf-from=1"], |error| matches!(error, Error::TimeOut { .. })),
+        (&["--other-data"], |error| matches!(error, Error::OtherMaster { seen: Meddled::Input(_), .. })),
+        (&["--no-position"], |error| matches!(error, Error::Refused { .. } | Error::NotLedBack { .. })),
+        (&["--unstored"], |error| matches!(error, Error::NotTaken { .. })),
+        (&["--error=1:98000004"], |error| matches!(error, Error::Refused { .. })),
+    ];
+    let bench = Bench::new();
+    for (options, told) in cases {
+        let Some(foreign) = bench.gateway(&[&["--steps=3600"][..], options].concat()) else { return };
+        let mut session = session(&bench, &foreign, "?cycle=1&handshake=500");
+        match prepare(&mut session).and_then(|prepared| commit(&mut session, prepared)) {
+            Err(JobError::Interrupted { interrupted, .. }) => assert!(told(&interrupted.cause), "{interrupted}"),
+            // Reading a program ends with a position as well.
+            Err(JobError::Device(error)) => assert!(told(&error) && options == ["--no-position"], "{error}"),
+            other => panic!("{options:?}: {other:?}"),
+        }
+    }
+    let Some(foreign) = bench.gateway(&["--second-master=00000000:1"]) else { return };
+    let error = session(&bench, &foreign, "?handshake=300").run_inline(InterbusJob::Identify).unwrap_err();
+    let expected = "another master writes to the encoder: OUT is 00000000 where 20210009 was written";
+    assert_eq!(error.to_string(), expected);
+}
