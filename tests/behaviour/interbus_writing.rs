@@ -144,6 +144,10 @@ fn each_item_is_written_by_its_name() {
         assert_eq!(written(&encoder), words, "{item}");
         assert_eq!(ask(&bench, &encoder, &["read", "interbus", item]).json()["value"], value, "{item}");
     }
+    // Cams that nobody has read may lie beyond a shorter range.
+    let shorter = ask(&bench, &encoder, &["write", "interbus", "steps", "2048", "--yes"]);
+    assert!(shorter.status == Some(0) && shorter.err.contains("may lie beyond"), "{shorter:?}");
+    assert_eq!(written(&encoder), ["W 02000800", "STORE parameters"]);
     let again = ask(&bench, &encoder, &["write", "interbus", "direction", "4", "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"]), (&json!(0), &json!(0)), "it is so already: {again}");
     assert!(written(&encoder).is_empty());

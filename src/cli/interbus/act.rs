@@ -71,7 +71,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let mut runner = Runner::open(common)?;
     Disturbs::Reading.say(output);
     let change = change(&mut runner)?;
-    let prepared = prepare(&mut runner, change)?;
+    let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     show_done(output, &action_name(act.action), &operations, &spent, &[], "")

@@ -11,19 +11,35 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::profiles::{Shown, Spent};
 use crate::cli::runner::{Ended, unexpected};
 use crate::device::interbus::write::Written;
-use crate::profile::interbus::{InterbusPlan, Op};
+use crate::profile::interbus::{InterbusPlan, Op, programs_needed};
 use crate::profile::{Consent, Operation as _};
+use crate::protocol::interbus::{Parameter, ProgramNumber};
 use crate::worker::NotBegun;
 use crate::worker::interbus::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, WEAR_LIMIT, Wear,
 };
 
 /// Makes a plan for a change; nothing is written.
-pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
-    match runner.run(InterbusJob::Prepare(change))? {
-        InterbusOutput::Prepared(prepared) => Ok(*prepared),
-        other => Err(unexpected(&other)),
+pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+    let reads_all = match &change {
+        Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
+        Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
+        Change::Preset { .. } | Change::Default => true,
+    };
+    let prepared = match runner.run(InterbusJob::Prepare(change))? {
+        InterbusOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    if !reads_all && prepared.plan.ops.iter().any(is_shorter) {
+        output.remark(&Text::new("ib_disturbs.shorter").terminal());
     }
+    Ok(prepared)
+}
+
+/// The measuring range ends earlier.
+fn is_shorter(op: &Op) -> bool {
+    let Op::Parameterise(changes) = op else { return false };
+    changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.

@@ -83,7 +83,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
     let mut runner = Runner::open(common)?;
     if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
-    let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+    let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));
     }

@@ -28,7 +28,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
         }
     }
     wanted.put(item, value);
-    let prepared = prepare(&mut runner, Change::Write(Box::new(wanted)))?;
+    let prepared = prepare(&mut runner, output, Change::Write(Box::new(wanted)))?;
     let operations = operations(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     show_changed(output, &item.to_string(), &operations, &spent)
