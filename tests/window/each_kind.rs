@@ -4,9 +4,11 @@
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::profile::PlanId;
 
 use crate::support::{ADAPTER, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
@@ -14,8 +16,9 @@ use crate::wire::Wire;
 /// A kind of device at a cable.
 struct Case {
     tab: Tab,
+    scheme: &'static str,
     port: &'static str,
-    /// The command that stores bytes.
+    /// The command that stores what is edited.
     writes: u8,
     /// A command that reading everything begins with.
     reads: u8,
@@ -23,9 +26,11 @@ struct Case {
     other: &'static str,
 }
 
-const CASES: [Case; 2] = [
-    Case { tab: Tab::Hiperface, port: PORT, writes: 0x4B, reads: 0x52, other: "serial=OTHER0001" },
-    Case { tab: Tab::Biss, port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
+const CASES: [Case; 3] = [
+    Case { tab: Tab::Hiperface, scheme: "serial", port: PORT, writes: 0x4B, reads: 0x52, other: "serial=OTHER0001" },
+    Case { tab: Tab::Biss, scheme: "serial", port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
+    // The preset is a parameter of code 4, in bits 28 to 25 of its word; function 4 reads a word.
+    Case { tab: Tab::Interbus, scheme: "modbus", port: GATE, writes: 0x08, reads: 4, other: "serial=42" },
 ];
 
 impl Case {
@@ -45,8 +50,38 @@ impl Case {
 
     fn connect(&self, desk: &mut Desk) {
         desk.act(Action::ShowTab(self.tab));
-        desk.open(&format!("serial:{}", self.port));
+        desk.open(&format!("{}:{}", self.scheme, self.port));
         until_ready(desk);
+        self.stands(desk);
+        if self.tab == Tab::Interbus {
+            wish(desk, Wish::Read);
+            desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
+            until_ready(desk);
+        }
+    }
+
+    /// Connects again, which tells nothing of whether the machine still stands.
+    fn reconnect(&self, desk: &mut Desk) {
+        wish(desk, Wish::Reconnect);
+        until_ready(desk);
+        self.stands(desk);
+    }
+
+    /// A person says that it does, where that is asked for.
+    fn stands(&self, desk: &mut Desk) {
+        if self.tab == Tab::Interbus {
+            let id = shown(&desk.studio).unwrap().id();
+            desk.act(Action::Interbus(id, Interbus::Stopped(true)));
+        }
+    }
+
+    /// The line is held at what stores, and the write that was reviewed begins.
+    fn write_until_held(&self, desk: &mut Desk) {
+        let plan = planned(desk);
+        let wire = self.wire(desk);
+        wire.hold_at(self.writes, 1);
+        review(desk, ReviewAction::Write(plan));
+        wire.wait_until_held();
     }
 
     fn wire(&self, desk: &Desk) -> std::sync::Arc<Wire> {
@@ -64,6 +99,12 @@ impl Case {
                     until_ready(desk);
                 }
                 desk.act(Action::Biss(id, Biss::Put { start, bytes: bytes.to_vec() }));
+            }
+            Tab::Interbus => {
+                let edits = [Edit::Preset, Edit::ZeroShift].into_iter().zip(bytes);
+                for (edit, byte) in edits {
+                    desk.act(Action::Interbus(id, Interbus::Edit(Box::new(edit(u32::from(*byte))))));
+                }
             }
             _ => desk.act(Action::Hiperface(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
         }
@@ -113,19 +154,20 @@ fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
     });
 }
 
-/// Reviews what is edited, and consents to it.
+/// Reviews what is edited: the plan.
 #[track_caller]
-fn begin_to_write(desk: &mut Desk) {
+fn planned(desk: &mut Desk) -> PlanId {
     wish(desk, Wish::Review);
     until_stage(desk, |stage| matches!(stage, Stage::Ready(_)));
     until_ready(desk);
     let Stage::Ready(plan) = shown(&desk.studio).unwrap().sheet().unwrap().stage else { panic!("no plan") };
-    review(desk, ReviewAction::Write(plan));
+    plan
 }
 
 #[track_caller]
 fn write(desk: &mut Desk) {
-    begin_to_write(desk);
+    let plan = planned(desk);
+    review(desk, ReviewAction::Write(plan));
     until_stage(desk, |stage| matches!(stage, Stage::Done { .. }));
     until_ready(desk);
     assert!(!shown(&desk.studio).unwrap().is_dirty());
@@ -179,8 +221,7 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         wish(&mut desk, Wish::Reconnect);
         until_lost(&mut desk);
         wire.plug();
-        wish(&mut desk, Wish::Reconnect);
-        until_ready(&mut desk);
+        case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
         // Another one is behind the same adapter now, and nobody has told us.
         wire.exchange(case.other);
@@ -203,9 +244,7 @@ fn a_cable_pulled_while_it_writes_leaves_a_report_and_the_edits() {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
         case.edit(&mut desk, &[0x5A]);
-        wire.hold_at(case.writes, 1);
-        begin_to_write(&mut desk);
-        wire.wait_until_held();
+        case.write_until_held(&mut desk);
         wire.unplug();
         wire.release();
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { begun: true, .. }));
@@ -213,8 +252,7 @@ fn a_cable_pulled_while_it_writes_leaves_a_report_and_the_edits() {
         assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
         review(&mut desk, ReviewAction::Close);
         wire.plug();
-        wish(&mut desk, Wish::Reconnect);
-        until_ready(&mut desk);
+        case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edits(), 1);
         write(&mut desk);
     }
@@ -250,9 +288,7 @@ fn a_write_ends_at_a_safe_point_before_the_window_closes() {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
         case.edit(&mut desk, &[0x5A]);
-        wire.hold_at(case.writes, 1);
-        begin_to_write(&mut desk);
-        wire.wait_until_held();
+        case.write_until_held(&mut desk);
         desk.act(Action::Close);
         assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
         desk.act(Action::Confirm);

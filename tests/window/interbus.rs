@@ -5,6 +5,7 @@ use encoder_studio::app::interbus::{Action as Interbus, Edit, Encoder};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ReviewAction, Severity, Tab, Wish};
+use encoder_studio::profile::interbus::Scale;
 use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, ReadOut, StartupMode};
 
 use crate::support::{Desk, GATE};
@@ -106,7 +107,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     wish(&mut desk, Wish::Redo);
     // One parameterisation and one program.
     let cost = write(&mut desk);
-    assert!(cost.starts_with("2 EEPROM stores; this computer has seen 0"), "{cost}");
+    assert!(cost.starts_with("EEPROM stores: 2. This computer has seen 0 of"), "{cost}");
     let own = encoder(&desk);
     assert!(!own.is_dirty() && own.stores() == Some(2), "{:?}", own.stores());
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
@@ -148,8 +149,7 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     });
     desk.settle();
     assert!(encoder(&desk).survey.is_none() && encoder(&desk).asks_for_standstill());
-    // Function 16 writes an OUT word.
-    let sent = |desk: &Desk| desk.outside.wire(GATE).count(16);
+    let sent = |desk: &Desk| desk.outside.wire(GATE).outs();
     assert_eq!(sent(&desk), 0, "no OUT word");
     wish(&mut desk, Wish::Read);
     desk.settle();
@@ -169,4 +169,38 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     act(&mut desk, Interbus::Reconnect);
     until_ready(&mut desk);
     assert!(!encoder(&desk).is_stopped());
+}
+
+#[test]
+fn a_table_is_looked_at_before_it_is_taken_and_says_what_became_of_each_edge() {
+    let mut desk = read(CAMS);
+    // A machine of 360 degrees over 3600 steps: a tenth of a degree is a step.
+    act(&mut desk, Interbus::SetScale(Scale::degrees(3600.0, 0).unwrap()));
+    let table = "program;cam;name;start;stop\n3;0;glue;10,05;20\n3;1;glue;30;40\n3;2;knife;350;400\n9;0;x;1;2\n";
+    act(&mut desk, Interbus::PasteTable(program(1), table.to_owned()));
+    let import = encoder(&desk).import.as_ref().unwrap();
+    assert_eq!((import.table.rows.len(), import.table.problems.len()), (3, 1), "{:?}", import.table.problems);
+    assert!(import.table.rounded().next().is_some());
+    act(&mut desk, Interbus::TakeTable(true));
+    assert!(!encoder(&desk).is_dirty(), "the line that is left out would switch its cam off");
+    act(&mut desk, Interbus::PasteTable(program(1), table.replace("9;0;x;1;2\n", "")));
+    act(&mut desk, Interbus::TakeTable(true));
+    let own = encoder(&desk);
+    assert!(own.import.is_none() && own.edits_cams());
+    let wanted = own.staged.wanted().unwrap();
+    let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
+    // 350 to 400 degrees go over the end: 400 is 40.
+    assert_eq!((edges(1), edges(2)), (Some((300, 400)), Some((3500, 400))));
+    assert_eq!(wanted.name(program(3), cam(2)), Some("knife"));
+    // A file, out and in again.
+    let path = desk.outside.path("cams.csv");
+    act(&mut desk, Interbus::SaveTable { path: path.clone(), decimal_comma: true });
+    desk.until("it is written", |_| path.exists());
+    desk.settle();
+    let before = encoder(&desk).staged.wanted().unwrap().clone();
+    act(&mut desk, Interbus::OpenTable(path));
+    desk.until("it is read", |studio| studio.interbus().unwrap().import.is_some());
+    assert!(encoder(&desk).import.as_ref().unwrap().table.problems.is_empty());
+    act(&mut desk, Interbus::TakeTable(true));
+    assert_eq!(encoder(&desk).staged.wanted().unwrap().image, before.image);
 }

@@ -49,8 +49,8 @@ impl End {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
-            // Behind number, protocol, length and unit.
-            End::Gateway(_) => frame.get(7).copied(),
+            // Behind number, protocol, length and unit the function; of one that writes the first byte of its OUT word.
+            End::Gateway(_) => frame.get(if frame.get(7) == Some(&16) { 13 } else { 7 }).copied(),
         }
     }
 }
@@ -170,6 +170,11 @@ impl Wire {
     /// How often a command was sent.
     pub(crate) fn count(&self, command: u8) -> usize {
         self.state().sent.iter().filter(|frame| self.end.command(frame) == Some(command)).count()
+    }
+
+    /// How often an OUT word was written to the gateway.
+    pub(crate) fn outs(&self) -> usize {
+        self.state().sent.iter().filter(|frame| frame.get(7) == Some(&16)).count()
     }
 
     /// The bytes of a data field, looked at in the encoder.

@@ -26,8 +26,8 @@ impl Encoder {
             Action::Reconnect | Action::WriteInto(_) => {}
             Action::Stopped(stopped) => self.say_stopped(stopped),
             Action::Read => {
-                if !self.session.read_file_again(services) {
-                    self.submit(InterbusJob::Survey, services);
+                if !self.session.read_file_again(services) && self.try_submit(InterbusJob::Survey, services) {
+                    self.read_after = self.known_programs();
                 }
             }
             Action::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),

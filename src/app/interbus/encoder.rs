@@ -10,6 +10,7 @@ use super::review::Review;
 use super::staged::{Place, Staged, Wanted};
 use super::table::Import;
 use super::trace::Meaning;
+use super::words;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
@@ -194,6 +195,11 @@ impl Encoder {
         self.read_outs.get(&what.number()).copied()
     }
 
+    /// The programs that were read.
+    pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
+        self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
+    }
+
     /// Programs that were read, of eight.
     pub fn programs_read(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
@@ -267,8 +273,7 @@ impl Encoder {
         let fact = Text::new("log.interbus")
             .with("serial", &identity.serial_number)
             .with("version", identity.software_version)
-            .with("steps", identity.steps)
-            .with("turns", identity.revolutions);
+            .with_text("range", words::range(identity.steps, identity.revolutions));
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 

@@ -24,5 +24,5 @@ pub(super) fn words(job: &InterbusJob) -> Text {
 
 /// It takes the position away or switches the outputs: the machine has to stand.
 pub(super) fn disturbs(job: &InterbusJob) -> bool {
-    !matches!(job, InterbusJob::Hello | InterbusJob::Position | InterbusJob::Status)
+    !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

@@ -165,8 +165,12 @@ impl Encoder {
             InterbusOutput::Check(lines) => self.check = Some(explain::interbus::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
             InterbusOutput::Prepared(prepared) if self.is_another(&prepared.identity) => {
-                // Exchanged behind our gateway: what was edited for the one before is not for it.
+                // Exchanged behind our gateway: what was wanted for the one before is not for it.
                 self.review = None;
+                if !self.is_dirty() {
+                    let text = Text::new("session.other_encoder").with("serial", &prepared.identity.serial_number);
+                    services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+                }
                 self.submit(InterbusJob::Survey, services);
             }
             InterbusOutput::Prepared(prepared) => self.planned(prepared),

@@ -79,7 +79,7 @@ pub fn told(word: u32, known: &Known) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
-            Mode::Velocity => Text::new("ib_word.speed").with("rpm", value.get()),
+            Mode::Velocity => Text::new("ib_word.speed").with("rpm", value.signed()),
             Mode::Cam => outputs(word, known.shift),
             Mode::Position | Mode::Parameterisation | Mode::ReadOut => {
                 Text::new("ib_word.position").with("position", value.get())
@@ -176,6 +176,8 @@ mod tests {
         for (word, mode, says) in [
             (0x0012_3456, Mode::Position, "position 1193046"),
             (0xC000_0000, Mode::Position, "at work"),
+            // −60 in 25 bits.
+            (0x01FF_FFC4, Mode::Velocity, "speed -60 rpm"),
             (0xC200_00FF, Mode::Parameterisation, "echo of: Steps := 255"),
             (0x01CD_EF20, Mode::Cam, "cams on: 5; window 0x001CDEF"),
             (0x8000_0000, Mode::Cam, "position or cam outputs not valid (0x80000000)"),

@@ -53,9 +53,13 @@ impl Encoder {
         }
     }
 
-    /// Takes the table that was read into the edits, or leaves it. One that cannot be taken stays, with why.
+    /// Takes the table that was read into the edits, or leaves it. One that cannot be taken stays, with why: a line that
+    /// is left out would switch its cam off.
     pub(super) fn take_table(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
+        if take && !import.table.problems.is_empty() {
+            return;
+        }
         if take {
             let edit = Edit::Table(import.table.filled());
             self.edit(&edit);

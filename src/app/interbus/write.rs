@@ -5,18 +5,34 @@ use super::review::{Review, ReviewState};
 use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
-use crate::profile::interbus::{InterbusProfile, RestoreOptions, check_device};
+use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
+use crate::protocol::interbus::ProgramNumber;
 use crate::worker::interbus::{Change, Commit, Committed, InterbusJob, JobError, Prepared};
 
 impl Encoder {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
-        let Some(wanted) = self.staged.wanted().filter(|_| self.staged.is_dirty()) else {
+        let Some(edited) = self.edited_image().filter(|_| self.staged.is_dirty()) else {
             services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
             return;
         };
-        let wanted = Box::new(wanted.image.clone());
-        self.plan(Change::Write(wanted), services);
+        self.plan(Change::Write(Box::new(edited)), services);
+    }
+
+    /// What is wanted otherwise than it was read: of programs only those, since each that a plan speaks of is selected to
+    /// be read. Where the measuring range shrinks, all that are known, since their cams have to stay within it.
+    fn edited_image(&self) -> Option<Image> {
+        let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
+        let mut edited = Image::of(wanted.parameters);
+        edited.shift = wanted.shift.filter(|shift| device.shift != Some(*shift));
+        let shrinks = wanted.parameters.steps < device.parameters.steps;
+        for (number, program) in wanted.known() {
+            let differs = device.program(number) != Some(program);
+            if let Some(own) = edited.program_mut(number).filter(|_| differs || shrinks) {
+                *own = Some(*program);
+            }
+        }
+        Some(edited)
     }
 
     pub(in crate::app) fn plan_restore(&mut self, profile: InterbusProfile, services: &mut Services) {
@@ -114,14 +130,14 @@ impl Encoder {
         let (severity, texts) = told(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         self.staged.forget_steps();
-        let mut programs = Vec::new();
+        let mut programs = None;
         if let Some(review) = &mut self.review
             && let ReviewState::Writing(prepared) = &review.state
         {
-            programs = prepared.plan.base.programs.iter().map(|(number, _)| *number).collect();
+            programs = changed_by(&prepared.plan);
             review.state = ReviewState::Done(prepared.clone(), committed);
         }
-        self.read_after = programs;
+        self.read_after = programs.unwrap_or_else(|| self.known_programs());
         self.submit(InterbusJob::Survey, services);
     }
 
@@ -130,10 +146,14 @@ impl Encoder {
         let begun = matches!(error, JobError::Interrupted { .. });
         match &mut self.review {
             Some(review) if review.is_planning() || review.is_writing() => {
-                if begun && let ReviewState::Writing(prepared) = &review.state {
-                    self.read_after = prepared.plan.base.programs.iter().map(|(number, _)| *number).collect();
-                }
+                let programs = match &review.state {
+                    ReviewState::Writing(prepared) if begun => Some(changed_by(&prepared.plan)),
+                    _ => None,
+                };
                 review.fail(texts.to_vec(), begun);
+                if let Some(programs) = programs {
+                    self.read_after = programs.unwrap_or_else(|| self.known_programs());
+                }
                 true
             }
             _ => false,
@@ -146,6 +166,12 @@ impl Encoder {
             review.fail(vec![why.clone()], true);
         }
     }
+}
+
+/// The programs that a plan changes; `None`: any of them.
+fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
+    let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
+    (!plan.ops.contains(&Op::Default)).then_some(of_programs)
 }
 
 /// What a write came to.

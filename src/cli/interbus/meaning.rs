@@ -114,7 +114,7 @@ pub(super) fn of_in(word: u32, known: &Known) -> Vec<Said> {
             let number = value.get();
             vec![
                 said(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
-                said(&[Velocity], format!("speed {number} rpm{stray}"), Some(number)),
+                said(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
                 said(&[Cam], outputs(word, known.shift), None),
             ]
         }

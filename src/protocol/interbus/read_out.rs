@@ -128,12 +128,7 @@ impl ReadOut {
 /// neither form).
 const fn signed(value: Value) -> i32 {
     let number = value.get();
-    let above = u32::BITS - Value::BITS;
-    if number >> (Value::BITS - 1) == 0 && number > 0x7FFF {
-        number as u16 as i16 as i32
-    } else {
-        (number << above) as i32 >> above
-    }
+    if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.signed() }
 }
 
 impl StartupMode {

@@ -24,6 +24,12 @@ impl Value {
         self.0
     }
 
+    /// Its number with a sign in bit 24, as a speed is taken for (`U`, reference 6.13).
+    pub const fn signed(self) -> i32 {
+        let above = u32::BITS - Value::BITS;
+        (self.0 << above) as i32 >> above
+    }
+
     /// The field of a word.
     pub const fn of_word(word: u32) -> Self {
         Value(word & Value::MAX.0)

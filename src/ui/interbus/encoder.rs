@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::Action;
 use crate::app::explain::interbus as explain;
 use crate::app::interbus::{Action as Interbus, Encoder, said, words};
-use crate::protocol::interbus::{ProgramNumber, ReadOutValue, StartupMode};
+use crate::protocol::interbus::{ProgramNumber, ReadOutValue, Reply, StartupMode};
 use crate::sim::Motor;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, name, paragraph, row, two_columns};
@@ -111,7 +111,7 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         }
         ui.add_space(skin.space.inside);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        if encoder.record.last().is_some_and(|reading| !reading.is_valid()) {
+        if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
             paragraph(ui, skin.label(skin.say("ib_sends.left")));
             if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
                 actions.push(Action::Interbus(encoder.session.id, Interbus::LeadBack));

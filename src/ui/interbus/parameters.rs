@@ -165,7 +165,7 @@ fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
             _ if stores >= WEAR_WARNING => palette.warn,
             _ => palette.accent,
         };
-        let text = Text::new("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK);
+        let text = Text::new("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
         ui.label(skin.words(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
@@ -186,9 +186,9 @@ fn handshake(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         list.auto_shrink([false, true]).show(ui, |ui| {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
-                    ui.label(skin.mono(format!("{:08X}", step.out)));
+                    ui.label(skin.mono(format!("0x{:08X}", step.out)));
                     ui.label(skin.label(skin.words(&said::asked(step.command))));
-                    ui.label(skin.mono(format!("{:08X}", step.input)));
+                    ui.label(skin.mono(format!("0x{:08X}", step.input)));
                     let known = said::Known::of(step.command, encoder.shift());
                     ui.add(egui::Label::new(skin.label(skin.words(&said::told(step.input, &known)))).truncate());
                     ui.end_row();

@@ -110,7 +110,7 @@ mod tests {
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
         let says = |text: Text| text.words(Language::English);
-        assert_eq!(says(layout(&table)), "3 pulses read; columns separated by semicolons, named in the first line.");
+        assert_eq!(says(layout(&table)), "Pulses read: 3. Columns separated by semicolons, named in the first line.");
         assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is no number.");
         let pulses = "Program 2: Glue has 2 pulses, which take cams 1, 2.";
         assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);

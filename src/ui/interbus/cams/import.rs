@@ -57,9 +57,15 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Impo
                 line(ui, icons::WARNING, skin.palette.warn, skin.words(&words::refused(&unread)));
             }
         }
+        // A line that is left out would switch its cam off.
+        let is_whole = table.problems.is_empty();
+        if !is_whole {
+            paragraph(ui, skin.label(skin.say("ib_table.mend")));
+        }
         ui.add_space(skin.space.inside);
         ui.horizontal(|ui| {
-            if primary(ui, skin, !table.rows.is_empty(), icons::CHECK, &skin.say("ib_table.take")).clicked() {
+            if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &skin.say("ib_table.take")).clicked()
+            {
                 actions.push(Action::Interbus(id, Interbus::TakeTable(true)));
             }
             if button(ui, icons::X, &skin.say("ib_table.leave")).clicked() {
