@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use super::controls::{enabled_button, icon_button, name, primary};
 use super::{Skin, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, Studio, Text, Wish};
+use crate::app::{Action, AnyDevice, Studio, Tab, Text, Wish};
 
 /// Draws the foot.
 pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
@@ -37,11 +37,17 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
             }
             if dirty {
                 let count = device.edits();
-                let text = Text::new(match (device.source(), count) {
-                    (Source::Link(_), 1) => "memory.edited_one",
-                    (Source::Link(_), _) => "memory.edited",
-                    (Source::File { .. } | Source::New { .. }, 1) => "memory.unsaved_one",
-                    (Source::File { .. } | Source::New { .. }, _) => "memory.unsaved",
+                // What is edited of an INTERBUS encoder are values, of others bytes.
+                let are_values = device.tab() == Tab::Interbus;
+                let text = Text::new(match (device.source(), count, are_values) {
+                    (Source::Link(_), 1, false) => "memory.edited_one",
+                    (Source::Link(_), _, false) => "memory.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, false) => "memory.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, false) => "memory.unsaved",
+                    (Source::Link(_), 1, true) => "values.edited_one",
+                    (Source::Link(_), _, true) => "values.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, true) => "values.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, true) => "values.unsaved",
                 })
                 .with("count", count);
                 let words = RichText::new(skin.words(&text)).color(skin.palette.staged);

@@ -55,11 +55,12 @@ const LOW_FIRST: (&str, &str) = ("order", "low-first");
 const PORT: &str = "502";
 
 impl InterbusForm {
-    /// The virtual encoder as the window begins with it: a machine that turns, with cams on it.
+    /// The virtual encoder as the window begins with it: a machine that turns slowly, with cams on its turn.
     pub fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
-        url.query.set("rpm", "6");
-        url.query.set("cams", "demo");
+        for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
+            url.query.set(name, value);
+        }
         url
     }
 
