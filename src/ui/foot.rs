@@ -8,10 +8,14 @@ use super::{Skin, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Studio, Tab, Text, Wish};
 
+/// Width below which not all of a profile's buttons have room for their words.
+const NARROW: f32 = 660.0;
+
 /// Draws the foot.
 pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     ui.add_space(skin.space.between);
     let dirty = device.is_dirty();
+    let width = ui.available_width();
     ui.horizontal(|ui| {
         if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
             actions.push(device.wish(Wish::Undo));
@@ -19,7 +23,10 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
         if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
             actions.push(device.wish(Wish::Redo));
         }
-        if enabled_button(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
+        // A profile has two more buttons beside it.
+        let narrow = *device.phase() == Phase::Offline && width < NARROW;
+        let revert = if narrow { icon_button } else { enabled_button };
+        if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
             actions.push(device.wish(Wish::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -43,6 +43,11 @@ impl Screen {
         self.act(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
     }
 
+    fn paste(&mut self, text: &str) {
+        self.harness.event(Event::Paste(text.to_owned()));
+        self.steps();
+    }
+
     fn of_role<'a>(&'a self, role: Role, label: &'a str) -> Node<'a> {
         self.harness.get_by_role_and_label(role, label)
     }
@@ -102,9 +107,8 @@ fn a_drag_is_one_step() {
 fn a_pasted_table_is_looked_at_before_it_is_taken() {
     let mut screen = page();
     let before = screen.cam(0);
-    let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\nlate;3600;10\n";
-    screen.harness.event(Event::Paste(text.to_owned()));
-    screen.steps();
+    let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
+    screen.paste(&format!("{text}late;3600;10\n"));
     assert!(screen.shows("Program 1: glue has 2 pulses, which take cams 1, 2."));
     assert!(screen.shows("Line 5, column 2: The start at 3600 is beyond the measuring range, which is 0 to 3599."));
     assert_eq!(screen.cam(0), before);
@@ -112,6 +116,8 @@ fn a_pasted_table_is_looked_at_before_it_is_taken() {
     screen.act(Action::SetLanguage(Language::German));
     screen.check_language();
     screen.act(Action::SetLanguage(Language::English));
+    assert!(!screen.is_enabled("ib_table.take"), "the cam of the line that is wrong would be switched off");
+    screen.paste(text);
     screen.click("ib_table.take");
     assert_eq!((screen.cam(0), screen.cam(1), screen.cam(2)), ((100, 200), (300, 350), (700, 750)));
     let own = screen.studio().interbus().unwrap();

@@ -10,6 +10,11 @@ use crate::protocol::interbus::StartupMode;
 use crate::ui::Skin;
 use crate::ui::controls::{dot, row};
 
+/// Width that eight outputs need beside each other.
+const LAMPS: f32 = 280.0;
+/// Height of a row of them.
+const LAMP: f32 = 16.0;
+
 pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
     let (main, unit) = match (last.and_then(Reading::rpm), encoder.position()) {
@@ -47,13 +52,20 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     if let Some(StartupMode::Cams(program)) = reading.mode
         && let Some(output) = reading.cams()
     {
-        ui.horizontal(|ui| {
-            let text = crate::app::Text::new("ib_startup.program").with("program", program.get());
-            ui.label(skin.caption(skin.words(&text)));
-            for cam in 0..8 {
-                let on = output.outputs >> cam & 1 == 1;
-                dot(ui, on, if on { palette.good } else { palette.muted });
-                ui.label(skin.caption(cam.to_string()));
+        let text = crate::app::Text::new("ib_startup.program").with("program", program.get());
+        ui.label(skin.caption(skin.words(&text)));
+        let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
+        ui.scope(|ui| {
+            // Lamps are read, not touched.
+            ui.spacing_mut().interact_size.y = LAMP;
+            for first in (0..8).step_by(beside) {
+                ui.horizontal(|ui| {
+                    for cam in first..first + beside {
+                        let on = output.outputs >> cam & 1 == 1;
+                        dot(ui, on, if on { palette.good } else { palette.muted });
+                        ui.label(skin.caption(cam.to_string()));
+                    }
+                });
             }
         });
     }

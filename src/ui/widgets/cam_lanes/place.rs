@@ -10,7 +10,7 @@ const RULER: f32 = 20.0;
 const LANE: f32 = 28.0;
 /// Width of what stands before the lanes, at most, and as a share of all.
 const HEAD: f32 = 208.0;
-const HEAD_PART: f32 = 0.3;
+const HEAD_PART: f32 = 0.34;
 /// Room behind the lanes for half a number of the ruler.
 const BEHIND: f32 = 16.0;
 /// How thick an edge is to take hold of.
