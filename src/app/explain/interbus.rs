@@ -79,7 +79,9 @@ pub fn encoder(error: &Error) -> Text {
             .with_text("why", refusal(*error)),
         Error::UnknownReadOut { command } => Text::new("interbus.no_read_out").with("word", word(command.emit())),
         Error::TimeOut { awaited, sent, input, milliseconds } => {
-            time_out(*awaited).with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
+            let busy = matches!(Reply::parse(*input), Reply::Busy { .. });
+            let text = if busy { Text::new("interbus.still_busy") } else { time_out(*awaited) };
+            text.with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
         }
         Error::OtherMaster { sent, seen } => {
             let (id, seen) = match seen {

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::explain::interbus::{direction, startup};
 use crate::app::explain::plain;
 use crate::profile::interbus::Direction;
-use crate::protocol::interbus::{Flags, Interface, LedRow, Mode, Parameter, ReadOutValue};
+use crate::protocol::interbus::{Flags, Interface, LedRow, Mode, Parameter, ReadOut, ReadOutValue, Value};
 
 /// A parameter.
 pub fn parameter(parameter: Parameter) -> Text {
@@ -93,4 +93,14 @@ pub fn interface(interface: Interface) -> Text {
 pub fn range(steps: u32, turns: u32) -> Text {
     let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
     Text::new(id).with("steps", steps).with("turns", turns)
+}
+
+/// What was read out, as it is written beside its name.
+pub fn read_value(what: ReadOut, value: Value) -> Text {
+    match (what.number(), Direction::of_code(value.get())) {
+        (0x3, Some(own)) => direction(own),
+        // A number that is counted or names something; what its bits are nobody needs.
+        (0x0..=0x7, _) => plain(value.get()),
+        _ => read_out_value(what.value(value)),
+    }
 }

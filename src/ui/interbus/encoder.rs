@@ -112,10 +112,10 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         ui.add_space(skin.space.inside);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
-            paragraph(ui, skin.label(skin.say("ib_sends.left")));
-            if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
-                actions.push(Action::Interbus(encoder.session.id, Interbus::LeadBack));
-            }
+            paragraph(ui, RichText::new(skin.say("ib_sends.left")).color(skin.palette.warn));
+        }
+        if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
+            actions.push(Action::Interbus(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
             paragraph(ui, skin.caption(skin.say("ib_sends.mode_unknown")));

@@ -35,7 +35,7 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mu
                     ui.label(skin.label(&name));
                 });
                 let value = encoder.read_out(row.read_out);
-                let value = value.map(|value| skin.words(&words::read_out_value(row.read_out.value(value))));
+                let value = value.map(|value| skin.words(&words::read_value(row.read_out, value)));
                 ui.add(egui::Label::new(skin.mono(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
                 if at % columns == columns - 1 {
                     ui.end_row();
