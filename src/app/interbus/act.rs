@@ -197,15 +197,17 @@ impl Encoder {
         }
     }
 
-    /// Everything that there is to be read of a virtual encoder is read by itself.
-    pub(super) fn read_on(&mut self, services: &mut Services) {
+    /// Everything that there is to be read of a virtual encoder is read by itself; false where there is nothing more.
+    pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
-            return;
+            return false;
         }
         if self.survey.is_none() {
-            self.submit(InterbusJob::Survey, services);
+            self.try_submit(InterbusJob::Survey, services)
         } else if self.programs_read() < ProgramNumber::COUNT {
-            self.submit(InterbusJob::Programs(ProgramNumber::all().collect()), services);
+            self.try_submit(InterbusJob::Programs(ProgramNumber::all().collect()), services)
+        } else {
+            false
         }
     }
 }

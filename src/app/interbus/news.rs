@@ -139,19 +139,22 @@ impl Encoder {
                     let word = Text::new("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
                     self.session.log_answer(vec![word], services);
                 }
-                self.record.add(vec![reading], 0);
+                self.record.glimpse(reading);
                 self.read_on(services);
             }
             InterbusOutput::Surveyed(survey) => {
                 self.take_survey(*survey, services);
                 let programs = std::mem::take(&mut self.read_after);
-                if programs.is_empty() {
-                    self.read_on(services);
-                } else {
+                if !programs.is_empty() {
                     self.submit(InterbusJob::Programs(programs), services);
+                } else if !self.read_on(services) {
+                    self.see_a_word(services);
                 }
             }
-            InterbusOutput::Programs(programs, shift) => self.staged.refresh_programs(&programs, Some(shift)),
+            InterbusOutput::Programs(programs, shift) => {
+                self.staged.refresh_programs(&programs, Some(shift));
+                self.see_a_word(services);
+            }
             InterbusOutput::Position(reading) => self.record.add(vec![reading], 0),
             InterbusOutput::ReadOut(what, value) => {
                 self.read_outs.insert(what.number(), value);
@@ -160,7 +163,7 @@ impl Encoder {
                 if let Some(survey) = &mut self.survey {
                     survey.identity.mode = mode;
                 }
-                self.submit(InterbusJob::Position, services);
+                self.see_a_word(services);
             }
             InterbusOutput::Check(lines) => self.check = Some(explain::interbus::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
@@ -177,6 +180,13 @@ impl Encoder {
             InterbusOutput::Committed(committed) => self.committed(*committed, services),
             // The command line asks for these.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
+        }
+    }
+
+    /// What comes is to be seen with what is known by now, unless it comes anyway.
+    fn see_a_word(&mut self, services: &mut Services) {
+        if !self.session.is_polling() {
+            self.submit(InterbusJob::Position, services);
         }
     }
 

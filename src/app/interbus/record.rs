@@ -59,6 +59,11 @@ impl Record {
         }
     }
 
+    /// The word that came first: nobody knows yet whether it is a position, so that it is in no line.
+    pub(super) fn glimpse(&mut self, reading: Reading) {
+        self.last = Some(reading);
+    }
+
     fn see(&mut self, reading: &Reading) {
         let at = reading.at;
         match reading.mode {

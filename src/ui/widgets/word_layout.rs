@@ -156,7 +156,7 @@ impl Cells {
 
     fn size(&self) -> Vec2 {
         let lines = f32::from(BITS / self.columns) * Cells::line_height();
-        Vec2::new(f32::from(self.columns) * self.cell, lines + NUMBERS + CELL * f32::from(self.position_lines()))
+        Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
     }
 
     /// The position has its bits right-justified below the word's.
@@ -179,7 +179,7 @@ impl Cells {
     fn position(&self, bit: u8) -> Rect {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);
-        let word = f32::from(BITS / self.columns) * Cells::line_height() + NUMBERS;
+        let word = f32::from(BITS / self.columns) * Cells::line_height();
         self.cell_at(place % self.columns, word + f32::from(place / self.columns) * CELL)
     }
 
@@ -231,6 +231,7 @@ pub fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
         own.on_hover_text(words);
     }
     position(ui.painter(), skin, layout, &cells);
+    ui.add(egui::Label::new(skin.caption(skin.say("cams.word_of_position"))).wrap());
 }
 
 /// A group with its place in the word and, where a word has come, its bits.
@@ -306,9 +307,4 @@ fn position(painter: &Painter, skin: &Skin, layout: &WordLayout<'_>, cells: &Cel
             painter.text(rect.center(), Align2::CENTER_CENTER, bit.to_string(), font, ink.into());
         }
     }
-    let top = cells.position(POSITION - 1);
-    let words = skin.say("cams.word_of_position");
-    let font = FontId::proportional(skin.sizes.caption);
-    let at = pos2(top.left(), top.top() - NUMBERS / 2.0);
-    painter.text(at, Align2::LEFT_CENTER, words, font, skin.palette.muted.into());
 }
