@@ -19,11 +19,10 @@ use super::commit::cycles_seen;
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::interbus::check::{Wear as Limits, check as check_device};
 use crate::device::interbus::{
-    Handshake, Identity, Kept, Master, Reading, Station, identify, read_item, read_one, read_programs, read_status,
-    save, select, survey,
+    Error, Handshake, Identity, Kept, Master, Reading, Station, identify, read_item, read_one, read_programs,
+    read_status, save, select, survey,
 };
 use crate::link::{ByteLink, Clock, LinkError};
-use crate::protocol::interbus::{ProgramNumber, ReadOut};
 use crate::sim::Motor;
 use crate::store::Store;
 
@@ -86,14 +85,48 @@ impl Device for Interbus {
     type Doing = Doing;
 
     fn run(&mut self, desk: &mut Desk, job: InterbusJob, tell: Told<'_>) -> Result<InterbusOutput, JobError> {
+        use InterbusOutput as Out;
         match job {
-            InterbusJob::Prepare(change) => {
-                Ok(InterbusOutput::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)))
+            InterbusJob::Prepare(change) => Ok(Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?))),
+            InterbusJob::Commit(commit) => Ok(Out::Committed(Box::new(commit::commit(self, desk, &commit, tell)?))),
+            InterbusJob::Hello => self.ask(desk, tell, |master, _| Ok(Out::Hello(master.reading()?))),
+            InterbusJob::Position => self.ask(desk, tell, |master, _| Ok(Out::Position(master.reading()?))),
+            InterbusJob::Survey => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                Ok(Out::Surveyed(Box::new(survey(master, told)?)))
+            }),
+            InterbusJob::Programs(wanted) => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| steps(done, total, Doing::Program(what));
+                let (programs, shift) = read_programs(master, &wanted, told)?;
+                Ok(Out::Programs(programs, shift))
+            }),
+            InterbusJob::Identify => self.ask(desk, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?)))),
+            InterbusJob::Status => self.ask(desk, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?)))),
+            InterbusJob::Check => {
+                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let wear = |identity: &Identity| Limits {
+                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
+                    warning: WEAR_WARNING,
+                    limit: WEAR_LIMIT,
+                };
+                self.ask(desk, tell, |master, steps| {
+                    let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                    Ok(Out::Check(check_device(master, wear, told)?))
+                })
             }
-            InterbusJob::Commit(commit) => {
-                Ok(InterbusOutput::Committed(Box::new(commit::commit(self, desk, &commit, tell)?)))
+            InterbusJob::Read(item) => self.ask(desk, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
+            InterbusJob::ReadOut(what) => {
+                self.ask(desk, tell, |master, _| Ok(Out::ReadOut(what, read_one(master, what)?)))
             }
-            job => self.ask(desk, job, tell),
+            InterbusJob::Select(mode) => self.ask(desk, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
+            InterbusJob::Save { programs } => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| match what {
+                    Kept::ReadOut(what) => steps(done, total, Doing::ReadOut(what)),
+                    Kept::Program(what) => steps(done, total, Doing::Program(what)),
+                };
+                Ok(Out::Saved(Box::new(save(master, programs, told)?)))
+            }),
+            InterbusJob::LeadBack => self.ask(desk, tell, |master, _| Ok(Out::LedBack(master.end_what_was_left()?))),
         }
     }
 
@@ -122,46 +155,20 @@ impl Device for Interbus {
     }
 }
 
+/// What is at the moment, of so much.
+type Steps<'s> = &'s mut dyn FnMut(u64, u64, Doing);
+
 impl Interbus {
-    /// What only asks. All of it replaces the position for a moment, but for the IN word alone.
-    fn ask(&mut self, desk: &mut Desk, job: InterbusJob, tell: Told<'_>) -> Result<InterbusOutput, JobError> {
-        let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    /// What only asks, or leads back. All of it replaces the position for a moment, but for the IN word alone.
+    fn ask(
+        &mut self,
+        desk: &mut Desk,
+        tell: Told<'_>,
+        ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
+    ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
         let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
-        let steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
-        let read_out = &mut |done, total, what: ReadOut| steps(done, total, Doing::ReadOut(what));
-        let program = &mut |done, total, what: ProgramNumber| steps(done, total, Doing::Program(what));
-        Ok(match job {
-            InterbusJob::Hello => InterbusOutput::Hello(master.reading()?),
-            InterbusJob::Survey => InterbusOutput::Surveyed(Box::new(survey(&mut master, read_out)?)),
-            InterbusJob::Programs(wanted) => {
-                let (programs, shift) = read_programs(&mut master, &wanted, program)?;
-                InterbusOutput::Programs(programs, shift)
-            }
-            InterbusJob::Identify => InterbusOutput::Identity(Box::new(identify(&mut master)?)),
-            InterbusJob::Status => InterbusOutput::Status(Box::new(read_status(&mut master)?)),
-            InterbusJob::Check => {
-                let wear = |identity: &Identity| Limits {
-                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
-                    warning: WEAR_WARNING,
-                    limit: WEAR_LIMIT,
-                };
-                InterbusOutput::Check(check_device(&mut master, wear, read_out)?)
-            }
-            InterbusJob::Position => InterbusOutput::Position(master.reading()?),
-            InterbusJob::Read(item) => InterbusOutput::Item(read_item(&mut master, item)?),
-            InterbusJob::ReadOut(what) => InterbusOutput::ReadOut(what, read_one(&mut master, what)?),
-            InterbusJob::Select(mode) => InterbusOutput::Selected(select(&mut master, mode)?),
-            InterbusJob::Save { programs } => {
-                let told = &mut |done, total, what| match what {
-                    Kept::ReadOut(what) => steps(done, total, Doing::ReadOut(what)),
-                    Kept::Program(what) => steps(done, total, Doing::Program(what)),
-                };
-                InterbusOutput::Saved(Box::new(save(&mut master, programs, told)?))
-            }
-            InterbusJob::LeadBack | InterbusJob::Prepare(_) | InterbusJob::Commit(_) => {
-                InterbusOutput::LedBack(master.end_what_was_left()?)
-            }
-        })
+        let mut steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
+        Ok(ask(&mut master, &mut steps)?)
     }
 }

@@ -99,6 +99,7 @@ pub fn encoder(error: &Error) -> Text {
             Text::new("interbus.no_mode").with_text("wanted", startup(*wanted)).with_text("is", startup(*is))
         }
         Error::NotSelectable { mode } => Text::new("interbus.not_selectable").with_text("mode", startup(*mode)),
+        Error::UnknownMode { mode } => Text::new("interbus.unknown_mode").with_text("mode", startup(*mode)),
         Error::Moving { from, to } => Text::new("interbus.moving").with("from", from).with("to", to),
         Error::NotTaken { item, wanted, reads } => {
             Text::new("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)

@@ -16,7 +16,7 @@ use crate::cli::profiles::show_done;
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
 use crate::profile::interbus::{Item, ItemValue};
-use crate::protocol::interbus::KIND;
+use crate::protocol::interbus::{KIND, Reply};
 use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
@@ -56,14 +56,26 @@ fn check_device(common: &Common, output: &Output) -> Result {
 }
 
 fn lead_back(common: &Common, output: &Output) -> Result {
-    match Runner::open(common)?.run(InterbusJob::LeadBack)? {
-        InterbusOutput::LedBack(now) => {
-            let text = format!("the encoder runs, in mode {}\n", explain::interbus::startup(now).terminal());
-            output.show(&json!({"done": "lead-back", "mode": mode(now)}), &text)?;
-            Ok(Done::Well)
+    let mut runner = Runner::open(common)?;
+    Disturbs::LeadingBack.say(output);
+    let now = match runner.run(InterbusJob::LeadBack)? {
+        InterbusOutput::LedBack(now) => now,
+        other => return Err(unexpected(&other)),
+    };
+    let reading = match runner.run(InterbusJob::Position)? {
+        InterbusOutput::Position(reading) => reading,
+        other => return Err(unexpected(&other)),
+    };
+    let (is, word) = (explain::interbus::startup(now).terminal(), format!("0x{:08X}", reading.word));
+    let text = match reading.reply() {
+        Reply::Error(error) => {
+            let why = explain::interbus::refusal(error).terminal();
+            format!("the encoder is in mode {is}, and sends {word}: {why}\n")
         }
-        other => Err(unexpected(&other)),
-    }
+        _ => format!("the encoder runs, in mode {is}\n"),
+    };
+    output.show(&json!({"done": "lead-back", "mode": mode(now), "word": word}), &text)?;
+    Ok(Done::Well)
 }
 
 fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {

@@ -53,6 +53,8 @@ enum Disturbs {
     Reading,
     /// So are cam programs, each of which is selected for that.
     Programs,
+    /// What somebody has left is ended, and stored.
+    LeadingBack,
 }
 
 impl Disturbs {
@@ -61,6 +63,7 @@ impl Disturbs {
         let id = match self {
             Disturbs::Reading => "ib_disturbs.reading",
             Disturbs::Programs => "ib_disturbs.programs",
+            Disturbs::LeadingBack => "ib_disturbs.lead_back",
         };
         output.remark(&Text::new(id).terminal());
     }

@@ -168,7 +168,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
         Reply::Run { stray: 0, .. } => ((Verdict::Good, Finding::Runs(word)), true),
         Reply::Run { .. } => ((Verdict::Attention, Finding::Stray(word)), true),
         Reply::Error(error) => ((Verdict::Bad, Finding::Error(error)), true),
-        Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, Finding::Occupied(word)), true),
+        Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, Finding::Occupied(word)), false),
         Reply::Echo { .. } | Reply::Busy { .. } | Reply::Unknown { .. } => {
             ((Verdict::Bad, Finding::Occupied(word)), false)
         }

@@ -297,6 +297,12 @@ pub enum Error {
         /// Which.
         mode: StartupMode,
     },
+    /// It is in a mode that the manual does not have: what any word but a read-out does there is not known.
+    #[error("the encoder is in mode {}, which is unknown: nothing was sent but read-outs", mode.emit())]
+    UnknownMode {
+        /// Which.
+        mode: StartupMode,
+    },
     /// The shaft turns where it must stand still.
     #[error("the shaft moves: from position {from} to {to}")]
     Moving {

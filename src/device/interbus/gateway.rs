@@ -198,7 +198,7 @@ impl<'a> Gateway<'a> {
 
 /// What a reply with the right number says.
 fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, Trouble> {
-    let [.., _] = frame.as_slice() else { return Err(Trouble::Damage(Damage::Registers)) };
+    let [_, _, ..] = frame.as_slice() else { return Err(Trouble::Damage(Damage::Registers)) };
     // A recording has the number of its own request.
     frame.splice(..2, request.tr_id.to_be_bytes());
     let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());

@@ -1,9 +1,12 @@
 //! The host's side of the handshake (reference 4): words are sent, and each is waited for until it has had its effect.
 //! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
 
+mod held;
 mod modes;
 
 use std::time::Duration;
+
+use held::{Held, LEAST, LEAST_PATIENCE, Look};
 
 use super::data::ProcessData;
 use super::error::{Asked, Awaited, Meddled};
@@ -14,12 +17,6 @@ use crate::link::Ctx;
 use crate::protocol::interbus::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An echo or a value stands when it came in so many cycles, one after the other (reference 4).
-const STANDS: u32 = 2;
-/// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
-const LEAST: u32 = 10;
-/// A word that may be the answer to the one before stands after so many.
-const STAYS: u32 = 20;
 /// The words of an encoder at work, without anything beside it: also the echo of cam 0's start at 0.
 const BUSY: u32 = 0xC000_0000;
 
@@ -31,6 +28,8 @@ pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut Known,
     patience: Duration,
+    /// It is a recording that answers.
+    recorded: bool,
     tell: Option<Teller<'a>>,
     /// What it does, as it said in this job.
     is: Option<StartupMode>,
@@ -50,17 +49,17 @@ pub struct Master<'a> {
     lost: bool,
     /// What came last.
     input: u32,
-    /// The echoes of all that was set in this job.
-    echoes: Vec<u32>,
+    /// All that was to be acknowledged in this job: its echoes may still stand.
+    acknowledged: Vec<Command>,
     told: Option<(u32, Says)>,
 }
 
 impl<'a> Master<'a> {
     /// A master over a station's gateway, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
-        let patience = station.handshake;
+        let (patience, recorded) = (station.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
-        Master::with(Box::new(gateway), known, patience)
+        Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
     /// A master over other process data, for one job.
@@ -73,7 +72,8 @@ impl<'a> Master<'a> {
         Master {
             data,
             known,
-            patience,
+            patience: patience.max(LEAST_PATIENCE),
+            recorded: false,
             tell: None,
             is: None,
             unsure: false,
@@ -84,7 +84,7 @@ impl<'a> Master<'a> {
             out: None,
             lost: false,
             input: 0,
-            echoes: Vec::new(),
+            acknowledged: Vec::new(),
             told: None,
         }
     }
@@ -168,24 +168,27 @@ impl<'a> Master<'a> {
     }
 
     fn acknowledged(&mut self, command: Command, may_run: bool) -> Result<(), Error> {
-        let before = self.input;
-        let echo = Reply::echo_of(command).emit();
-        let stands = if echo == BUSY { STAYS } else { STANDS };
-        self.echoes.push(echo);
-        let known = self.echoes.clone();
-        let mut runs = 0;
-        self.until(command, Awaited::Echo, |word, same| {
+        let (before, found) = (self.input, self.found_error);
+        // What looks busy is the echo only where nobody is busy for so long (`U`).
+        let busy = (Reply::echo_of(command).emit() == BUSY).then_some(self.patience / 2);
+        self.acknowledged.push(command);
+        let known = self.acknowledged.clone();
+        let is_old = |word| word == before || known.iter().any(|own| is_echo(*own, word));
+        let mut rests = Held::new(self.recorded);
+        self.until(command, Awaited::Echo, |Look { now, word, same }| {
             let reply = Reply::parse(word);
-            runs = if matches!(reply, Reply::Run { .. }) { runs + 1 } else { 0 };
+            rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {
-                _ if is_echo(command, word) => (same >= stands).then_some(Ok(())),
-                Reply::Error(error) if word != before && same >= STANDS => {
+                _ if is_echo(command, word) => {
+                    busy.map_or(same.stands(), |busy| same.stays_for(busy)).then_some(Ok(()))
+                }
+                Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
                     Some(Err(Error::Refused { sent: command, error }))
                 }
-                Reply::Echo { .. } if word != before && !known.contains(&word) && same >= STAYS => {
+                Reply::Echo { .. } if !is_old(word) && same.stays() => {
                     Some(Err(Error::OtherMaster { sent: command.emit(), seen: Meddled::Input(word) }))
                 }
-                Reply::Run { .. } if may_run && runs >= STAYS => Some(Ok(())),
+                _ if may_run && rests.stays() => Some(Ok(())),
                 _ => None,
             }
         })
@@ -198,14 +201,15 @@ impl<'a> Master<'a> {
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
         self.leave_value()?;
         self.ensure_legal(command)?;
-        let (before, echoes) = (self.input, self.echoes.clone());
-        self.until(command, Awaited::Value, |word, same| match Reply::parse(word) {
-            Reply::ReadOut(value) if same >= STANDS => Some(Ok(value)),
-            Reply::UnknownReadOut(_) if same >= STANDS => Some(Err(Error::UnknownReadOut { command })),
-            Reply::Error(error) if word != before && same >= STANDS => {
+        let (before, found, known) = (self.input, self.found_error, self.acknowledged.clone());
+        let is_old = |word| known.iter().any(|own| is_echo(*own, word));
+        self.until(command, Awaited::Value, |Look { word, same, .. }| match Reply::parse(word) {
+            Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
+            Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
+            Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
                 Some(Err(Error::Refused { sent: command, error }))
             }
-            Reply::Echo { .. } if !echoes.contains(&word) && same >= STAYS => {
+            Reply::Echo { .. } if !is_old(word) && same.stays() => {
                 Some(Err(Error::OtherMaster { sent: command.emit(), seen: Meddled::Input(word) }))
             }
             _ => None,
@@ -240,50 +244,55 @@ impl<'a> Master<'a> {
 
     fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        let (whole, mut runs, found) = (self.patience, 0, self.found_error);
+        let (whole, mut runs, found) = (self.patience, Held::new(self.recorded), self.found_error);
         self.patience = patience;
-        let ended = self.until(command, Awaited::Run, |word, same| {
-            runs = if matches!(Reply::parse(word), Reply::Run { .. }) { runs + 1 } else { 0 };
-            (runs >= STANDS || Some(word) == found && same >= STAYS).then_some(Ok(()))
+        let ended = self.until(command, Awaited::Run, |Look { now, word, same }| {
+            runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
+            (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
         });
         self.patience = whole;
         ended
     }
 
-    /// Sends `40000000` until the position is the preset, and takes it back. Once for each preset that was set.
+    /// Sends `40000000` until the position is the preset, and takes it back. Once for each preset that was set. The word
+    /// stands for a while in any case: the position from before may be there already.
     ///
     /// # Errors
     /// [`Error::TimeOut`] where the position does not become that; otherwise as [`set`](Self::set).
     pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
-        let mut stands = 0;
-        let fired = self.until(Command::Preset, Awaited::Preset, |word, _| {
-            let there = matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get()));
-            stands = if there { stands + 1 } else { 0 };
-            (stands >= STANDS).then_some(Ok(()))
+        let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
+        let fired = self.until(Command::Preset, Awaited::Preset, |Look { now, word, .. }| {
+            sent.go_on(true, now);
+            there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
+            (sent.stays() && there.stands()).then_some(Ok(()))
         });
         self.shielded(Self::normal).and(fired)
     }
 
-    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and in how many cycles it came.
+    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and how long it has been that.
     fn until<T>(
         &mut self,
         command: Command,
         awaited: Awaited,
-        mut judge: impl FnMut(u32, u32) -> Option<Result<T, Error>>,
+        mut judge: impl FnMut(Look) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
-        let (mut last, mut same, mut cycles) = (None, 0, 0);
+        let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
         loop {
             let word = self.cycle(command)?;
+            let now = self.data.now();
             cycles += 1;
-            same = if last == Some(word) { same + 1 } else { 1 };
+            if last != Some(word) {
+                same = Held::new(self.recorded);
+            }
+            same.go_on(true, now);
             last = Some(word);
-            if let Some(ended) = judge(word, same) {
+            if let Some(ended) = judge(Look { now, word, same }) {
                 return ended;
             }
-            if cycles >= LEAST && self.data.now().since(begun) >= self.patience {
+            if cycles >= LEAST && now.since(begun) >= self.patience {
                 return Err(self.too_late(command, awaited, word));
             }
         }
@@ -292,11 +301,11 @@ impl<'a> Master<'a> {
     fn cycle(&mut self, command: Command) -> Result<u32, Error> {
         let before = self.out.replace(command);
         self.input = match self.data.cycle(command.emit()) {
-            Err(error @ Error::Exception { asked: Asked::Write { .. }, .. }) => {
+            Err(error) if is_unwritten(&error) => {
                 self.out = before;
                 return Err(error);
             }
-            // It may be there also where writing it fails.
+            // It may be there also where writing it fails: a gateway that did not get an answer says so.
             ended => {
                 self.lost = ended.is_err();
                 ended?
@@ -350,6 +359,8 @@ impl<'a> Master<'a> {
     fn taken_in(&self) -> Mode {
         match self.is {
             Some(StartupMode::Cams(_)) => Mode::Cam,
+            // The manual does not say what other words do then.
+            Some(StartupMode::Unknown(_)) => Mode::ReadOut,
             _ if self.parameterising => Mode::Parameterisation,
             // Nothing but reading out may be done before it has said what it does.
             None => Mode::ReadOut,
@@ -357,4 +368,9 @@ impl<'a> Master<'a> {
             Some(_) => Mode::Position,
         }
     }
+}
+
+/// The gateway refuses the word as such: it was not written. With any other exception it may have been.
+fn is_unwritten(error: &Error) -> bool {
+    matches!(error, Error::Exception { asked: Asked::Write { .. }, exception } if !exception.passes())
 }

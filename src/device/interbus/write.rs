@@ -244,7 +244,8 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
 fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
-    master.fire(|position| is_near(position, value, gear))
+    // No nearer than a step: the place from before may be almost there.
+    master.fire(|position| apart(position, value, gear) <= 1)
 }
 
 /// Watches the position for a moment; the encoder gives it from then on.
@@ -275,8 +276,12 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
 /// As near as a shaft that stands is to itself: its position may be one step up or down, or a third of a degree with fine
 /// steps.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
-    let Some(gear) = gear else { return position.abs_diff(other) <= 1 };
+    let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
+    apart(position, other, gear) <= most
+}
+
+/// Steps from one position to another, the shorter way round.
+fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
-    let around = gear.steps().saturating_sub(apart);
-    apart.min(around) <= (gear.steps() / gear.turns() / 1000).max(1)
+    gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))
 }

@@ -57,7 +57,8 @@ pub enum InterbusJob {
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Ends a parameterisation, an error or a read-out that somebody has left.
+    /// Ends a parameterisation, an error or a read-out that somebody has left. What was set and not stored is stored by
+    /// that; whose store it is nobody knows, so that the logbook does not count it.
     LeadBack,
 }
 

@@ -1,9 +1,14 @@
 //! The handshake word by word, from the tables of reference 4 and 5: what is waited for, what is not taken for an answer,
 //! and what is made of each that is wrong.
 
+use std::time::Duration;
+
 use encoder_studio::device::interbus::Master;
 use encoder_studio::device::interbus::write::{Left, Written};
-use encoder_studio::device::interbus::{Awaited, Error, Meddled, Says, Station, identify, read_programs, select};
+use encoder_studio::device::interbus::{
+    Asked, Awaited, Error, Exception, Meddled, Says, Station, identify, read_programs, select,
+};
+use encoder_studio::profile::interbus::Op;
 use encoder_studio::protocol::interbus::{Parameter, StartupMode};
 
 use super::scripted::{POSITION, Script, cams, carry_out, parameters};
@@ -22,7 +27,7 @@ fn reading_back(script: Script) -> Script {
     })
 }
 
-fn worked_example() -> Vec<encoder_studio::profile::interbus::Op> {
+fn worked_example() -> Vec<Op> {
     use Parameter::{Direction, Preset, Steps, Turns};
     parameters(&[(Steps, 255), (Turns, 1), (Direction, 3), (Preset, 0)])
 }
@@ -112,7 +117,83 @@ fn the_echo_that_looks_busy_stands_for_longer() {
     assert!(sent.windows(3).any(|own| own == [0x4000_0000, 0x6000_0000, 0x2040_0001]), "{sent:08X?}");
     let start = steps.iter().position(|step| step.out == 0x4000_0000).unwrap();
     let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
-    assert!(steps[stop].at.since(steps[start].at).as_millis() >= 95);
+    // Half of the patience.
+    assert!(steps[stop].at.since(steps[start].at).as_millis() >= 1000);
+    // It was busy indeed, for 600 ms, and refuses then.
+    let busy: Vec<u32> = std::iter::repeat_n(0xC000_0000, 120).chain([0x9800_0004]).collect();
+    let interrupted = carry_out(Script::new().on(0x4000_0000, &busy), cams(0, 0, 0, 1)).0.unwrap_err();
+    assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == 0x4000_0000), "{interrupted}");
+}
+
+/// A gateway gives the same word again and again until it has looked at the bus: what one looks at more often is no older.
+#[test]
+fn a_word_stands_by_time_and_not_by_how_often_it_is_read() {
+    let pace = Duration::from_millis(1);
+    let cases: [(&str, u32, usize); 2] = [("an error", 0x8200_0000, 7), ("an echo of other data", 0xC200_0100, 60)];
+    for (label, word, reads) in cases {
+        let words: Vec<u32> = std::iter::repeat_n(word, reads).chain([0xC200_00FF]).collect();
+        let script = reading_back(Script { pace, ..Script::new() }.on(STEPS, &words));
+        let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
+        assert_eq!(ended.unwrap().verified, 1, "{label}");
+    }
+}
+
+/// Reference 2, "111": one with the manufacturer's bit is an old echo as well, however long it stays.
+#[test]
+fn an_old_echo_with_the_manufacturer_s_bit_is_nobody_else_s() {
+    let old: Vec<u32> = std::iter::repeat_n(0xE200_00FF, 40).chain([0xE800_0000]).collect();
+    let script = reading_back(
+        Script::new()
+            .on(STEPS, &[0xC000_0000, 0xE200_00FF])
+            .on(0x0800_0000, &[[0xC000_0000].as_slice(), &old].concat()),
+    );
+    let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255), (Parameter::Preset, 0)]));
+    assert_eq!(ended.unwrap().verified, 2);
+}
+
+/// Modbus application protocol 1.1b3, chapter 7: with 01 to 03 nothing was written; with any other the gateway may have
+/// passed the word on.
+#[test]
+fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
+    for (code, wrote) in [(0x02, false), (0x04, true), (0x06, true), (0x0B, true), (0x0B, false)] {
+        let script = Script { refuses: Some((STEPS, code, wrote)), ..Script::new() };
+        let (ended, _, sent) = carry_out(script, worked_example());
+        let interrupted = ended.unwrap_err();
+        let asked = Asked::Write { register: 0, word: STEPS };
+        assert_eq!(interrupted.cause, Error::Exception { asked, exception: Exception::new(code) });
+        assert_eq!(interrupted.left, Left::AsFound, "{code:02X}");
+        assert_eq!(sent.contains(&STEPS), wrote, "{sent:08X?}");
+        assert!(sent.ends_with(&[RUN, 0]), "{code:02X}: {sent:08X?}");
+    }
+    // The very first word: the encoder may show a value from then on.
+    let script = Script { refuses: Some((0x2021_0009, 0x0B, true)), ..Script::new() };
+    let (sent, mut station) = (script.sent.clone(), station(""));
+    assert!(matches!(identify(&mut Master::over(script, &mut station)), Err(Error::Exception { .. })));
+    assert_eq!(*sent.lock().unwrap(), [0x2021_0009, 0]);
+}
+
+/// What stands on OUT already has no edge.
+#[test]
+fn leading_back_makes_an_edge_of_run() {
+    let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
+    let (sent, mut station) = (script.sent.clone(), station(""));
+    assert_eq!(Master::over(script, &mut station).end_what_was_left(), Ok(StartupMode::K3));
+    assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
+}
+
+/// The shaft is two steps from the preset already: it is not taken for fired before it is.
+#[test]
+fn a_preset_is_fired_until_the_position_is_it() {
+    let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
+    let near: Vec<u32> = std::iter::repeat_n(POSITION, 6).chain([POSITION + 2]).collect();
+    let (ended, steps, sent) = carry_out(Script::new().on(0x4000_0000, &near), fire());
+    assert!(ended.is_ok() && sent.ends_with(&[0x4000_0000, 0]), "{sent:08X?}");
+    let at = |out| steps.iter().filter(|step| step.out == out).map(|step| step.at).next_back().unwrap();
+    assert!(at(0).since(at(0x4000_0000)).as_millis() >= 95);
+    // One that does not take it stays two steps away: the word is told.
+    let interrupted = carry_out(Script::new().on(0x4000_0000, &[POSITION]), fire()).0.unwrap_err();
+    let missing = Error::TimeOut { awaited: Awaited::Preset, sent: 0x4000_0000, input: POSITION, milliseconds: 2000 };
+    assert_eq!(interrupted.cause, missing);
 }
 
 /// The program is selected first, and asked for before any word that would do something else in position mode.
@@ -227,4 +308,11 @@ fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
     let mut master = Master::over(script, &mut station);
     assert_eq!(identify(&mut master).unwrap().mode.emit(), 0x55);
     assert_eq!(sent.lock().unwrap().last(), Some(&0));
+    // Nor after that: whatever it does with 20800000 there, nobody knows.
+    for wanted in [StartupMode::K3, StartupMode::Velocity, StartupMode::Cams(program(1))] {
+        let error = select(&mut master, wanted).unwrap_err();
+        assert_eq!(error.to_string(), "the encoder is in mode 85, which is unknown: nothing was sent but read-outs");
+    }
+    let sent = sent.lock().unwrap();
+    assert!(sent.iter().all(|word| *word == 0 || word >> 16 == 0x2021), "{sent:08X?}");
 }

@@ -261,6 +261,12 @@ fn the_device_check_says_what_is_wrong() {
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, Step::InputWord), Some(Verdict::Bad), "{lines:?}");
     assert_eq!(stand.sent(), Vec::<u32>::new());
+    // Somebody reads its serial number.
+    let mut stand = Stand::new("steps=4096&revolutions=1");
+    stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x2021_0000));
+    let lines = checked(&mut stand);
+    assert_eq!(verdict(&lines, Step::InputWord), Some(Verdict::Attention), "{lines:?}");
+    assert_eq!((verdict(&lines, Step::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
     // No K3: OUT changes nothing.
     let mut stand = Stand::new("class=K2&position=77");
     let lines = checked(&mut stand);

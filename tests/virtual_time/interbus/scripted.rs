@@ -4,7 +4,7 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::interbus::{Error, Handshake, Identity, Master, ProcessData, write};
+use encoder_studio::device::interbus::{Asked, Error, Exception, Handshake, Identity, Master, ProcessData, write};
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::interbus::{
     Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, ProgramChange,
@@ -36,11 +36,15 @@ pub(crate) struct Script {
     pub(crate) standing: VecDeque<u32>,
     pub(crate) input: u32,
     pub(crate) now: Duration,
+    /// From one look at IN to the next.
+    pub(crate) pace: Duration,
+    /// The gateway refuses this word with this exception, the first time that it is written; and whether it wrote it.
+    pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 
 impl Script {
     pub(crate) fn new() -> Self {
-        Script { mode: 1, input: POSITION, ..Script::default() }
+        Script { mode: 1, input: POSITION, pace: Duration::from_millis(5), ..Script::default() }
     }
 
     pub(crate) fn in_mode(mode: u32) -> Self {
@@ -91,10 +95,15 @@ impl Script {
 
 impl ProcessData for Script {
     fn cycle(&mut self, out: u32) -> Result<u32, Error> {
-        if out != self.out {
+        let refused = self.refuses.take_if(|(word, ..)| *word == out);
+        if out != self.out && !matches!(refused, Some((.., false))) {
             self.take(out);
         }
-        self.now += Duration::from_millis(5);
+        self.now += self.pace;
+        if let Some((word, code, _)) = refused {
+            let asked = Asked::Write { register: 0, word };
+            return Err(Error::Exception { asked, exception: Exception::new(code) });
+        }
         self.input()
     }
 

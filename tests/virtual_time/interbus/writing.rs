@@ -1,5 +1,6 @@
 //! What is written: only what differs, each read back, one store an operation; and what is refused before anything is.
 
+use std::path::Path;
 use std::time::Duration;
 
 use encoder_studio::device::interbus::Error;
@@ -9,11 +10,11 @@ use encoder_studio::profile::Body;
 use encoder_studio::profile::interbus::{Image, Item, ItemValue, Op, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, StartupMode};
-use encoder_studio::store::{Logbook, read_text};
-use encoder_studio::worker::NotBegun;
+use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
 use encoder_studio::worker::interbus::{
-    Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, WEAR_LIMIT, Wear,
+    Change, ChangeKind, Commit, Doing, InterbusJob, InterbusOutput, JobError, WEAR_LIMIT, Wear,
 };
+use encoder_studio::worker::{Event, JobId, NotBegun, Progress};
 
 use super::support::{Stand, cam, program};
 
@@ -252,7 +253,20 @@ fn the_logbook_counts_stores_by_serial_number() {
         assert_eq!(prepared.cycles_seen, Some(u64::from(value - 1)));
         stand.commit(prepared).unwrap();
     }
-    assert!(Logbook::open(&stand.folder.path().join("logbook.sqlite")).is_ok());
+    let logbook = Logbook::open(&Store::at(stand.folder.path()).logbook_path()).unwrap();
+    let own = |serial_number: &str| DeviceKey {
+        kind: "interbus".to_owned(),
+        device_type: "K3".to_owned(),
+        serial_number: serial_number.to_owned(),
+        is_virtual: true,
+    };
+    assert_eq!(logbook.write_cycles(&own("77")).unwrap(), 3);
+    assert_eq!(logbook.write_cycles(&own("78")).unwrap(), 0);
+    let history = logbook.history(&own("77"), 9).unwrap();
+    let spent: Vec<u64> =
+        history.iter().filter_map(|entry| entry.conclusion.as_ref()).map(|own| own.cycles_spent).collect();
+    assert_eq!(spent, [1, 1, 1]);
+    assert!(history.iter().all(|entry| entry.planned_cycles == 1 && entry.backup.as_deref().is_some_and(Path::exists)));
 }
 
 /// Less one: the encoder's 3599 are 3600 steps.
@@ -318,7 +332,56 @@ fn an_operation_tells_what_it_changes() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 7 });
     assert!(matches!(prepared.plan.ops.as_slice(), [Op::Parameterise(_), Op::FirePreset { value: 7 }]));
-    let started = stand.elapsed();
-    stand.commit(prepared).unwrap();
-    assert!(stand.elapsed() - started < Duration::from_secs(5));
+    let (mut told, consent) = (Vec::new(), Consent::to(prepared.plan.id()));
+    let commit = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
+    let ended = stand.session.run(JobId::default(), commit, &mut |event| {
+        if let Event::Progress(_, Progress { done, total, what: Doing::Operation(item) }) = event {
+            told.push((done, total, item));
+        }
+    });
+    assert!(matches!(ended, Event::Finished(..)));
+    // What is set, then what is fired.
+    assert_eq!(told, [(0, 2, "preset".to_owned()), (1, 2, "position".to_owned())]);
+}
+
+/// It is near already, and gives old words: what it gives afterwards is the preset.
+#[test]
+fn a_preset_near_the_shaft_s_position_is_set_to_the_step() {
+    for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
+        let mut stand = Stand::new(&format!("steps=8192&revolutions=1&serial=77&position=100&{faults}"));
+        assert_eq!(stand.session.sample().unwrap().position(), Some(100));
+        let prepared = stand.prepare(Change::Preset { value: preset });
+        stand.commit(prepared).unwrap();
+        assert_eq!(stand.session.sample().unwrap().position(), Some(preset), "{faults}");
+        assert_eq!(stand.left(), (0, StartupMode::K3));
+    }
+}
+
+/// IN is 86000000 all the time: what it held was lost. The remedy that this names has to work.
+#[test]
+fn an_encoder_with_lost_parameters_is_led_back_and_restored() {
+    let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");
+    let profile = match stand.run(InterbusJob::Save { programs: true }).unwrap() {
+        InterbusOutput::Saved(profile) => profile,
+        other => panic!("{other:?}"),
+    };
+    let change = edited(&mut stand, &[], |wanted| wanted.parameters.zero_shift = 5);
+    let prepared = stand.prepare(change);
+    assert!(matches!(stand.commit(prepared), Err(JobError::Interrupted { .. })));
+    let now = stand.clock.now();
+    stand.gateway.with_encoder(|encoder| encoder.connect(now));
+    match stand.run(InterbusJob::LeadBack).unwrap() {
+        InterbusOutput::LedBack(mode) => assert_eq!(mode, StartupMode::K3),
+        other => panic!("{other:?}"),
+    }
+    assert_eq!((stand.session.sample().unwrap().word, stand.left()), (0x8600_0000, (0, StartupMode::K3)));
+    let begun = stand.elapsed();
+    let prepared = stand.prepare(Change::Restore { profile, options: RestoreOptions::default() });
+    let done = stand.commit(prepared).unwrap();
+    assert_eq!(done.written.verified, done.written.written);
+    let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+    assert_eq!((kept.gear().steps(), kept.gear().turns()), (360, 1));
+    assert!(stand.session.sample().unwrap().is_valid());
+    assert_eq!(stand.left(), (0, StartupMode::K3));
+    assert!(stand.elapsed() - begun < Duration::from_secs(120), "{:?}", stand.elapsed() - begun);
 }

@@ -69,6 +69,7 @@ fn every_error_of_an_encoder_says_what_to_do() {
         (Error::Implausible(Implausible::Value { read: 0x2020_0040, value: 99 }), vec!["99", "0x20200040"]),
         (Error::NoMode { wanted: program(3), is: StartupMode::K3 }, vec!["3", "K3"]),
         (Error::NotSelectable { mode: StartupMode::K2 }, vec!["K2"]),
+        (Error::UnknownMode { mode: StartupMode::Unknown(value(85)) }, vec!["85"]),
         (Error::Moving { from: 100, to: 180 }, vec!["100", "180"]),
         (Error::NotTaken { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
         (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),

@@ -33,13 +33,21 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then.
+    /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then. What was
+    /// set and not stored is stored by it: one store, of which nobody knows whether it was due. An error that stays is left
+    /// to whoever looks at the IN word: the encoder can be asked and set all the same.
     ///
     /// # Errors
     /// The handshake and the way.
     pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
         let ended = self.shielded(|master| {
-            master.run()?;
+            master.let_go_of_run()?;
+            match master.run() {
+                Err(Error::Refused { error, .. }) => {
+                    (master.found_error, master.parameterising) = (Some(Reply::Error(error).emit()), false);
+                }
+                ended => ended?,
+            }
             master.normal()?;
             let mode = master.ask_mode()?;
             master.found = Some(mode);
@@ -52,11 +60,12 @@ impl Master<'_> {
     /// Sends the encoder into a mode, and asks whether it is there.
     ///
     /// # Errors
-    /// [`Error::NoMode`], [`Error::NotSelectable`]; the handshake and the way.
+    /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; the handshake and the way.
     pub(in crate::device::interbus) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
         use StartupMode::{Cams, K2, K3, Unknown, Velocity};
         match (self.is, wanted) {
             (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
+            (Some(mode @ Unknown(_)), _) => Err(Error::UnknownMode { mode }),
             (Some(is), wanted) if does_the_same(is, wanted) => Ok(()),
             (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
             (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
@@ -178,10 +187,7 @@ impl Master<'_> {
             || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
         if self.parameterising || self.unsure || stands {
             if self.out == Some(Command::Run) {
-                // Its edge is what counts.
-                for _ in 0..LOOKS {
-                    self.cycle(Command::Normal)?;
-                }
+                self.let_go_of_run()?;
             }
             self.run()?;
             self.normal()?;
@@ -198,6 +204,14 @@ impl Master<'_> {
             self.go(found)?;
         }
         self.rest()
+    }
+
+    /// `80000000` may stand already: its edge is what counts.
+    fn let_go_of_run(&mut self) -> Result<(), Error> {
+        for _ in 0..LOOKS {
+            self.cycle(Command::Normal)?;
+        }
+        Ok(())
     }
 
     /// The word that stands while nothing is asked of the encoder.

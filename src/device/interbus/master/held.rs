@@ -1,0 +1,77 @@
+//! For how long an IN word has come, or something has held: in cycles and in time. A gateway may be read more often than
+//! it looks at the bus itself, and what it says meanwhile is one word, however often it is read.
+
+use std::time::Duration;
+
+use crate::units::Moment;
+
+/// An echo or a value stands when it came in so many cycles, one after the other (reference 4),
+const STANDS: u32 = 2;
+/// and for so long: longer than a gateway usually keeps one word (`U`).
+const STANDS_FOR: Duration = Duration::from_millis(10);
+/// A word that may be the answer to the one before stands after so many,
+const STAYS: u32 = 20;
+/// and after so long (`U`).
+const STAYS_FOR: Duration = Duration::from_millis(100);
+
+/// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
+pub(super) const LEAST: u32 = STAYS + 4;
+/// Less patience than this is none: what stays has to be seen.
+pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
+
+/// For how long something holds, cycle after cycle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    /// In a recording no time passes between two looks: cycles alone count.
+    timeless: bool,
+    cycles: u32,
+    since: Option<Moment>,
+    lasted: Duration,
+}
+
+impl Held {
+    /// It does not hold yet.
+    pub(super) const fn new(timeless: bool) -> Self {
+        Held { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
+    }
+
+    /// It holds in the cycle that ends now, or it does not.
+    pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
+        if !holds {
+            *self = Held::new(self.timeless);
+            return;
+        }
+        self.cycles += 1;
+        self.lasted = now.since(*self.since.get_or_insert(now));
+    }
+
+    /// Long enough for an answer that cannot be an old one.
+    pub(super) fn stands(self) -> bool {
+        self.cycles >= STANDS && self.lasts(STANDS_FOR)
+    }
+
+    /// Long enough for one that could be.
+    pub(super) fn stays(self) -> bool {
+        self.cycles >= STAYS && self.lasts(STAYS_FOR)
+    }
+
+    /// As [`stays`](Self::stays), and for so long.
+    pub(super) fn stays_for(self, duration: Duration) -> bool {
+        self.stays() && self.lasts(duration)
+    }
+
+    fn lasts(self, duration: Duration) -> bool {
+        self.timeless || self.lasted >= duration
+    }
+}
+
+/// What a cycle brought.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    /// When.
+    pub(super) now: Moment,
+    /// IN.
+    pub(super) word: u32,
+    /// For how long it was that.
+    pub(super) same: Held,
+}
