@@ -242,7 +242,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     wear_to(148);
     assert!(!write(&[]).err.contains("numbered"));
     let warned = write(&[]);
-    assert!(warned.status == Some(0) && warned.err.contains("150th"), "{warned:?}");
+    assert!(warned.status == Some(0) && warned.err.contains("store 150"), "{warned:?}");
     wear_to(200);
     let told = write(&[]);
     assert!(told.status == Some(0) && told.err.contains("201") && told.err.contains("200 only"), "{told:?}");

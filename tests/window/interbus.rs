@@ -1,6 +1,8 @@
 //! The INTERBUS tab by actions: what is read and when, parameters and cams beside what is wanted, a write with its review,
 //! tables of cams, and what is asked before a running machine is disturbed.
 
+use std::time::Duration;
+
 use encoder_studio::app::interbus::{Action as Interbus, Edit, Encoder};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
@@ -125,6 +127,10 @@ fn what_an_encoder_sends_is_chosen_and_followed() {
         studio.interbus().unwrap().record.last().is_some_and(|reading| reading.cams().is_some())
     });
     until_ready(&mut desk);
+    act(&mut desk, Interbus::Poll(Some(Duration::from_millis(1))));
+    desk.until("outputs were compared", |studio| studio.interbus().unwrap().preview.same > 20);
+    assert_eq!(encoder(&desk).preview.other, 0);
+    act(&mut desk, Interbus::Poll(None));
     act(&mut desk, Interbus::Select(StartupMode::Velocity));
     desk.until("a speed comes", |studio| {
         studio.interbus().unwrap().record.last().is_some_and(|reading| reading.rpm().is_some())

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 
 use super::drafts::Edits;
+use super::preview::Preview;
 use super::record::Record;
 use super::review::Review;
 use super::staged::{Place, Staged, Wanted};
@@ -44,6 +45,8 @@ pub struct Encoder {
     pub read_outs: BTreeMap<u16, Value>,
     /// What was recorded while it was polled.
     pub record: Record,
+    /// Whether its cam outputs are those of the programs that it holds.
+    pub preview: Preview,
     /// A write on its way.
     pub review: Option<Review>,
     /// Words of the last handshakes, the newest last.
@@ -82,6 +85,7 @@ impl Encoder {
             staged,
             read_outs: BTreeMap::new(),
             record: Record::default(),
+            preview: Preview::default(),
             review: None,
             handshake: VecDeque::new(),
             motor: None,

@@ -10,6 +10,7 @@ mod encoder;
 pub mod forms;
 mod job;
 mod news;
+mod preview;
 pub mod reader;
 mod record;
 mod review;
@@ -22,6 +23,7 @@ mod write;
 
 pub use action::Action;
 pub use encoder::Encoder;
+pub use preview::{Differing, Preview};
 pub use record::Record;
 pub use review::{Review, ReviewState};
 use std::path::PathBuf;

@@ -82,6 +82,10 @@ impl Encoder {
         let (samples, dropped) = line.samples();
         let (frames, missed) = line.frames();
         if !samples.is_empty() || dropped > 0 {
+            if let Some(image) = self.staged.device() {
+                self.preview.follow(&image.programs);
+            }
+            samples.iter().for_each(|reading| self.preview.compare(reading));
             self.record.add(samples, dropped);
             self.session.answers();
         }

@@ -1,9 +1,9 @@
 //! The open program as a picture: lanes over the measuring range, or a ring.
 
-use egui::Ui;
+use egui::{RichText, Ui};
 
 use crate::app::interbus::cams::{Chart, View as Stretch};
-use crate::app::interbus::{Action as Interbus, Edit, Encoder};
+use crate::app::interbus::{Action as Interbus, Edit, Encoder, Preview};
 use crate::app::{Action, Text};
 use crate::protocol::interbus::{CamNumber, StartupMode};
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
@@ -74,6 +74,9 @@ pub(super) fn card_ui(
                 cam_lanes(ui, skin, &model, stretch)
             };
         });
+        if sends.is_some() {
+            agreement(ui, skin, &encoder.preview);
+        }
         paragraph(ui, skin.caption(skin.say("ib_cams.chart_words")));
     });
     let program = chart.program;
@@ -91,4 +94,24 @@ pub(super) fn card_ui(
         // The picture shows it by itself.
         Some(CamEvent::Preview(..)) | None => {}
     }
+}
+
+/// How the outputs that came agree with the cams that the encoder holds.
+fn agreement(ui: &mut Ui, skin: &Skin, preview: &Preview) {
+    let Preview { same, other, last, .. } = preview;
+    let Some(last) = last else {
+        if *same > 0 {
+            let text = Text::new("ib_cams.agree").with("words", same);
+            paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.good));
+        }
+        return;
+    };
+    let bits = |outputs: u8| format!("{outputs:08b}");
+    let text = Text::new("ib_cams.differ")
+        .with("words", same + other)
+        .with("other", other)
+        .with("position", last.position)
+        .with("own", bits(last.own))
+        .with("expected", bits(last.expected));
+    paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
 }
