@@ -4,6 +4,9 @@ use crate::app::Text;
 use crate::profile::interbus::{CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong};
 use crate::signal::capture::Delimiter;
 
+/// Decimals beyond which nobody reads.
+const MOST_DECIMALS: usize = 6;
+
 /// How it was read: what stands between the columns, and whether they have names.
 pub fn layout(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
@@ -72,10 +75,18 @@ pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
-    let text = Text::new(id).with_number("asked", edge.asked, decimals).with("unit", scale.unit().symbol());
+    // As it stands in the table: rounded here too, nobody would see what became of it.
+    let asked = decimals.max(written_decimals(edge.asked));
+    let text = Text::new(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
     let off = Text::new(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
     let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
     text.with("step", edge.step).with_text("off", off)
+}
+
+/// Decimals with which a number is written down.
+fn written_decimals(number: f64) -> usize {
+    let written = number.to_string();
+    written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MOST_DECIMALS)
 }
 
 fn column(column: Column) -> Text {
@@ -119,6 +130,16 @@ mod tests {
         assert_eq!(says(rounding(&table.rows[0], &scale)), rounded);
         let german = rounding(&table.rows[0], &scale).words(Language::German);
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
+    }
+
+    /// 10.05 steps lie 0.05 beyond step 10.
+    #[test]
+    fn what_was_asked_for_stands_as_it_was_written() {
+        let scale = Scale::default();
+        let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
+        let table = options.read("name;start;stop\nglue;10,05;20\n");
+        let says = rounding(&table.rows[0], &scale).words(Language::English);
+        assert!(says.contains("start 10.05 → step 10 (0.05 less)"), "{says}");
     }
 
     #[test]
