@@ -1,9 +1,10 @@
 //! The world at the other end of a cable: wires, clocks and the context in which a procedure runs.
 //!
-//! HIPERFACE needs one kind of wire, a stream of bytes with silences between frames ([`ByteLink`]). The other kinds of
-//! wire (registers, process data, explicit messages) come with their protocols and take the same [`Ctx`].
+//! Most devices need one kind of wire, a stream of bytes ([`ByteLink`]); cyclic data are packets beside it ([`Datagrams`]).
+//! What else a protocol makes of them (registers, process data, explicit messages) takes the same [`Ctx`].
 
 mod clock;
+mod datagram;
 mod error;
 mod replay;
 mod serial;
@@ -16,6 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
+pub use datagram::{DatagramPort, Datagrams};
 pub use error::{LinkError, LinkErrorKind};
 pub use replay::ReplayLink;
 pub use serial::{PortInfo, SerialLink, ports};

@@ -19,16 +19,19 @@ pub enum Scheme {
     Bridge,
     /// A Modbus/TCP gateway to process data.
     Modbus,
+    /// EtherNet/IP: explicit messages over TCP, cyclic data as datagrams.
+    Enip,
 }
 
 impl Scheme {
-    const ALL: [(Scheme, &'static str); 6] = [
+    const ALL: [(Scheme, &'static str); 7] = [
         (Scheme::Sim, "sim"),
         (Scheme::Serial, "serial"),
         (Scheme::Tcp, "tcp"),
         (Scheme::Replay, "replay"),
         (Scheme::Bridge, "bridge"),
         (Scheme::Modbus, "modbus"),
+        (Scheme::Enip, "enip"),
     ];
 
     /// The word before the colon.
@@ -43,7 +46,7 @@ pub struct LinkUrl {
     /// Kind of wire.
     pub scheme: Scheme,
     /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`; of `modbus:`
-    /// always with its port, which is 502 where none is written.
+    /// and `enip:` always with its port, which is 502 or 44818 where none is written.
     pub target: String,
     /// The parameters after the question mark.
     pub query: Query,
@@ -70,7 +73,7 @@ pub struct Query(Vec<(String, String)>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// No colon, or a word before it that names no kind of link.
-    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:")]
+    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
     /// A link that cannot lead to the device that is meant.
     #[error("{scheme}: links do not lead to this device; those that do are {known}")]
@@ -127,8 +130,13 @@ impl FromStr for LinkUrl {
             Scheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
         let (target, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut target = target.to_owned();
-        if scheme == Scheme::Modbus && has_no_port(&target) {
-            target.push_str(MODBUS_PORT);
+        let port = match scheme {
+            Scheme::Modbus => MODBUS_PORT,
+            Scheme::Enip => ENIP_PORT,
+            _ => "",
+        };
+        if has_no_port(&target) {
+            target.push_str(port);
         }
         let url = LinkUrl { scheme, target, query: query.parse()? };
         url.check_target()?;
@@ -148,7 +156,7 @@ impl LinkUrl {
         match (self.scheme, target.strip_prefix("tcp:")) {
             (Scheme::Sim, _) => Wire::Inside,
             (Scheme::Replay, _) => Wire::File(target),
-            (Scheme::Tcp | Scheme::Modbus, _) => Wire::Host(target),
+            (Scheme::Tcp | Scheme::Modbus | Scheme::Enip, _) => Wire::Host(target),
             (Scheme::Bridge, Some(host)) => Wire::Host(host),
             (Scheme::Serial, _) | (Scheme::Bridge, None) => Wire::Port(target),
         }
@@ -166,6 +174,7 @@ impl LinkUrl {
         let what = match self.scheme {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
             Scheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
+            Scheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
             Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
             Scheme::Replay => "a file, as in replay:capture.trace",
             Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
@@ -176,6 +185,8 @@ impl LinkUrl {
 
 /// Where Modbus/TCP is served unless something else is said.
 const MODBUS_PORT: &str = ":502";
+/// Where EtherNet/IP takes explicit messages unless something else is said.
+const ENIP_PORT: &str = ":44818";
 
 /// A host alone, which may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
@@ -275,6 +286,7 @@ mod tests {
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:192.168.0.7:4001",
             "modbus:192.168.0.7:502?unit=1&input=0&output=0&order=high-first",
+            "enip:192.168.1.7:44818?rpi=10&order=little",
         ] {
             assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), text);
         }
@@ -286,12 +298,15 @@ mod tests {
     #[test]
     fn what_is_no_link_is_told_why() {
         let cases = [
-            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:"),
+            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:"),
             (
                 "/dev/ttyUSB0",
-                "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:",
+                "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
             ),
-            ("usb:1", "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, modbus:, replay: or bridge:"),
+            (
+                "usb:1",
+                "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
+            ),
             ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
             ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
             ("tcp:host:99999", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
@@ -321,6 +336,9 @@ mod tests {
             ("modbus:[::1]?unit=3", "modbus:[::1]:502?unit=3"),
             ("modbus:[::1]:1502", "modbus:[::1]:1502"),
             ("modbus:plc:1502", "modbus:plc:1502"),
+            ("enip:192.168.1.7", "enip:192.168.1.7:44818"),
+            ("enip:hub?rpi=5", "enip:hub:44818?rpi=5"),
+            ("enip:127.0.0.1:50123", "enip:127.0.0.1:50123"),
         ] {
             assert_eq!(text.parse::<LinkUrl>().unwrap().to_string(), whole);
         }

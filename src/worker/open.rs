@@ -45,7 +45,7 @@ pub enum OpenError {
 pub(super) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
-        Scheme::Tcp | Scheme::Bridge | Scheme::Modbus => Duration::from_millis(100),
+        Scheme::Tcp | Scheme::Bridge | Scheme::Modbus | Scheme::Enip => Duration::from_millis(100),
         Scheme::Sim | Scheme::Replay => Duration::from_millis(20),
     }
 }

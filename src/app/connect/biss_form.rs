@@ -108,7 +108,7 @@ impl BissForm {
         };
         form.way = match url.scheme {
             Scheme::Sim => BissWay::Virtual,
-            Scheme::Serial | Scheme::Tcp | Scheme::Modbus => BissWay::Pin,
+            Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => BissWay::Pin,
             Scheme::Bridge => BissWay::Bus,
             Scheme::Replay => BissWay::Replay,
         };

@@ -110,7 +110,7 @@ impl LinkForm {
             Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
             // Leads to no HIPERFACE encoder.
-            Scheme::Bridge | Scheme::Modbus => {}
+            Scheme::Bridge | Scheme::Modbus | Scheme::Enip => {}
             Scheme::Tcp => {
                 form.kind = LinkKind::Tcp;
                 (form.host, form.tcp_port) = parted(&target);

@@ -69,7 +69,7 @@ impl InterbusForm {
         let way = match url.scheme {
             Scheme::Sim => InterbusWay::Virtual,
             Scheme::Replay => InterbusWay::Replay,
-            Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => InterbusWay::Gateway,
+            Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Enip => InterbusWay::Gateway,
         };
         let mut form = InterbusForm { way, ..InterbusForm::default() };
         match form.way {

@@ -64,7 +64,7 @@ impl SsiForm {
         form.way = match url.scheme {
             Scheme::Sim => SsiWay::Virtual,
             Scheme::Replay => SsiWay::Replay,
-            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus => SsiWay::Adapter,
+            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => SsiWay::Adapter,
         };
         if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
             form.network = true;

@@ -72,7 +72,7 @@ fn way(url: &LinkUrl) -> Result<Way, OpenError> {
     match url.scheme {
         Scheme::Bridge => Ok(Way::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
-        Scheme::Modbus => {
+        Scheme::Modbus | Scheme::Enip => {
             let known = "sim:, serial:, tcp:, bridge:, replay:";
             Err(UrlError::Device { scheme: url.scheme.word(), known }.into())
         }

@@ -39,7 +39,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
 
 /// The line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus) {
+    if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
         let known = "sim:, serial:, tcp:, replay:";
         return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
     }

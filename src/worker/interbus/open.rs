@@ -57,7 +57,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             check_parameters(&url.query, url.scheme, &PARAMETERS)?;
             Config::default()
         }
-        Scheme::Serial | Scheme::Tcp | Scheme::Bridge => {
+        Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Enip => {
             let known = "sim:, modbus:, replay:";
             return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
         }

@@ -45,7 +45,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             check_parameters(&url.query, url.scheme, &PARAMETERS)?;
             Config::default()
         }
-        Scheme::Serial | Scheme::Tcp | Scheme::Modbus => {
+        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => {
             let known = "sim:, bridge:, replay:";
             return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
         }

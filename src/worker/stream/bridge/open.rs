@@ -30,7 +30,7 @@ pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, O
             url.query.read(BRIDGE, "on", |text| (text == "on").then_some(()))?;
             Some(Config::from_pairs(&url.query.without(&[BRIDGE, MARGIN]))?)
         }
-        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Replay => {
+        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip | Scheme::Replay => {
             return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
         }
     };

@@ -1,0 +1,35 @@
+//! Packets beside a stream of bytes: cyclic data that are old with the next ones, and are not sent again when one is lost.
+
+use super::LinkError;
+use crate::units::Moment;
+
+/// Packets to and from one target.
+pub trait Datagrams: Send {
+    /// The port of ours to which the target has to send.
+    fn port(&self) -> u16;
+
+    /// From now on packets go to this port of the target.
+    fn aim(&mut self, port: u16);
+
+    /// Sends one packet. Nobody says whether it arrives.
+    ///
+    /// # Errors
+    /// When there is no way to the target.
+    fn send(&mut self, packet: &[u8]) -> Result<(), LinkError>;
+
+    /// Waits until a packet of the target arrives, at most until `until`, and puts it into `into` instead of what was there.
+    /// False: the time is up. What others send is dropped.
+    ///
+    /// # Errors
+    /// When there is no way to the target.
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError>;
+}
+
+/// Where packets to and from a target begin.
+pub trait DatagramPort: Send {
+    /// Takes a port of ours.
+    ///
+    /// # Errors
+    /// When there is none, or no way to the target.
+    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError>;
+}
