@@ -4,6 +4,7 @@
 mod adapter;
 pub mod biss;
 mod detail;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 pub mod signal;
