@@ -42,7 +42,7 @@ pub use status::{
     ENCAPSULATION_STATUS, EXTENDED_STATUS, EncapsulationStatus, ExtendedStatusRow, GENERAL_STATUS, GeneralStatus,
     StatusRow, extended_row,
 };
-pub use tcp_ip::{AddressSource, ConfigurationControl, InterfaceConfiguration};
+pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceConfiguration};
 
 /// TCP: explicit messages; UDP: ListIdentity.
 pub const EXPLICIT_PORT: u16 = 44818;

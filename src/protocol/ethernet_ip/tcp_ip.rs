@@ -36,6 +36,44 @@ pub struct InterfaceConfiguration {
     pub domain: String,
 }
 
+/// Why a device could not be reached at such an address.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AddressError {
+    /// 0.0.0.0, which is none.
+    #[error("0.0.0.0 is no address: type the one that the device is to have")]
+    None,
+    /// No device may have it.
+    #[error("{0} cannot be a device's address: it is kept for the computer itself, for groups or for later")]
+    Reserved(Ipv4Addr),
+    /// Ones and zeros of a mask are mixed, or too few of either are left.
+    #[error("{0} is no mask: ones come first and zeros behind them, at least two of these, as in 255.255.255.0")]
+    Mask(Ipv4Addr),
+    /// The first of its network.
+    #[error("{0} is its network itself: choose one between the first and the last address")]
+    Network(Ipv4Addr),
+    /// The last of its network.
+    #[error("{0} goes to all devices of its network: choose one between the first and the last address")]
+    Broadcast(Ipv4Addr),
+    /// The gateway is not to be reached.
+    #[error(
+        "the gateway {gateway} is outside the network {network}/{prefix}: choose one inside it, or 0.0.0.0 for none"
+    )]
+    GatewayOutside {
+        /// As given.
+        gateway: Ipv4Addr,
+        /// Where the device would be.
+        network: Ipv4Addr,
+        /// Ones of its mask.
+        prefix: u32,
+    },
+    /// The gateway is no other device.
+    #[error("the gateway cannot be {0}: it is another device's address in the same network, or 0.0.0.0 for none")]
+    Gateway(Ipv4Addr),
+    /// Not a name of up to 48 letters, digits, hyphens and points.
+    #[error("{0:?} is no domain name: it has letters, digits, hyphens and points, 48 at most")]
+    Domain(String),
+}
+
 impl ConfigurationControl {
     /// The class of the object.
     pub const CLASS: u16 = 0xF5;
@@ -101,6 +139,43 @@ impl InterfaceConfiguration {
         fields.end(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
+    /// That a device could be reached with it: its address is a device's in a network of this mask, the gateway another one
+    /// in it or none.
+    ///
+    /// # Errors
+    /// [`AddressError`].
+    pub fn check(&self) -> Result<(), AddressError> {
+        let InterfaceConfiguration { address, mask, gateway, .. } = *self;
+        is_a_devices(address)?;
+        let bits = u32::from(mask);
+        let prefix = bits.leading_ones();
+        if !(1..=30).contains(&prefix) || prefix + bits.trailing_zeros() != 32 {
+            return Err(AddressError::Mask(mask));
+        }
+        let network = u32::from(address) & bits;
+        let host = |own: Ipv4Addr| u32::from(own) & !bits;
+        if host(address) == 0 {
+            return Err(AddressError::Network(address));
+        }
+        if host(address) == !bits {
+            return Err(AddressError::Broadcast(address));
+        }
+        if !gateway.is_unspecified() {
+            if u32::from(gateway) & bits != network {
+                return Err(AddressError::GatewayOutside { gateway, network: network.into(), prefix });
+            }
+            if gateway == address || host(gateway) == 0 || host(gateway) == !bits {
+                return Err(AddressError::Gateway(gateway));
+            }
+        }
+        self.name_servers.into_iter().filter(|own| !own.is_unspecified()).try_for_each(is_a_devices)?;
+        let is_name = |c: u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'.');
+        if self.domain.len() > LONGEST_DOMAIN || !self.domain.bytes().all(is_name) {
+            return Err(AddressError::Domain(self.domain.clone()));
+        }
+        Ok(())
+    }
+
     /// Its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let [first, second] = self.name_servers;
@@ -113,5 +188,92 @@ impl InterfaceConfiguration {
         data.extend(domain);
         data.extend(odd.then_some(0));
         data
+    }
+}
+
+/// Characters of a domain name.
+const LONGEST_DOMAIN: usize = 48;
+
+fn is_a_devices(address: Ipv4Addr) -> Result<(), AddressError> {
+    let [first, ..] = address.octets();
+    match first {
+        _ if address.is_unspecified() => Err(AddressError::None),
+        // This network, the computer itself, groups and what is kept for later.
+        0 | 127 | 224.. => Err(AddressError::Reserved(address)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(address: &str, mask: &str, gateway: &str) -> Result<(), AddressError> {
+        let own = |text: &str| text.parse().unwrap();
+        let configuration = InterfaceConfiguration {
+            address: own(address),
+            mask: own(mask),
+            gateway: own(gateway),
+            name_servers: [Ipv4Addr::UNSPECIFIED; 2],
+            domain: String::new(),
+        };
+        configuration.check()
+    }
+
+    /// First, last and broadcast addresses as `ipaddress.ip_network("192.168.1.64/26")` of Python has them: 64, 65…126, 127.
+    #[test]
+    fn an_address_is_one_that_a_device_can_have() {
+        let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };
+        for (address, mask, gateway) in [
+            ("192.168.1.50", "255.255.255.0", "0.0.0.0"),
+            ("192.168.1.50", "255.255.255.0", "192.168.1.1"),
+            ("192.168.1.65", "255.255.255.192", "192.168.1.126"),
+            ("10.255.255.254", "255.0.0.0", "10.0.0.1"),
+            ("10.0.0.1", "255.255.255.252", "10.0.0.2"),
+            ("169.254.3.4", "255.255.0.0", "0.0.0.0"),
+        ] {
+            assert_eq!(check(address, mask, gateway), Ok(()), "{address} {mask} {gateway}");
+        }
+        assert_eq!(check("0.0.0.0", "255.255.255.0", "0.0.0.0"), Err(AddressError::None));
+        for address in ["0.1.2.3", "127.0.0.1", "224.0.0.5", "239.192.1.1", "240.0.0.1", "255.255.255.255"] {
+            let expected = Err(AddressError::Reserved(own(address)));
+            assert_eq!(check(address, "255.255.255.0", "0.0.0.0"), expected, "{address}");
+        }
+        for mask in ["0.0.0.0", "255.255.0.255", "255.255.255.253", "255.255.255.254", "255.255.255.255", "0.255.255.0"]
+        {
+            assert_eq!(check("192.168.1.50", mask, "0.0.0.0"), Err(AddressError::Mask(own(mask))), "{mask}");
+        }
+        let mask = "255.255.255.192";
+        assert_eq!(check("192.168.1.64", mask, "0.0.0.0"), Err(AddressError::Network(own("192.168.1.64"))));
+        assert_eq!(check("192.168.1.127", mask, "0.0.0.0"), Err(AddressError::Broadcast(own("192.168.1.127"))));
+        for gateway in ["192.168.1.63", "192.168.1.128", "10.0.0.1"] {
+            let (network, gateway) = (own("192.168.1.64"), own(gateway));
+            let expected = Err(AddressError::GatewayOutside { gateway, network, prefix: 26 });
+            assert_eq!(check("192.168.1.65", mask, &gateway.to_string()), expected, "{gateway}");
+        }
+        for gateway in ["192.168.1.64", "192.168.1.65", "192.168.1.127"] {
+            let expected = Err(AddressError::Gateway(own(gateway)));
+            assert_eq!(check("192.168.1.65", mask, gateway), expected, "{gateway}");
+        }
+    }
+
+    #[test]
+    fn name_servers_and_names_are_looked_at_too() {
+        let good = InterfaceConfiguration {
+            address: Ipv4Addr::new(192, 168, 1, 50),
+            mask: Ipv4Addr::new(255, 255, 255, 0),
+            gateway: Ipv4Addr::UNSPECIFIED,
+            name_servers: [Ipv4Addr::new(9, 9, 9, 9), Ipv4Addr::UNSPECIFIED],
+            domain: "line-2.plant".to_owned(),
+        };
+        assert_eq!(good.check(), Ok(()));
+        let group = Ipv4Addr::new(224, 0, 0, 1);
+        let servers = [Ipv4Addr::UNSPECIFIED, group];
+        let asked = InterfaceConfiguration { name_servers: servers, ..good.clone() };
+        assert_eq!(asked.check(), Err(AddressError::Reserved(group)));
+        for domain in ["two words", "straße", &"a".repeat(49)] {
+            let named = InterfaceConfiguration { domain: domain.to_owned(), ..good.clone() };
+            assert_eq!(named.check(), Err(AddressError::Domain(domain.to_owned())));
+        }
     }
 }

@@ -30,7 +30,9 @@ pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
 pub use control_word::{Begins, ControlBit, ControlWord, Direction, Refused, RunEnd};
 pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
-pub use leds::{BUS_LEDS, BusLamp, BusLedRow, BusLight, DRIVE_LEDS, DRIVES_LEDS, DriveLight, LedRow, drive_led};
+pub use leds::{
+    BUS_LEDS, BusLamp, BusLedRow, BusLight, DriveLight, LedRow, LedSubject, PORT_LEDS, PortLedRow, PortLight,
+};
 pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range};
 pub use parameters::PARAMETERS;
 pub use pkw::{Answer, Pkw, PkwError, Task};

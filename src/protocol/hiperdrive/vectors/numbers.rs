@@ -258,13 +258,20 @@ fn the_tables_of_errors_variants_lamps_and_switches() {
     let variant = |number| Variant::new(number).row().map(|row| (row.name, row.family));
     assert_eq!((variant(1), variant(13)), (Some(("HRA25A", Family::Short)), Some(("HDA70", Family::Long))));
     assert_eq!((variant(9), variant(0), variant(0xFFFF)), (Some(("HDA30E", Family::Short)), None, None));
-    let all = drive_led(DriveLight::RedGreen, false).map(|row| row.meaning);
-    let one = drive_led(DriveLight::RedGreen, true).map(|row| row.meaning);
+    let all = LedSubject::Drives.row(DriveLight::RedGreen).map(|row| row.meaning);
+    let one = LedSubject::Drive.row(DriveLight::RedGreen).map(|row| row.meaning);
     assert_eq!((all, one), (Some("drive error of a requested drive"), Some("drive error")));
-    assert!(drive_led(DriveLight::Alternating, true).is_none());
+    assert!(LedSubject::Drive.row(DriveLight::Alternating).is_none());
     let twins =
         |row: &BusLedRow| BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count();
     assert!(BUS_LEDS.iter().all(|row| twins(row) == 1));
+    // Manual 3.3 and 4.4: seven lights of a hub's drives together and of an adapter's drive, four of one drive of a hub.
+    for (subject, lights) in [(LedSubject::Adapter, 7), (LedSubject::Drives, 7), (LedSubject::Drive, 4)] {
+        let rows = subject.rows();
+        let is_own = |row: &LedRow| rows.iter().filter(|other| other.light == row.light).count() == 1;
+        assert!(rows.len() == lights && rows.iter().all(is_own), "{subject:?}");
+    }
+    assert_eq!(PORT_LEDS.map(|row| row.light), [PortLight::Off, PortLight::Link, PortLight::Active]);
     let duplicate = BusLamp::Network.row(BusLight::Red).map(|row| row.meaning);
     assert_eq!(duplicate, Some("another device has the same address"));
     assert_eq!(AddressSwitch::parse(5), Some(AddressSwitch::Fixed("192.168.1.5".parse().unwrap())));
