@@ -10,8 +10,10 @@ mod chart;
 mod field_map;
 mod frame_strip;
 mod hex_editor;
+mod hold_button;
 mod lissajous;
 mod register_table;
+mod state_machine;
 mod step_ring;
 mod steps;
 mod timing_diagram;
@@ -30,11 +32,13 @@ pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
+pub use hold_button::{HoldButton, HoldEvent, hold_button};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use register_table::{
     Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterOutput, RegisterRow, RegisterTable, RegisterView,
     register_table,
 };
+pub use state_machine::{StateMachine, state_machine};
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 pub use timing_diagram::{TimingDiagram, timing_diagram};

@@ -12,6 +12,7 @@ mod cams;
 mod field_map;
 mod frame_strip;
 mod hex_editor;
+mod hold_button;
 mod register_table;
 mod steps;
 mod timing_diagram;
