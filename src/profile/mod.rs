@@ -4,6 +4,7 @@
 pub mod biss;
 mod difference;
 mod document;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod plan;
