@@ -115,7 +115,7 @@ const fn bus(lamp: BusLamp, light: BusLight, meaning: &'static str, remedy: &'st
 }
 
 /// RS485 of a bus adapter (manual 4.4).
-pub const ADAPTER_LEDS: [LedRow; 7] = [
+const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has ended"),
     drive(
@@ -134,7 +134,7 @@ pub const ADAPTER_LEDS: [LedRow; 7] = [
 ];
 
 /// RS485 of a hub with switch S3 at 0: about all drives (manual 3.3).
-pub const DRIVES_LEDS: [LedRow; 7] = [
+const DRIVES_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has ended"),
     drive(
@@ -161,7 +161,7 @@ pub const DRIVES_LEDS: [LedRow; 7] = [
 ];
 
 /// RS485 of a hub with switch S3 at a drive's number: about that drive (manual 3.3).
-pub const DRIVE_LEDS: [LedRow; 4] = [
+const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLight::Off, "the drive is neither there nor requested", "nothing; plug it in to use it"),
     drive(DriveLight::Red, "communication error", "check its cable, then write 0 to its parameter 197"),
     drive(DriveLight::RedGreen, "drive error", "read its errors, mend the cause, acknowledge"),
