@@ -3,6 +3,7 @@
 pub mod biss;
 pub mod bridge;
 pub mod check;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod line;

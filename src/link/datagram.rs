@@ -1,5 +1,7 @@
 //! Packets beside a stream of bytes: cyclic data that are old with the next ones, and are not sent again when one is lost.
 
+use core::net::Ipv4Addr;
+
 use super::LinkError;
 use crate::units::Moment;
 
@@ -32,4 +34,20 @@ pub trait DatagramPort: Send {
     /// # Errors
     /// When there is none, or no way to the target.
     fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError>;
+}
+
+/// A question to all who listen, and what any of them answers.
+pub trait Shout: Send {
+    /// Asks all.
+    ///
+    /// # Errors
+    /// When nobody at all can be asked.
+    fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError>;
+
+    /// Waits until somebody answers, at most until `until`, and puts the packet into `into` instead of what was there; gives
+    /// back who it was, or `None` when the time is up.
+    ///
+    /// # Errors
+    /// When the network is gone.
+    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
 }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
-pub use datagram::{DatagramPort, Datagrams};
+pub use datagram::{DatagramPort, Datagrams, Shout};
 pub use error::{LinkError, LinkErrorKind};
 pub use replay::ReplayLink;
 pub use serial::{PortInfo, SerialLink, ports};

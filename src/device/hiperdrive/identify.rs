@@ -1,0 +1,260 @@
+//! Who is there, what it says, and everything that can be read (reference 4). Nothing is set for it.
+
+use std::collections::BTreeMap;
+
+use super::network::{Network, network};
+use super::{Error, Master};
+use crate::protocol::hiperdrive::{
+    Access, Actual, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
+};
+use crate::units::Moment;
+
+/// Who an adapter or a hub is, and its drives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Places for drives.
+    pub topology: Topology,
+    /// Parameter 13.
+    pub category: String,
+    /// Parameter 15.
+    pub name: String,
+    /// Parameter 16.
+    pub article_number: String,
+    /// Parameter 17.
+    pub serial_number: String,
+    /// Parameter 18: week and year.
+    pub production_date: String,
+    /// Parameter 19.
+    pub version: String,
+    /// Those that are plugged in.
+    pub drives: Vec<DriveIdentity>,
+}
+
+/// Who a drive is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DriveIdentity {
+    /// Its place.
+    pub number: DriveNumber,
+    /// Parameter 120.
+    pub variant: Variant,
+    /// Parameter 121.
+    pub name: String,
+    /// Parameter 122.
+    pub article_number: String,
+    /// Parameter 123.
+    pub serial_number: String,
+    /// Parameter 125.
+    pub version: String,
+    /// Parameter 152: it takes part.
+    pub requested: bool,
+}
+
+/// Everything that can be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Survey {
+    /// Who is there.
+    pub identity: Identity,
+    /// Its address and where it has it from.
+    pub network: Network,
+    /// Every parameter of the device and of its drives; what it refuses is left out.
+    pub values: BTreeMap<ParameterNumber, Value>,
+}
+
+/// What a device and its drives say of themselves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// Those that are plugged in.
+    pub drives: Vec<DriveStatus>,
+    /// Parameter 9: tenths of a volt of the control supply.
+    pub supply_tenths: i64,
+    /// Parameter 11: degrees Celsius in the device.
+    pub temperature: i64,
+}
+
+/// What a drive says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DriveStatus {
+    /// Its place.
+    pub number: DriveNumber,
+    /// Parameter 105.
+    pub status: StatusWord,
+    /// Parameters 108 to 115 that hold an error, the newest first. After power-up they may be old (reference 4).
+    pub buffer: Vec<ErrorCode>,
+    /// Parameters 116 to 118: drive, motion, communication. 0 is well, FFFFh is no drive.
+    pub words: [u16; 3],
+    /// Parameter 197: faults since the last acknowledgement.
+    pub faults: u8,
+    /// Parameter 119: degrees Celsius in the drive.
+    pub temperature: i64,
+    /// Parameter 152: it takes part.
+    pub requested: bool,
+}
+
+/// Where a drive is and how fast, read at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// When.
+    pub at: Moment,
+    /// Which drive.
+    pub drive: DriveNumber,
+    /// Parameters 105 to 107.
+    pub actual: Actual,
+}
+
+impl Identity {
+    /// A drive that is plugged in.
+    pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
+        self.drives.iter().find(|drive| drive.number == number)
+    }
+}
+
+/// Reads who is there.
+///
+/// # Errors
+/// [`Error::NotHiperdrive`]; what the device refuses; the way.
+pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
+    let category = category(master)?;
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category.clone() })?;
+    let mut drives = Vec::new();
+    for number in DriveNumber::of(topology) {
+        let variant = master.read_number(of(120, number)?)?;
+        let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
+        if variant == Variant::NONE {
+            continue;
+        }
+        drives.push(DriveIdentity {
+            number,
+            variant,
+            name: master.read_text(of(121, number)?)?,
+            article_number: master.read_text(of(122, number)?)?,
+            serial_number: master.read_text(of(123, number)?)?,
+            version: master.read_text(of(125, number)?)?,
+            requested: is_requested(master, number)?,
+        });
+    }
+    master.learn(topology);
+    let mut text = |number| master.read_text(own(number)?);
+    let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
+    let serial_number = master.read_number(own(17)?)?.to_string();
+    Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
+}
+
+/// What it says to be. What has no such parameter tells its name.
+fn category(master: &mut Master<'_>) -> Result<String, Error> {
+    match master.read_text(own(13)?) {
+        Err(Error::Refused { .. }) => {
+            let says = master.identity_object()?.product_name;
+            Err(Error::NotHiperdrive { says })
+        }
+        ended => ended,
+    }
+}
+
+/// Reads everything.
+///
+/// # Errors
+/// As [`identify`].
+pub fn survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ParameterNumber)) -> Result<Survey, Error> {
+    let identity = identify(master)?;
+    let numbers: Vec<ParameterNumber> = readable(&identity).collect();
+    let total = numbers.len() as u64;
+    let mut values = BTreeMap::new();
+    for (done, number) in numbers.into_iter().enumerate() {
+        told(done as u64, total, number);
+        match master.read(number) {
+            Ok(value) => {
+                values.insert(number, value);
+            }
+            Err(Error::Refused { .. } | Error::NoDrive { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let network = network(master)?;
+    Ok(Survey { identity, network, values })
+}
+
+/// Every parameter that can be read of a device and its drives.
+fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
+    let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
+    let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
+    let drives = identity
+        .drives
+        .iter()
+        .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::of_drive(row.number, drive.number)));
+    device.chain(drives)
+}
+
+/// Reads errors and states of all drives.
+///
+/// # Errors
+/// As [`identify`].
+pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
+    let topology = topology(master)?;
+    let mut drives = Vec::new();
+    for number in DriveNumber::of(topology) {
+        if master.read_number(of(120, number)?)? != i64::from(Variant::NONE.number()) {
+            drives.push(drive_status(master, number)?);
+        }
+    }
+    let (supply_tenths, temperature) = (master.read_number(own(9)?)?, master.read_number(own(11)?)?);
+    Ok(Status { drives, supply_tenths, temperature })
+}
+
+pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
+    let mut buffer = Vec::new();
+    for error in 108..=115 {
+        let code = word(master, error, number)?;
+        buffer.extend((code != 0).then_some(ErrorCode::new(code)));
+    }
+    Ok(DriveStatus {
+        number,
+        status: StatusWord::new(word(master, 105, number)?),
+        buffer,
+        words: [word(master, 116, number)?, word(master, 117, number)?, word(master, 118, number)?],
+        faults: u8::try_from(master.read_number(of(197, number)?)?).unwrap_or(u8::MAX),
+        temperature: master.read_number(of(119, number)?)?,
+        requested: is_requested(master, number)?,
+    })
+}
+
+/// Reads where a drive is: 105, 106, 107, one after the other.
+///
+/// # Errors
+/// [`Error::NoPlace`], [`Error::NoDrive`]; the way.
+pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<Reading, Error> {
+    let status = StatusWord::new(word(master, 105, drive)?);
+    // Both are of that many bits.
+    let speed = master.read_number(of(106, drive)?)? as i16;
+    let position = master.read_number(of(107, drive)?)? as i32;
+    Ok(Reading { at: master.now(), drive, actual: Actual { status, speed, position } })
+}
+
+/// What it is, asked for once a session.
+pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
+    if let Some(topology) = master.station().topology() {
+        return Ok(topology);
+    }
+    let category = category(master)?;
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category })?;
+    master.learn(topology);
+    Ok(topology)
+}
+
+fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
+    Ok(master.read_number(of(152, drive)?)? != 0)
+}
+
+/// A number of 16 bits, as bits.
+fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
+    Ok(master.read_number(of(base, drive)?)? as u16)
+}
+
+/// A parameter of the device.
+pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
+    ParameterNumber::new(number).ok_or(Error::NoNumber(number))
+}
+
+/// A parameter of a drive, by its number of drive 1.
+pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
+    ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
+}

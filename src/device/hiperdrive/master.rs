@@ -1,0 +1,430 @@
+//! The host's side of explicit messages (reference 7): a session, once a wire; a request and its reply, known by the context
+//! that numbers them. What comes late is let pass and counted.
+//!
+//! Reading is tried again. What sets something is sent once: where its reply is lost, what it was to set is read back, which a
+//! stream answers behind it.
+
+mod connection;
+
+use std::time::Duration;
+
+pub use connection::Opened;
+
+use super::error::{Asked, Damage, Refusal};
+use super::{Error, Station};
+use crate::bits::MaskedBytes;
+use crate::device::line::{Line, TRIES};
+use crate::link::Ctx;
+use crate::protocol::ethernet_ip::{
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
+    Request,
+};
+use crate::protocol::hiperdrive::{
+    Access, Kind, OutOfRange, ParameterNumber, ParameterRow, Range, Topology, Value, ValueError, Variant,
+};
+use crate::units::Moment;
+
+/// Behind bytes that are no frame: silence for so long, and what comes next is one again.
+const QUIET: Duration = Duration::from_millis(50);
+/// A wish to end is heard at least so often.
+const SLICE: Duration = Duration::from_millis(50);
+
+/// The host's side of the explicit messages of a device, for one job.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+/// An exchange that gave nothing.
+enum Trouble {
+    Silence,
+    Damage(Damage),
+    Status(EncapsulationStatus),
+}
+
+impl<D: Into<Damage>> From<D> for Trouble {
+    fn from(damage: D) -> Self {
+        Trouble::Damage(damage.into())
+    }
+}
+
+/// Whether what is asked may be asked again blindly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Repeats {
+    Always,
+    Never,
+}
+
+impl<'a> Master<'a> {
+    /// A master over a station's wire, for one job.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    /// What is known of the connection.
+    pub fn station(&self) -> &Station {
+        self.station
+    }
+
+    /// What it says to be.
+    pub(super) fn learn(&mut self, topology: Topology) {
+        self.station.known.topology = Some(topology);
+    }
+
+    /// Waits; ends early when the user wishes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    /// Does what leads to a safe end: in it, a wish to end is not heard.
+    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.shield(true);
+        let result = work(self);
+        self.line.shield(before);
+        result
+    }
+
+    /// Reads a parameter. What the type of a number is its length says, where the table only assumes it.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`]; the way.
+    pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
+        let row = number.row().ok_or(Error::Unknown(number))?;
+        if row.access == Access::Write {
+            return Err(Error::WriteOnly { number, name: row.name });
+        }
+        let asked = Asked::Parameter(number);
+        let request = Request::get(number.class(), 1, number.attribute());
+        let data = match self.request(asked, &request, Repeats::Always) {
+            Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(asked, number, refusal)?),
+            ended => ended?.data,
+        };
+        let kind = kind_of_length(row.kind, data.len());
+        if kind != row.kind {
+            self.station.known.kinds.insert(row.number, kind);
+        }
+        kind.parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+    }
+
+    /// Reads a parameter that is a number.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
+        match self.read(number)? {
+            Value::Number(value) => Ok(value),
+            Value::Text(_) => Err(Error::Value { number, cause: ValueError::Kind("a number is expected, not a text") }),
+        }
+    }
+
+    /// Reads a parameter that is a text.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
+        match self.read(number)? {
+            Value::Text(text) => Ok(text),
+            Value::Number(_) => {
+                Err(Error::Value { number, cause: ValueError::Kind("a text is expected, not a number") })
+            }
+        }
+    }
+
+    /// Writes a parameter and reads it back.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set); [`Error::NotTaken`].
+    pub fn write(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+        self.set(number, wanted)?;
+        let reads = self.read_number(number)?;
+        if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) }
+    }
+
+    /// Sets a parameter. Where the reply is lost it is read back, and set again only where it is not there yet; what does
+    /// something else when it is set is never sent twice.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], and nothing is sent; [`Error::Refuses`],
+    /// [`Error::Refused`]; the way.
+    pub fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+        let row = settable(number)?;
+        row.check(number, wanted)?;
+        let kind = self.station.known.kinds.get(&row.number).copied().unwrap_or(row.kind);
+        let data = kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
+        let asked = Asked::Set(number);
+        let request = Request::set(number.class(), 1, number.attribute(), data);
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match self.request(asked, &request, Repeats::Never) {
+                Ok(_) => return Ok(()),
+                Err(Error::Refused { refusal, .. }) => return Err(self.why_not_set(number, wanted, refusal)?),
+                Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
+                    if does_something(row) || self.shielded(|master| master.read_number(number))? == wanted {
+                        return if does_something(row) { Err(error) } else { Ok(()) };
+                    }
+                    if tries >= TRIES {
+                        return Err(error);
+                    }
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Reads the identity object, which every device of EtherNet/IP has.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; the way.
+    pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
+        let asked = Asked::Identity;
+        let reply = self.request(asked, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
+        IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+    }
+
+    /// Reads an attribute of another object.
+    pub(super) fn attribute(&mut self, asked: Asked, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
+        Ok(self.request(asked, &Request::get(class, 1, attribute), Repeats::Always)?.data)
+    }
+
+    /// Sets an attribute of another object, once.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; the way.
+    pub fn set_attribute(&mut self, asked: Asked, (class, attribute): (u16, u16), data: Vec<u8>) -> Result<(), Error> {
+        self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never)?;
+        Ok(())
+    }
+
+    /// Why a parameter was refused, as far as can be asked.
+    ///
+    /// # Errors
+    /// The way.
+    fn why_refused(&mut self, asked: Asked, number: ParameterNumber, refusal: Refusal) -> Result<Error, Error> {
+        let Some(drive) = number.drive() else { return Ok(Error::Refused { asked, refusal }) };
+        if let Some(topology) = self.station.known.topology
+            && drive.get() > topology.drives()
+        {
+            return Ok(Error::NoPlace { drive, topology });
+        }
+        let variant = ParameterNumber::of_drive(120, drive).filter(|variant| *variant != number);
+        let Some(variant) = variant else { return Ok(Error::Refused { asked, refusal }) };
+        let request = Request::get(variant.class(), 1, variant.attribute());
+        match self.request(Asked::Parameter(variant), &request, Repeats::Always) {
+            Ok(reply) if Kind::U16.parse(&reply.data) == Ok(Value::Number(Variant::NONE.number().into())) => {
+                Ok(Error::NoDrive { drive })
+            }
+            Ok(_) | Err(Error::Refused { .. }) => Ok(Error::Refused { asked, refusal }),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn why_not_set(&mut self, number: ParameterNumber, value: i64, refusal: Refusal) -> Result<Error, Error> {
+        let row = settable(number)?;
+        match refusal.status {
+            GeneralStatus::NOT_SETTABLE => Ok(Error::ReadOnly { number, name: row.name }),
+            GeneralStatus::INVALID_VALUE => {
+                let range = self.range_now(number, row)?;
+                Ok(match range {
+                    Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
+                    None => Error::Refused { asked: Asked::Set(number), refusal },
+                })
+            }
+            _ => self.why_refused(Asked::Set(number), number, refusal),
+        }
+    }
+
+    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4).
+    fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
+        let Some(drive) = number.drive().filter(|_| matches!(row.number, 158 | 160 | 198)) else {
+            return Ok(row.allowed());
+        };
+        let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
+            Some(number) => self.read_number(number).map(Some),
+            None => Ok(None),
+        };
+        let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
+        let (least, most) = row.kind.limits().unwrap_or_default();
+        let [Some(lower), Some(upper), Some(position)] = values else { return Ok(row.allowed()) };
+        Ok(Some(match row.number {
+            158 => Range::Within(least, position.min(upper - 1)),
+            160 => Range::Within(position.max(lower + 1), most),
+            _ => Range::Within(lower, upper),
+        }))
+    }
+
+    /// Asks something of an object.
+    fn request(&mut self, asked: Asked, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
+        self.request_with(asked, request, &[], repeats).map(|(reply, _)| reply)
+    }
+
+    /// Asks something of an object, with further items beside the message; gives back those beside the reply as well.
+    fn request_with(
+        &mut self,
+        asked: Asked,
+        request: &Request,
+        beside: &[Item],
+        repeats: Repeats,
+    ) -> Result<(Reply, Items), Error> {
+        let (reply, items) = self.again(asked, repeats, |master| {
+            let session = master.session()?;
+            let items = Items([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
+            let body = Body::Data { interface: 0, timeout_s: 0, items };
+            let frame = Frame { session, data: body.emit(), ..Frame::unconnected(session, [0; 8], Vec::new()) };
+            Ok(match master.exchange(frame, repeats)? {
+                Ok(frame) => judge(request, &frame),
+                Err(trouble) => Err(trouble),
+            })
+        })?;
+        if reply.status == GeneralStatus::OK {
+            return Ok((reply, items));
+        }
+        let Reply { service, status, extended, .. } = reply;
+        Err(Error::Refused { asked, refusal: Refusal { service, status, extended } })
+    }
+
+    /// The number of the session; it begins with the first request on a wire.
+    fn session(&mut self) -> Result<u32, Error> {
+        if let Some(session) = self.station.session {
+            return Ok(session);
+        }
+        let frame = self.again(Asked::Session, Repeats::Always, |master| {
+            master.exchange(Frame::register([0; 8]), Repeats::Always)
+        })?;
+        self.station.session = Some(frame.session);
+        Ok(frame.session)
+    }
+
+    /// Asks, and again where that may help and does no harm.
+    fn again<T>(
+        &mut self,
+        asked: Asked,
+        repeats: Repeats,
+        mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
+    ) -> Result<T, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let trouble = match once(self)? {
+                Ok(answer) => {
+                    self.station.line.answered();
+                    self.station.line.recovered();
+                    return Ok(answer);
+                }
+                Err(trouble) => trouble,
+            };
+            let longest = self.station.timeout + self.station.line.margin;
+            let may = self.line.may_ask_again(&mut self.station.line, tries, longest);
+            match trouble {
+                // It was not done: the device has forgotten the session.
+                Trouble::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
+                    self.station.session = None;
+                }
+                Trouble::Status(status) => return Err(Error::Encapsulation { asked, status }),
+                _ if may && repeats == Repeats::Always => {}
+                Trouble::Silence => return Err(Error::NoReply { asked, tries }),
+                Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
+            }
+        }
+    }
+
+    /// Sends a frame under a number of its own, and waits for the one that answers it.
+    fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, Trouble>, Error> {
+        self.line.start()?;
+        frame.context = self.station.next.to_le_bytes();
+        self.station.next = self.station.next.wrapping_add(1);
+        let bytes = frame.emit();
+        let sent_at = self.line.now();
+        self.station.line.sent(sent_at);
+        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
+        let deadline = sent_at + self.station.timeout + self.station.line.margin;
+        let mut heard = Vec::new();
+        loop {
+            loop {
+                match self.station.receiver.next_frame() {
+                    Ok(Some(answer)) => {
+                        self.line.show(self.line.now(), MaskedBytes::clear(&answer.emit()));
+                        let recorded = self.station.recorded && answer.command == frame.command;
+                        if !recorded && !answer.answers(&frame) {
+                            self.station.late += 1;
+                        } else if answer.status == EncapsulationStatus::OK {
+                            return Ok(Ok(answer));
+                        } else {
+                            return Ok(Err(Trouble::Status(answer.status)));
+                        }
+                    }
+                    Ok(None) => break,
+                    Err(cause) => {
+                        self.line.wait_for_silence(&mut self.station.line, QUIET)?;
+                        self.station.receiver = Receiver::default();
+                        return Ok(Err(cause.into()));
+                    }
+                }
+            }
+            let now = self.line.now();
+            if now >= deadline {
+                let bytes = self.station.receiver.pending();
+                self.station.receiver = Receiver::default();
+                return Ok(Err(if bytes == 0 { Trouble::Silence } else { Damage::Cut { bytes }.into() }));
+            }
+            // What sets something is heard out.
+            if repeats == Repeats::Always {
+                self.line.check_cancel()?;
+            }
+            heard.clear();
+            self.line.receive((now + SLICE).min(deadline), &mut heard)?;
+            self.station.receiver.push(&heard);
+        }
+    }
+}
+
+/// What a frame with a reply says.
+fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), Trouble> {
+    debug_assert_eq!(frame.command, Command::SEND_RR_DATA);
+    let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
+    let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
+    let services = (request.service.code(), reply.service.code());
+    match services {
+        (asked, got) if asked == got => Ok((reply, items)),
+        (asked, got) => Err(Damage::Service { asked, got }.into()),
+    }
+}
+
+/// The row of a parameter that may be set; what moves a drive may not.
+fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
+    let row = number.row().ok_or(Error::Unknown(number))?;
+    match (row.access, row.number) {
+        (Access::Read, _) => Err(Error::ReadOnly { number, name: row.name }),
+        (_, 101..=104) => Err(Error::Motion { number, name: row.name }),
+        _ => Ok(row),
+    }
+}
+
+/// Setting it does something, and what it reads afterwards is no proof of that.
+const fn does_something(row: &ParameterRow) -> bool {
+    matches!(row.number, 47 | 197 | 199)
+}
+
+/// The kind of a number by the length of what came.
+const fn kind_of_length(assumed: Kind, length: usize) -> Kind {
+    let signed = matches!(assumed, Kind::I8 | Kind::I16 | Kind::I32);
+    match (assumed, length, signed) {
+        (Kind::Text, ..) => Kind::Text,
+        (_, 1, true) => Kind::I8,
+        (_, 1, false) => Kind::U8,
+        (_, 2, true) => Kind::I16,
+        (_, 2, false) => Kind::U16,
+        (_, 4, true) => Kind::I32,
+        (_, 4, false) => Kind::U32,
+        _ => assumed,
+    }
+}

@@ -1,0 +1,24 @@
+//! What one does with HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for everything that is read
+//! and written, and the cyclic connection that moves them. Reading changes nothing. The reference is the project's
+//! "hiperdrive".
+//!
+//! ```text
+//! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)
+//! ```
+
+pub mod check;
+mod discover;
+mod error;
+mod identify;
+mod master;
+mod network;
+mod station;
+
+pub use discover::{Found, discover};
+pub use error::{Asked, Damage, Error, Refusal};
+pub use identify::{
+    DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
+};
+pub use master::{Master, Opened};
+pub use network::{Network, network};
+pub use station::{PARAMETERS, Station};
