@@ -19,8 +19,9 @@ pub use fault::{Carried, FaultError, Faults, Passage};
 pub use motor::Motor;
 pub use setting::ConfigError;
 
-use crate::units::CharacterFormat;
-use crate::units::Moment;
+use std::net::SocketAddrV4;
+
+use crate::units::{CharacterFormat, Moment};
 
 /// A virtual device at the far end of a serial line. Whoever owns it (a link in this process, a pseudo-terminal, a TCP
 /// server) hands over bytes and asks for bytes; moments never run backwards, one that does is taken as the latest known.
@@ -42,4 +43,17 @@ pub trait ByteDevice: Send {
     /// The host opened the link (again): what arrived before has no reader, and a device that lost its power gets it
     /// back now.
     fn connect(&mut self, now: Moment);
+}
+
+/// A virtual device that is also sent datagrams. Moments as for a [`ByteDevice`].
+pub trait DatagramDevice: Send {
+    /// A packet has come at `now`, from there.
+    fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
+
+    /// Packets that have left by `now` and were not fetched yet, with where they go; 0.0.0.0 is whoever asked over a link in
+    /// this process.
+    fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
+
+    /// When [`poll_datagrams`](Self::poll_datagrams) should be called next; `None`: nothing will happen by itself.
+    fn poll_datagrams_at(&self) -> Option<Moment>;
 }

@@ -59,6 +59,11 @@ const TICK_S: f64 = 1e-3;
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
+    /// At rest there.
+    pub(super) const fn at(place: f64) -> Self {
+        Axis { place, speed: 0.0 }
+    }
+
     pub(super) const fn place(&self) -> f64 {
         self.place
     }

@@ -38,9 +38,21 @@ impl Memory {
         }
     }
 
+    /// It has this value, and keeps it.
+    pub(super) fn preset(&mut self, number: u16, value: i64) {
+        self.set(number, value);
+        self.keep();
+    }
+
     pub(super) fn keep(&mut self) {
-        let saved = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.saved);
-        self.kept.extend(self.now.iter().filter(|(number, _)| saved(number)));
+        self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
+    }
+
+    /// Half of what is to be kept, by the numbers: the supply was lost in between.
+    pub(super) fn keep_half(&mut self) {
+        let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
+        let half = saved.len() / 2;
+        self.kept.extend(saved.into_iter().take(half));
     }
 
     /// As saved last; what is never saved from the factory.
@@ -52,4 +64,8 @@ impl Memory {
     pub(super) fn forget(&mut self) {
         self.now = self.factory.clone();
     }
+}
+
+fn is_saved(number: u16) -> bool {
+    PARAMETERS.iter().any(|row| row.number == number && row.saved)
 }

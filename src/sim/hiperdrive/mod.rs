@@ -1,5 +1,5 @@
-//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): what process data and parameters do to them, in
-//! virtual time, without any network in front of them. Whatever the manual leaves open (`U`) follows one documented choice.
+//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): what process data and parameters do to them, and
+//! the EtherNet/IP target in front of them, in virtual time. Whatever the manual leaves open (`U`) follows one documented choice.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -8,16 +8,22 @@
 //! | `drive` | a drive: its state, its motion, its faults |
 //! | `parameters` | what reading and writing a drive's parameters does |
 //! | `station` | the drives together: process data, parameter words, save and reset, the lost master |
+//! | `config` | the settings of a `sim:` link |
+//! | `target` | frames and packets of EtherNet/IP in front of a station |
 
 mod axis;
+mod config;
 mod drive;
 mod memory;
 mod parameters;
 mod station;
+mod target;
 #[cfg(test)]
 mod tests;
 
 pub use axis::Load;
+pub use config::Config;
 pub use drive::Drive;
 pub use parameters::Refused;
 pub use station::{Setup, Station};
+pub use target::{Figures, Target};

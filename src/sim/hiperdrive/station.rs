@@ -6,7 +6,8 @@
 
 use std::time::Duration;
 
-use super::axis::Load;
+use super::axis::{Axis, Load};
+use super::config::Config;
 use super::drive::Drive;
 use super::memory::Memory;
 use super::parameters::{Refused, element};
@@ -38,6 +39,29 @@ pub struct Station {
     busy_until: Moment,
     /// The parameter word that is answered, with its answer.
     words: (Pkw, Pkw),
+    plate: Plate,
+    store: Store,
+}
+
+/// What it says of itself that no [`Setup`] is about.
+#[derive(Clone, Debug)]
+struct Plate {
+    name: String,
+    switch: u8,
+    supply_tenths: u16,
+}
+
+/// What a save may come to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Store {
+    /// How many there were.
+    count: u32,
+    /// In this one the supply is lost, counted from 1.
+    dies_in: Option<u32>,
+    /// Then.
+    dies_at: Option<Moment>,
+    /// It was.
+    dead: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +91,54 @@ impl Station {
             .map(|place| place.map(|(variant, load)| Drive::new(variant, setup.topology, load)))
             .collect();
         let memory = Memory::new(setup.topology, Family::Short, |row| row.number < 100);
-        Station { setup, drives, memory, master: None, busy_until: Moment::START, words: Default::default() }
+        let plate = Plate { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
+        Station {
+            setup,
+            drives,
+            memory,
+            master: None,
+            busy_until: Moment::START,
+            words: Default::default(),
+            plate,
+            store: Store::default(),
+        }
+    }
+
+    /// A station as settings want it.
+    pub fn of(config: &Config) -> Self {
+        let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
+        let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };
+        let mut station = Station::new(setup);
+        station.plate = Plate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths };
+        station.store.dies_in = config.faults.die_in_store();
+        for drive in station.present() {
+            drive.axis = Axis::at(config.position.into());
+            config.requested.iter().for_each(|requested| drive.memory.preset(152, i64::from(*requested)));
+            config.speed.iter().for_each(|speed| drive.memory.preset(166, i64::from(*speed)));
+        }
+        station.turn_s3(Moment::START, config.s3);
+        station
+    }
+
+    /// How its process data and parameters are laid out.
+    pub const fn topology(&self) -> Topology {
+        self.setup.topology
+    }
+
+    /// Saves so far, also those that ended badly.
+    pub const fn stores(&self) -> u32 {
+        self.store.count
+    }
+
+    /// It has lost its supply: nothing answers until [`power_cycle`](Self::power_cycle).
+    pub fn is_dead(&mut self, now: Moment) -> bool {
+        self.advance(now);
+        self.store.dead
+    }
+
+    /// In this save, counted from the first there was, the supply is lost; `None`: in none.
+    pub const fn die_in_store(&mut self, number: Option<u32>) {
+        self.store.dies_in = number;
     }
 
     /// A drive that is plugged in.
@@ -132,6 +203,7 @@ impl Station {
         self.advance(now);
         self.memory.recall();
         (self.master, self.busy_until, self.words) = (None, now, Default::default());
+        (self.store.dies_at, self.store.dead) = (None, false);
         self.reset(now);
     }
 
@@ -197,20 +269,27 @@ impl Station {
 
     /// Parameter 47 is written.
     fn keep_or_reset(&mut self, now: Moment, value: i64) {
-        let each: fn(&mut Memory) = match value {
-            1 => Memory::keep,
-            -1 => Memory::forget,
-            -2 => Memory::recall,
-            -3 => |memory| {
-                memory.forget();
-                memory.keep();
-            },
-            -4 => {
-                self.reset(now);
-                self.busy_until = now + RESETS;
-                return;
+        if value == -4 {
+            self.reset(now);
+            self.busy_until = now + RESETS;
+            return;
+        }
+        let mut keep: fn(&mut Memory) = Memory::keep;
+        if matches!(value, 1 | -3) {
+            self.store.count = self.store.count.saturating_add(1);
+            if self.store.dies_in == Some(self.store.count) {
+                (self.store.dies_at, keep) = (Some(now + SAVES / 2), Memory::keep_half);
             }
-            _ => return,
+        }
+        let each = |memory: &mut Memory| match value {
+            1 => keep(memory),
+            -1 => memory.forget(),
+            -2 => memory.recall(),
+            -3 => {
+                memory.forget();
+                keep(memory);
+            }
+            _ => {}
         };
         self.present().for_each(|drive| each(&mut drive.memory));
         each(&mut self.memory);
@@ -227,11 +306,11 @@ impl Station {
     fn read_own(&self, now: Moment, row: &ParameterRow) -> Option<Value> {
         let text = |text: &str| Some(Value::Text(text.to_owned()));
         let number = match row.number {
-            9 => 240,
+            9 => self.plate.supply_tenths.into(),
             11 => 31,
-            12 => 0,
+            12 => self.plate.switch.into(),
             13 => return text(self.setup.topology.category()),
-            15 => return text("HIPERDRIVE"),
+            15 => return text(&self.plate.name),
             16 => return text("7800.0100"),
             17 => self.setup.serial_number.into(),
             18 => return text("14/2024"),
@@ -298,8 +377,14 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// A master that was not heard for too long is lost at that moment, not when somebody looks.
+    /// What happens by itself happens at its moment, not when somebody looks: the supply is lost in a save, a master that was
+    /// not heard for too long is lost.
     fn advance(&mut self, now: Moment) {
+        if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
+            self.store.dead = true;
+            self.master = None;
+            self.present().for_each(|drive| drive.reset(at));
+        }
         let Some(Master { timeout, heard }) = self.master else { return };
         if now.since(heard) >= timeout {
             self.master = None;

@@ -1,0 +1,223 @@
+//! The settings of virtual drives and what stands in front of them, as the query of a `sim:` link gives them:
+//! `hub=4&drives=1,0,1&position=65536`. It opens nothing.
+
+use super::axis::Load;
+use crate::protocol::hiperdrive::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, Faults};
+
+/// What a virtual adapter or hub and its drives shall be like. The default is an adapter with one drive HDA30A from the
+/// factory, at rest, without faults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    pub(super) topology: Topology,
+    /// Place by place; `None`: everywhere is a drive.
+    plugged: Option<Vec<bool>>,
+    pub(super) variant: Variant,
+    pub(super) requested: Option<bool>,
+    pub(super) position: i32,
+    pub(super) speed: Option<u16>,
+    load: u8,
+    blocked: bool,
+    temperature: f64,
+    pub(super) s3: u8,
+    pub(super) switch: u8,
+    pub(super) supply_tenths: u16,
+    pub(super) serial_number: u16,
+    pub(super) name: String,
+    pub(super) order: ByteOrder,
+    pub(super) short_texts: bool,
+    pub(super) seed: u64,
+    pub(super) faults: Faults,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            topology: Topology::Adapter,
+            plugged: None,
+            variant: Variant::new(7),
+            requested: None,
+            position: 0,
+            speed: None,
+            load: Load::default().percent,
+            blocked: false,
+            temperature: Load::default().ambient,
+            s3: 0,
+            switch: 0,
+            supply_tenths: 240,
+            serial_number: 4711,
+            name: "HIPERDRIVE".to_owned(),
+            order: ByteOrder::Little,
+            short_texts: false,
+            seed: 0,
+            faults: Faults::default(),
+        }
+    }
+}
+
+impl Config {
+    /// The keys that [`from_pairs`](Self::from_pairs) takes. What concerns drives concerns all of them.
+    ///
+    /// | key | value |
+    /// |---|---|
+    /// | `hub` | `4` or `8` places; without it an adapter with one drive |
+    /// | `drives` | which places have a drive: `1,0,1`; without it all, behind a list's end none |
+    /// | `variant` | parameter 120, 1…13, or the name as `HDA70` |
+    /// | `requested` | parameter 152: 0 or 1; without it as from the factory |
+    /// | `position` | where the drives stand, in steps of which a turn has 65536 |
+    /// | `speed` | parameter 166: greatest speed in tenths of rpm, 5…350 |
+    /// | `load` | percent of the nominal torque that the spindle takes, 0…200: above 100 no drive can move it |
+    /// | `blocked` | `on`: the spindle is held where it stands |
+    /// | `temperature` | degrees Celsius around the drives: from 80 on they fail |
+    /// | `s3` | switch S3, 0…9; away from 0 nothing moves from the bus |
+    /// | `switch` | address switch, 0…99 |
+    /// | `supply` | control supply in volts |
+    /// | `serial`, `name` | parameters 17 and 15 |
+    /// | `order` | `little` or `big`: of the numbers in process data (`U`) |
+    /// | `text` | `plain`, or `counted` by a byte in front: texts of parameters (`U`) |
+    /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes |
+    pub const KEYS: [&str; 18] = [
+        "hub",
+        "drives",
+        "variant",
+        "requested",
+        "position",
+        "speed",
+        "load",
+        "blocked",
+        "temperature",
+        "s3",
+        "switch",
+        "supply",
+        "serial",
+        "name",
+        "order",
+        "text",
+        "seed",
+        "fault",
+    ];
+
+    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// `0x…`.
+    ///
+    /// # Errors
+    /// With a sentence that names the key and what is allowed.
+    pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        let mut config = Config::default();
+        let mut drives = None;
+        for (key, value) in pairs {
+            let setting = Setting { key, value };
+            if key == "drives" {
+                drives = Some(setting);
+            } else if !config.set_drives(setting)? && !config.set_device(setting)? {
+                let (device, known) = ("a virtual HIPERDRIVE", Self::KEYS.join(", "));
+                return Err(ConfigError::Key { device, key: key.clone(), known });
+            }
+        }
+        config.plugged = drives.map(|setting| places(setting, config.topology)).transpose()?;
+        Ok(config)
+    }
+
+    fn set_drives(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
+        match setting.key {
+            "variant" => self.variant = variant(setting)?,
+            "requested" => self.requested = Some(setting.one_of(&[("0", false), ("1", true)], "0 or 1")?),
+            "position" => {
+                let allowed = "steps from -2147483648 to 2147483647";
+                self.position = setting.value.parse().map_err(|_| setting.refused(allowed))?;
+            }
+            "speed" => self.speed = Some(within(setting, 5, 350, "tenths of rpm from 5 to 350")?),
+            "load" => self.load = within(setting, 0, 200, "percent of the nominal torque from 0 to 200")?,
+            "blocked" => self.blocked = setting.switch()?,
+            "temperature" => self.temperature = setting.decimal(-40.0..=120.0, "degrees Celsius from -40 to 120")?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    fn set_device(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
+        match setting.key {
+            "hub" => {
+                let hubs = [("4", Topology::Hub4), ("8", Topology::Hub8)];
+                self.topology = setting.one_of(&hubs, "4 or 8; without it there is an adapter with one drive")?;
+            }
+            "s3" => self.s3 = within(setting, 0, 9, "a position of the switch from 0 to 9")?,
+            "switch" => {
+                let allowed = "the two digits of the switch, from 0 to 99";
+                let switch = AddressSwitch::parse(setting.number(allowed)?).ok_or_else(|| setting.refused(allowed))?;
+                self.switch = switch.number();
+            }
+            "supply" => {
+                // At most 1000 tenths.
+                self.supply_tenths = (setting.decimal(0.0..=100.0, "volts from 0 to 100")? * 10.0).round() as u16;
+            }
+            "serial" => self.serial_number = setting.number("a number from 0 to 65535")?,
+            "name" => {
+                let fits =
+                    setting.value.len() <= Self::MAX_NAME && setting.value.bytes().all(|c| (b' '..=b'~').contains(&c));
+                let name = Some(setting.value).filter(|_| fits);
+                self.name = name.ok_or_else(|| setting.refused("up to 32 characters of ASCII"))?.to_owned();
+            }
+            "order" => {
+                let orders = [("little", ByteOrder::Little), ("big", ByteOrder::Big)];
+                self.order = setting.one_of(&orders, "little or big")?;
+            }
+            "text" => {
+                self.short_texts = setting.one_of(&[("plain", false), ("counted", true)], "plain or counted")?;
+            }
+            "seed" => self.seed = setting.number("a whole number")?,
+            "fault" => self.faults = setting.value.parse()?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    const MAX_NAME: usize = 32;
+
+    /// What is plugged into a place.
+    pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, Load)> {
+        let place = usize::from(number.get()) - 1;
+        let plugged = self.plugged.as_ref().is_none_or(|places| places.get(place) == Some(&true));
+        plugged.then(|| (self.variant, self.load()))
+    }
+
+    fn load(&self) -> Load {
+        let wall = self.blocked.then(|| self.place());
+        Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature }
+    }
+
+    /// Where the drives stand, in steps of 65536 a turn.
+    fn place(&self) -> f64 {
+        f64::from(self.position)
+    }
+}
+
+fn variant(setting: Setting<'_>) -> Result<Variant, ConfigError> {
+    let row =
+        VARIANTS.iter().find(|row| row.name == setting.value || row.variant.number().to_string() == setting.value);
+    row.map(|row| row.variant).ok_or_else(|| setting.refused("a variant from 1 to 13, or its name as HDA30A"))
+}
+
+/// Which places have a drive.
+fn places(setting: Setting<'_>, topology: Topology) -> Result<Vec<bool>, ConfigError> {
+    let count = topology.drives();
+    let refused = || setting.refused(&format!("0 or 1 for each of {count} places, separated by commas, as 1,0"));
+    let place = |text: &str| match text.trim() {
+        "1" => Ok(true),
+        "0" => Ok(false),
+        _ => Err(refused()),
+    };
+    let places: Vec<bool> = setting.value.split(',').map(place).collect::<Result<_, _>>()?;
+    if places.len() <= usize::from(count) { Ok(places) } else { Err(refused()) }
+}
+
+fn within<T: TryFrom<u64> + PartialOrd>(
+    setting: Setting<'_>,
+    low: T,
+    high: T,
+    allowed: &str,
+) -> Result<T, ConfigError> {
+    let number = Some(setting.number(allowed)?).filter(|number| (low..=high).contains(number));
+    number.ok_or_else(|| setting.refused(allowed))
+}
