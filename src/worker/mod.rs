@@ -10,6 +10,7 @@
 mod agenda;
 pub mod biss;
 mod commit;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod live;

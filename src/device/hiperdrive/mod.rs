@@ -4,9 +4,12 @@
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)
+//! what a person wants ── dead_man (one a drive): control words ── cyclic: packets, counts ──▶ datagrams (UDP)
 //! ```
 
 pub mod check;
+pub mod cyclic;
+pub mod dead_man;
 mod discover;
 mod error;
 mod identify;

@@ -235,6 +235,17 @@ impl ControlWord {
         }
     }
 
+    /// Whatever the drive says, also where it says it late: with this word nothing begins, and what moves comes to stand.
+    pub const fn is_standing(self) -> bool {
+        let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
+        let moves = if self.has(ControlBit::SpeedMode) {
+            self.has(ControlBit::Start)
+        } else {
+            self.has(ControlBit::NoStop) && self.has(ControlBit::NoPause)
+        };
+        !self.has(ControlBit::Enable) || !(jogs || moves)
+    }
+
     const fn positioning(start: bool) -> Self {
         let word = ControlWord::ENABLED.with(ControlBit::NoStop).with(ControlBit::NoPause);
         if start { word.with(ControlBit::Start) } else { word }

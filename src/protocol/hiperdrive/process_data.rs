@@ -202,6 +202,8 @@ impl Layout {
 }
 
 impl Percent {
+    /// Nothing of it.
+    pub const NONE: Percent = Percent(0);
     /// All of it.
     pub const FULL: Percent = Percent(100);
 
@@ -220,7 +222,7 @@ impl Setpoint {
     /// What follows speed mode and opens every connection: ready, nothing to move with, and the target where the drive
     /// stands, so that no stale one is left.
     pub const fn standing(actual: Actual) -> Self {
-        let none = Percent(0);
+        let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
     }
 }

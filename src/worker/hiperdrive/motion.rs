@@ -1,0 +1,164 @@
+//! The handle through which a person moves drives: what is wanted goes into a cell, of which the latest counts, and what the
+//! drives say comes back. The thread of the cyclic connection reads the one and fills the other; nobody waits.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::device::hiperdrive::cyclic::{CyclicLost, LinkFigures};
+use crate::device::hiperdrive::dead_man::{Ended, Intent, Lock, Permit, Phase, Wish};
+use crate::link::Clock;
+use crate::protocol::hiperdrive::{Actual, DriveNumber, Setpoint};
+
+/// The motion of a session's drives. Clones share it.
+#[derive(Clone)]
+pub struct Motion(Arc<Shared>);
+
+struct Shared {
+    clock: Arc<dyn Clock>,
+    cell: Mutex<Cell>,
+}
+
+struct Cell {
+    intent: Intent,
+    permits: BTreeMap<DriveNumber, Permit>,
+    /// Drives whose limits have to be looked at.
+    unconfirmed: Vec<DriveNumber>,
+    expert: bool,
+    view: View,
+}
+
+/// What the drives do, and how well their connection works.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// The cyclic connection is there.
+    pub open: bool,
+    /// The drives that have a place in it, as they were last; in the order of their numbers.
+    pub drives: Vec<DriveView>,
+    /// The connection.
+    pub link: LinkFigures,
+    /// Why it is not there any more, where nobody has closed it.
+    pub lost: Option<CyclicLost>,
+}
+
+/// What a drive does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveView {
+    /// Which one.
+    pub number: DriveNumber,
+    /// What it said last.
+    pub actual: Actual,
+    /// What it was sent last.
+    pub sent: Setpoint,
+    /// What is done with it.
+    pub phase: Phase,
+    /// The act that is under way, or the last one; 0 for none.
+    pub act: u64,
+    /// The last act that ended, and how.
+    pub ended: Option<(u64, Ended)>,
+}
+
+impl Motion {
+    /// Nothing is wanted, and nothing is permitted.
+    pub fn new(clock: Arc<dyn Clock>) -> Self {
+        let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
+        let cell =
+            Cell { intent, permits: BTreeMap::new(), unconfirmed: Vec::new(), expert: false, view: View::default() };
+        Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
+    }
+
+    /// A person wants something of a drive: an act of its own, whose number comes back. It replaces the one before; what
+    /// moved by that stops. It has to be kept [fresh](Self::refresh). Without a cyclic connection nothing comes of it.
+    pub fn intend(&self, drive: DriveNumber, wish: Wish) -> u64 {
+        let refreshed = self.0.clock.now();
+        let mut cell = self.lock();
+        let number = cell.intent.number + 1;
+        cell.intent = Intent { drive, wish, number, refreshed };
+        number
+    }
+
+    /// What was wanted last is wanted still. To be said every 100 ms while anything moves: 250 ms without it stop the drive.
+    pub fn refresh(&self) {
+        let now = self.0.clock.now();
+        self.lock().intent.refreshed = now;
+    }
+
+    /// All drives stop.
+    pub fn stop(&self) {
+        let drive = self.lock().intent.drive;
+        self.intend(drive, Wish::Stop);
+    }
+
+    /// The act of this number is the latest.
+    pub fn is_latest(&self, number: u64) -> bool {
+        self.lock().intent.number == number
+    }
+
+    /// What the drives do.
+    pub fn view(&self) -> View {
+        self.lock().view.clone()
+    }
+
+    /// The cyclic connection is there.
+    pub fn is_open(&self) -> bool {
+        self.lock().view.open
+    }
+
+    /// What a drive may do from now on: by its parameters. Limits that have to be confirmed stay so.
+    pub fn permit(&self, drive: DriveNumber, permit: Permit) {
+        let mut cell = self.lock();
+        if permit.locks.contains(&Lock::LimitsUnconfirmed) {
+            cell.unconfirm(drive);
+        }
+        cell.permits.insert(drive, permit);
+    }
+
+    /// The scaling of a drive was changed, and with it where its limits lie: nothing moves until they are confirmed.
+    pub fn limits_changed(&self, drive: DriveNumber) {
+        self.lock().unconfirm(drive);
+    }
+
+    /// A person has looked at the limits of a drive in their own units.
+    pub fn confirm_limits(&self, drive: DriveNumber) {
+        self.lock().unconfirmed.retain(|unconfirmed| *unconfirmed != drive);
+    }
+
+    /// Somebody knows what an endless run is. It may begin where limits and scaling are the factory's too.
+    pub fn expert(&self, expert: bool) {
+        self.lock().expert = expert;
+    }
+
+    /// What a drive may do at the moment, all things considered.
+    pub fn permitted(&self, drive: DriveNumber) -> Permit {
+        self.lock().permitted(drive)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Cell> {
+        // Each change is whole: whoever panicked has left nothing half done.
+        self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Cell {
+    fn unconfirm(&mut self, drive: DriveNumber) {
+        if !self.unconfirmed.contains(&drive) {
+            self.unconfirmed.push(drive);
+        }
+    }
+
+    fn permitted(&self, drive: DriveNumber) -> Permit {
+        let mut permit = self.permits.get(&drive).cloned().unwrap_or_default();
+        permit.locks.retain(|lock| *lock != Lock::LimitsUnconfirmed);
+        if self.unconfirmed.contains(&drive) {
+            permit.locks.push(Lock::LimitsUnconfirmed);
+        }
+        permit.endless &= self.expert;
+        permit
+    }
+}
+
+impl fmt::Debug for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Motion").field(&self.view()).finish()
+    }
+}
