@@ -1,8 +1,7 @@
 //! Why something cannot be planned.
 
-use core::net::Ipv4Addr;
-
-use super::{Interface, Item};
+use super::Item;
+use crate::protocol::ethernet_ip::AddressError;
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange};
 
 /// Why something cannot be planned. Nothing has been written.
@@ -100,42 +99,10 @@ pub enum PlanError {
         /// As it is.
         upper: i64,
     },
-    /// Addresses that cannot be.
+    /// Addresses at which a device cannot be reached.
     #[error(transparent)]
-    Network(#[from] NetworkError),
-}
-
-/// Addresses that cannot be.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NetworkError {
-    /// Not a device's.
-    #[error("{0} is not the address of a device")]
-    Address(Ipv4Addr),
-    /// Ones first, then zeros, with room for two devices.
-    #[error("{0} is not a network mask")]
-    Mask(Ipv4Addr),
-    /// The first or the last address of its network.
-    #[error("{address} is no device of its network with the mask {mask}")]
-    NoHost {
-        /// As given.
-        address: Ipv4Addr,
-        /// As given.
-        mask: Ipv4Addr,
-    },
-    /// Not another device of the same network.
-    #[error("the gateway {gateway} is not another device of the network of {address} with the mask {mask}")]
-    Gateway {
-        /// As given.
-        gateway: Ipv4Addr,
-        /// As given.
-        address: Ipv4Addr,
-        /// As given.
-        mask: Ipv4Addr,
-    },
-    /// Too long, or not of ASCII.
-    #[error("the name of a domain has at most {} characters of ASCII", Interface::LONGEST_DOMAIN)]
-    Domain,
-    /// A method that is kept where it is found, and never set.
-    #[error("method {0} is not one by which an address can be got: 0 stored, 1 BOOTP, 2 DHCP")]
+    Address(#[from] AddressError),
+    /// A source of addresses that nobody knows is kept where it is found, and never set.
+    #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

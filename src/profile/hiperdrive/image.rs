@@ -47,6 +47,11 @@ impl Image {
         Some((self.of_drive(drive, 158)?, self.of_drive(drive, 160)?))
     }
 
+    /// What it says of some parameters, as far as it does.
+    pub fn of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
+        numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
+    }
+
     /// With what another one says instead.
     pub fn with(&self, other: &Image) -> Image {
         let mut image = self.clone();

@@ -1,16 +1,26 @@
 //! HIPERDRIVE: what an adapter or a hub keeps of itself and its drives, what is saved of it, how two differ, and what a write
 //! would do.
 
+mod compare;
+mod edit;
 mod error;
 mod image;
 mod item;
 mod network;
 mod plan;
 mod record;
+mod restore;
+#[cfg(test)]
+mod test_profiles;
+mod warning;
 
-pub use error::{NetworkError, PlanError};
+pub use compare::compare;
+pub use edit::{Positions, plan_edits, plan_service, plan_set_position};
+pub use error::PlanError;
 pub use image::Image;
 pub use item::{Item, ItemError};
-pub use network::{AddressSource, Interface, NetworkSettings};
+pub use network::{NetworkSettings, plan_network};
 pub use plan::{Base, HiperdrivePlan, Op, Service};
 pub use record::{HiperdriveProfile, Kept, MountingMark, ProfileDrive, ProfileIdentity};
+pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore};
+pub use warning::{Warning, warnings};

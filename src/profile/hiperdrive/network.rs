@@ -1,10 +1,9 @@
-//! How a device gets its IP address: its TCP/IP object, CIP class F5h (reference 1). It counts where the address switch is at
-//! 0, its addresses also where it is at 97.
+//! How a device gets its IP address, and what its own plan would do: its TCP/IP object, CIP class F5h (reference 1). It counts
+//! where the address switch is at 0, its addresses also where that is at 97.
 
-use core::net::Ipv4Addr;
-use std::fmt;
-
-use super::NetworkError;
+use super::{Base, HiperdrivePlan, Op, PlanError};
+use crate::protocol::ethernet_ip::{AddressSource, InterfaceConfiguration};
+use crate::protocol::hiperdrive::ParameterNumber;
 
 /// What the object says.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -12,104 +11,81 @@ pub struct NetworkSettings {
     /// Attribute 3.
     pub source: AddressSource,
     /// Attribute 5.
-    pub interface: Interface,
+    pub interface: InterfaceConfiguration,
 }
 
-/// Where the address comes from: the lowest four bits of attribute 3.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum AddressSource {
-    /// 0: as stored. Setting it stores the address that the device has at that time.
-    Stored,
-    /// 1.
-    Bootp,
-    /// 2: from the factory.
-    Dhcp,
-    /// Another number, 3 to 15: kept, and never set.
-    Other(u8),
+/// Makes a device get its address so. Addresses are written where they are to be taken as stored; elsewhere what is wanted of
+/// them says nothing. `switch` is parameter 12, where it is known.
+///
+/// # Errors
+/// Addresses at which a device cannot be reached, and a source that nobody knows.
+pub fn plan_network(
+    now: &NetworkSettings,
+    switch: Option<i64>,
+    wanted: &NetworkSettings,
+) -> Result<HiperdrivePlan, PlanError> {
+    let mut to = wanted.clone();
+    match to.source {
+        AddressSource::Stored => to.interface.check()?,
+        AddressSource::Bootp | AddressSource::Dhcp => to.interface = now.interface.clone(),
+        AddressSource::Unknown(source) if to.source != now.source => return Err(PlanError::Source(source)),
+        AddressSource::Unknown(_) => to.interface = now.interface.clone(),
+    }
+    if to == *now {
+        return Ok(HiperdrivePlan { base: Base::default(), ops: Vec::new() });
+    }
+    let switch = ParameterNumber::new(SWITCH).zip(switch);
+    let base = Base { values: switch.into_iter().collect(), network: Some(now.clone()) };
+    Ok(HiperdrivePlan { base, ops: vec![Op::Network { from: now.clone(), to }] })
 }
 
-/// Addresses of an interface; 0.0.0.0 where there is none.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Interface {
-    /// Its own.
-    pub address: Ipv4Addr,
-    /// Of its network.
-    pub mask: Ipv4Addr,
-    /// Out of its network.
-    pub gateway: Ipv4Addr,
-    /// The first and the second one.
-    pub name_servers: [Ipv4Addr; 2],
-    /// The domain's name, at most 48 characters.
-    pub domain: String,
-}
+/// The address switch.
+pub(super) const SWITCH: u16 = 12;
 
-impl AddressSource {
-    /// By attribute 3; what stands above its lowest four bits does not count.
-    pub const fn of_control(control: u32) -> Self {
-        match control & 0xF {
-            0 => AddressSource::Stored,
-            1 => AddressSource::Bootp,
-            2 => AddressSource::Dhcp,
-            // Four bits.
-            other => AddressSource::Other(other as u8),
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::Operation;
+    use crate::profile::hiperdrive::{Warning, warnings};
+    use crate::protocol::ethernet_ip::AddressError;
+    use crate::protocol::hiperdrive::AddressSwitch;
+
+    fn settings(source: AddressSource, address: [u8; 4]) -> NetworkSettings {
+        let interface = InterfaceConfiguration {
+            address: address.into(),
+            mask: [255, 255, 255, 0].into(),
+            gateway: [0; 4].into(),
+            name_servers: [[0; 4].into(); 2],
+            domain: String::new(),
+        };
+        NetworkSettings { source, interface }
     }
 
-    /// The lowest four bits of attribute 3.
-    pub const fn code(self) -> u8 {
-        match self {
-            AddressSource::Stored => 0,
-            AddressSource::Bootp => 1,
-            AddressSource::Dhcp => 2,
-            AddressSource::Other(code) => code,
-        }
+    #[test]
+    fn addresses_are_set_where_they_are_stored() {
+        let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
+        let wanted = settings(AddressSource::Stored, [10, 0, 0, 8]);
+        let plan = plan_network(&now, Some(0), &wanted).unwrap();
+        assert_eq!(plan.ops, [Op::Network { from: now.clone(), to: wanted.clone() }]);
+        assert_eq!((plan.ops[0].write_cycles(), plan.base.network.as_ref()), (1, Some(&now)));
+        assert_eq!(warnings(&plan), []);
+        // By DHCP an address is given: none is written.
+        let plan = plan_network(&wanted, Some(0), &settings(AddressSource::Dhcp, [10, 0, 0, 9])).unwrap();
+        let to = NetworkSettings { source: AddressSource::Dhcp, ..wanted.clone() };
+        assert_eq!(plan.ops, [Op::Network { from: wanted.clone(), to }]);
+        assert!(plan_network(&wanted, Some(0), &wanted).unwrap().is_empty());
+        assert!(plan_network(&now, None, &settings(AddressSource::Dhcp, [10, 0, 0, 9])).unwrap().is_empty());
     }
-}
 
-impl fmt::Display for AddressSource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            AddressSource::Stored => f.write_str("stored"),
-            AddressSource::Bootp => f.write_str("BOOTP"),
-            AddressSource::Dhcp => f.write_str("DHCP"),
-            AddressSource::Other(code) => write!(f, "method {code}"),
-        }
-    }
-}
-
-impl Interface {
-    /// Without any address.
-    pub const NONE: Interface = Interface {
-        address: Ipv4Addr::UNSPECIFIED,
-        mask: Ipv4Addr::UNSPECIFIED,
-        gateway: Ipv4Addr::UNSPECIFIED,
-        name_servers: [Ipv4Addr::UNSPECIFIED; 2],
-        domain: String::new(),
-    };
-
-    /// The longest name of a domain (CIP volume 2).
-    pub const LONGEST_DOMAIN: usize = 48;
-
-    /// That a device can be reached at these addresses.
-    ///
-    /// # Errors
-    /// [`NetworkError`] with what is wrong.
-    pub fn check(&self) -> Result<(), NetworkError> {
-        let (address, mask, gateway) = (self.address.to_bits(), self.mask.to_bits(), self.gateway.to_bits());
-        let is_mask = mask != 0 && mask.count_ones() == mask.leading_ones();
-        let host = address & !mask;
-        match self.address {
-            _ if !is_mask || mask.count_ones() > 30 => Err(NetworkError::Mask(self.mask)),
-            own if own.is_unspecified() || own.is_loopback() || own.is_multicast() || own.octets()[0] >= 240 => {
-                Err(NetworkError::Address(own))
-            }
-            own if host == 0 || host == !mask => Err(NetworkError::NoHost { address: own, mask: self.mask }),
-            _ if gateway == 0 => Ok(()),
-            own if gateway == address || (gateway ^ address) & mask != 0 => {
-                Err(NetworkError::Gateway { gateway: self.gateway, address: own, mask: self.mask })
-            }
-            _ if self.domain.len() > Interface::LONGEST_DOMAIN || !self.domain.is_ascii() => Err(NetworkError::Domain),
-            _ => Ok(()),
-        }
+    #[test]
+    fn what_cannot_be_is_refused_and_what_does_not_count_is_told() {
+        let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
+        let refused = |wanted| plan_network(&now, None, &wanted).unwrap_err();
+        let broadcast = AddressError::Broadcast([10, 0, 0, 255].into());
+        assert_eq!(refused(settings(AddressSource::Stored, [10, 0, 0, 255])), PlanError::Address(broadcast));
+        assert_eq!(refused(settings(AddressSource::Unknown(3), [10, 0, 0, 7])), PlanError::Source(3));
+        let plan = plan_network(&now, Some(17), &settings(AddressSource::Bootp, [0; 4])).unwrap();
+        let fixed = AddressSwitch::Fixed([192, 168, 1, 17].into());
+        assert_eq!(warnings(&plan), [Warning::SwitchDecides(fixed)]);
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Item, NetworkSettings};
 use crate::profile::{Operation, Plan};
+use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber};
 
 /// What a write to an adapter or a hub would do.
@@ -85,6 +86,16 @@ impl Service {
     }
 }
 
+impl HiperdrivePlan {
+    /// The same without the save at its end: what it writes is gone without supply, unless it is saved later.
+    pub fn without_save(mut self) -> Self {
+        if self.ops.last() == Some(&Op::Service(Service::Save)) {
+            self.ops.pop();
+        }
+        self
+    }
+}
+
 impl Operation for Op {
     fn write_cycles(&self) -> u64 {
         match self {
@@ -136,5 +147,11 @@ impl Op {
 
 fn network_note(settings: &NetworkSettings) -> String {
     let NetworkSettings { source, interface } = settings;
+    let source = match source {
+        AddressSource::Stored => "stored".to_owned(),
+        AddressSource::Bootp => "BOOTP".to_owned(),
+        AddressSource::Dhcp => "DHCP".to_owned(),
+        AddressSource::Unknown(source) => format!("source {source}"),
+    };
     format!("{source}, {} mask {} gateway {}", interface.address, interface.mask, interface.gateway)
 }

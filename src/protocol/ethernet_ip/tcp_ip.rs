@@ -22,7 +22,7 @@ pub enum AddressSource {
 }
 
 /// Attribute 5.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct InterfaceConfiguration {
     /// Its address; 0.0.0.0 for none.
     pub address: Ipv4Addr,

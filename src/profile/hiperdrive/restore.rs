@@ -1,0 +1,110 @@
+//! What restoring a profile would do: only what differs, one save behind it, and never a drive's reference, which belongs to
+//! its machine.
+
+use super::plan_edits;
+use super::record::REFERENCE;
+use super::{HiperdrivePlan, HiperdriveProfile, Image, Item, PlanError, Positions, ProfileDrive, ProfileIdentity};
+use crate::protocol::hiperdrive::DriveNumber;
+
+/// What a restore may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RestoreOptions {
+    /// The profile may go onto a device with another serial number, or with drives that have one.
+    pub allow_other_device: bool,
+    /// What a person has marked as belonging to the mounting may go onto another device. The reference (198) never does.
+    pub with_mounting: bool,
+}
+
+/// A device as it is, as far as a plan needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceState {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps.
+    pub image: Image,
+    /// Where its drives stand.
+    pub positions: Positions,
+}
+
+/// What a restore would do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restore {
+    /// The operations.
+    pub plan: HiperdrivePlan,
+    /// Parameters that are already as the profile says.
+    pub unchanged: u64,
+    /// Parameters of the profile that the device does not have, as those of an empty place: left alone.
+    pub missing: Vec<String>,
+    /// What belongs to the mounting, differs and is left alone.
+    pub mounting_left: Vec<Item>,
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &HiperdriveProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    if !options.allow_other_device {
+        check_device(profile, &device.identity)?;
+    }
+    let mut wanted = Image::default();
+    let (mut unchanged, mut missing, mut mounting_left) = (0, Vec::new(), Vec::new());
+    for (&number, &to) in &profile.image.values {
+        let item = Item(number);
+        match device.image.get(number) {
+            None => missing.push(item.to_string()),
+            Some(from) if from == to => unchanged += 1,
+            Some(_) if stays(profile, &device.identity, item, options) => mounting_left.push(item),
+            Some(_) => {
+                wanted.values.insert(number, to);
+            }
+        }
+    }
+    let plan = plan_edits(&device.image, &wanted, &device.positions)?;
+    Ok(Restore { plan, unchanged, missing, mounting_left })
+}
+
+/// Refuses a device, or drives of it, that the profile was not read from. What has no serial number in the profile is of no
+/// device, so that it is refused by none; so is a place at which there is no drive.
+///
+/// # Errors
+/// [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
+pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    let (of_profile, of_device) = (&profile.identity.serial_number, &device.serial_number);
+    if !of_profile.is_empty() && of_profile != of_device {
+        return Err(PlanError::OtherDevice { profile: of_profile.clone(), device: of_device.clone() });
+    }
+    for own in &profile.identity.drives {
+        let Some(there) = drive_at(device, own.number) else { continue };
+        if !own.serial_number.is_empty() && own.serial_number != there.serial_number {
+            let (profile, device) = (own.serial_number.clone(), there.serial_number.clone());
+            return Err(PlanError::OtherDrive { drive: own.number, profile, device });
+        }
+    }
+    Ok(())
+}
+
+/// An item that differs is left as it is.
+fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
+    item.0.base() == REFERENCE
+        || profile.is_mounting(item) && !options.with_mounting && !is_same_place(profile, device, item)
+}
+
+/// The profile was read from this very device, and the drive's parameter from this very drive.
+fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    let same = |one: &str, other: &str| !one.is_empty() && one == other;
+    let serial = |drive: Option<&ProfileDrive>| drive.map_or_else(String::new, |drive| drive.serial_number.clone());
+    same(&profile.identity.serial_number, &device.serial_number)
+        && item.0.drive().is_none_or(|drive| same(&serial(profile.drive(drive)), &serial(drive_at(device, drive))))
+}
+
+fn drive_at(device: &ProfileIdentity, number: DriveNumber) -> Option<&ProfileDrive> {
+    device.drives.iter().find(|drive| drive.number == number)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+use super::*;
+use crate::profile::hiperdrive::test_profiles::{drive, identity, image, image_of, number, profile};
+use crate::profile::hiperdrive::{MountingMark, Op, Service, compare};
+
+fn device() -> DeviceState {
+    let profile = profile();
+    DeviceState { identity: profile.identity, image: profile.image, positions: Positions::new() }
+}
+
+const NONE: RestoreOptions = RestoreOptions { allow_other_device: false, with_mounting: false };
+const OTHER: RestoreOptions = RestoreOptions { allow_other_device: true, with_mounting: false };
+const ALL: RestoreOptions = RestoreOptions { allow_other_device: true, with_mounting: true };
+
+fn written(restore: &Restore) -> Vec<u16> {
+    let write = |op: &Op| match op {
+        Op::Write { number, .. } => Some(number.get()),
+        _ => None,
+    };
+    restore.plan.ops.iter().filter_map(write).collect()
+}
+
+#[test]
+fn only_what_differs_is_written() {
+    let mut device = device();
+    device.image = device.image.with(&image_of(&[(166, 100), (398, 64)]));
+    let restore = plan_restore(&profile(), &device, NONE).unwrap();
+    assert_eq!(written(&restore), [166]);
+    assert_eq!(restore.plan.ops.last(), Some(&Op::Service(Service::Save)));
+    // 2 registers and 2 · 13 parameters, but for the two.
+    assert_eq!((restore.unchanged, restore.missing.len()), (26, 0));
+    assert_eq!(restore.mounting_left, [Item(number(398))], "a reference is never restored, on its own drive either");
+    let restore = plan_restore(&profile(), &device, ALL).unwrap();
+    assert_eq!((written(&restore), restore.mounting_left), (vec![166], vec![Item(number(398))]));
+}
+
+#[test]
+fn places_without_a_drive_are_skipped_and_named() {
+    let mut device = device();
+    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    device.identity = identity("100", &[(1, "4711")]);
+    let restore = plan_restore(&profile(), &device, NONE).unwrap();
+    assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13));
+    assert_eq!((restore.missing[0].as_str(), restore.missing[12].as_str()), ("152 drive 3", "198 drive 3"));
+}
+
+#[test]
+fn another_device_or_drive_is_refused() {
+    let mut device = device();
+    device.identity = identity("101", &[(1, "4711"), (3, "4712")]);
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    assert_eq!(error, PlanError::OtherDevice { profile: "100".to_owned(), device: "101".to_owned() });
+    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    let expected = PlanError::OtherDrive { drive: drive(3), profile: "4712".to_owned(), device: "5000".to_owned() };
+    assert_eq!(error, expected);
+    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    let mut by_hand = profile();
+    by_hand.identity = ProfileIdentity::default();
+    assert!(plan_restore(&by_hand, &device, NONE).is_ok());
+}
+
+#[test]
+fn what_a_person_marks_stays_on_its_own_drive() {
+    let mut marked = profile();
+    let mark = |own| MountingMark { item: Item(number(own)), meaning: String::new(), unknown: Default::default() };
+    marked.mounting.extend([mark(160), mark(360)]);
+    let mut device = device();
+    device.image = device.image.with(&image_of(&[(160, 1000), (360, 1000)]));
+    device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
+    let restore = plan_restore(&marked, &device, OTHER).unwrap();
+    assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(number(360))]));
+    let restore = plan_restore(&marked, &device, ALL).unwrap();
+    assert_eq!(written(&restore), [160, 360]);
+}
+
+#[test]
+fn differences_are_named_by_drive() {
+    let mut right = profile();
+    right.image = image(&[1, 3, 4]).with(&image_of(&[(24, 1), (166, 100), (366, 200)]));
+    right.image.values.remove(&number(190));
+    let comparison = compare(&profile(), &right);
+    let differences: Vec<(&str, &str, &str)> =
+        comparison.differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
+    assert_eq!(differences, [("24", "0", "1"), ("166", "350", "100"), ("166 drive 3", "350", "200")]);
+    assert_eq!((comparison.compared, comparison.only_left.as_slice()), (27, &["190".to_owned()][..]));
+    assert_eq!(comparison.only_right.len(), 13);
+    assert_eq!(comparison.only_right[0], "152 drive 4");
+}
