@@ -74,15 +74,15 @@ impl AnyDevice {
         }
     }
 
-    /// A profile.
+    /// A profile; `None` of a kind that the window does not show.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Self {
-        match &document.body {
+    ) -> Option<Self> {
+        Some(match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -94,7 +94,8 @@ impl AnyDevice {
             Body::Interbus(_) => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
-        }
+            Body::Hiperdrive(_) => return None,
+        })
     }
 
     /// Its number in the studio.

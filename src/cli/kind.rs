@@ -53,5 +53,6 @@ pub(super) fn of_profile(body: &Body) -> &'static Kind {
         Body::Biss(_) => &biss::COMMANDS,
         Body::Ssi(_) => &ssi::COMMANDS,
         Body::Interbus(_) => &interbus::COMMANDS,
+        Body::Hiperdrive(_) => &hiperdrive::COMMANDS,
     }
 }

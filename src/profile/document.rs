@@ -4,13 +4,14 @@ use ron::Value;
 use ron::error::SpannedError;
 
 use super::biss::BissProfile;
+use super::hiperdrive::HiperdriveProfile;
 use super::hiperface::HiperfaceProfile;
 use super::interbus::InterbusProfile;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::ssi::SsiProfile;
 use super::unique_names::UniqueNames;
 use crate::protocol::ssi::LayoutError;
-use crate::protocol::{biss, hiperface, interbus, ssi};
+use crate::protocol::{biss, hiperdrive, hiperface, interbus, ssi};
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -39,6 +40,8 @@ pub enum Body {
     Ssi(SsiProfile),
     /// An INTERBUS encoder.
     Interbus(Box<InterbusProfile>),
+    /// HIPERDRIVE: an adapter or a hub with its drives.
+    Hiperdrive(Box<HiperdriveProfile>),
 }
 
 /// Why a text is not a profile.
@@ -143,6 +146,7 @@ impl Document {
             biss::KIND => Body::Biss(BissProfile::read(&mut entries)?),
             ssi::KIND => Body::Ssi(SsiProfile::read(&mut entries)?),
             interbus::KIND => Body::Interbus(Box::new(InterbusProfile::read(&mut entries)?)),
+            hiperdrive::KIND => Body::Hiperdrive(Box::new(HiperdriveProfile::read(&mut entries)?)),
             _ => return Err(ProfileError::Device { found: device }),
         };
         Ok(Document { saved, note, body, unknown: entries.rest() })
@@ -165,6 +169,7 @@ impl Document {
             Body::Biss(profile) => profile.write(&mut writer),
             Body::Ssi(profile) => profile.write(&mut writer),
             Body::Interbus(profile) => profile.write(&mut writer),
+            Body::Hiperdrive(profile) => profile.write(&mut writer),
         }
         writer.unknown(&self.unknown);
         writer.close(')');
@@ -179,7 +184,7 @@ impl Document {
 
 impl Body {
     /// Kinds of devices that this program saves, by their words on the command line.
-    pub const KINDS: [&'static str; 4] = [hiperface::KIND, biss::KIND, ssi::KIND, interbus::KIND];
+    pub const KINDS: [&'static str; 5] = [hiperface::KIND, biss::KIND, ssi::KIND, interbus::KIND, hiperdrive::KIND];
 
     /// The word for the kind of device.
     pub fn kind(&self) -> &'static str {
@@ -188,6 +193,7 @@ impl Body {
             Body::Biss(_) => biss::KIND,
             Body::Ssi(_) => ssi::KIND,
             Body::Interbus(_) => interbus::KIND,
+            Body::Hiperdrive(_) => hiperdrive::KIND,
         }
     }
 
@@ -240,11 +246,22 @@ impl Body {
         }
     }
 
+    /// The profile of an adapter or a hub.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_hiperdrive(self) -> Result<HiperdriveProfile, ProfileError> {
+        match self {
+            Body::Hiperdrive(profile) => Ok(*profile),
+            other => Err(other.is_not(hiperdrive::KIND)),
+        }
+    }
+
     /// The profile of a HIPERFACE encoder; `None` of another device.
     pub fn hiperface(&self) -> Option<&HiperfaceProfile> {
         match self {
             Body::Hiperface(profile) => Some(profile),
-            Body::Biss(_) | Body::Ssi(_) | Body::Interbus(_) => None,
+            Body::Biss(_) | Body::Ssi(_) | Body::Interbus(_) | Body::Hiperdrive(_) => None,
         }
     }
 
@@ -252,7 +269,7 @@ impl Body {
     pub fn biss(&self) -> Option<&BissProfile> {
         match self {
             Body::Biss(profile) => Some(profile),
-            Body::Hiperface(_) | Body::Ssi(_) | Body::Interbus(_) => None,
+            Body::Hiperface(_) | Body::Ssi(_) | Body::Interbus(_) | Body::Hiperdrive(_) => None,
         }
     }
 
@@ -260,7 +277,7 @@ impl Body {
     pub fn ssi(&self) -> Option<&SsiProfile> {
         match self {
             Body::Ssi(profile) => Some(profile),
-            Body::Hiperface(_) | Body::Biss(_) | Body::Interbus(_) => None,
+            Body::Hiperface(_) | Body::Biss(_) | Body::Interbus(_) | Body::Hiperdrive(_) => None,
         }
     }
 
@@ -268,7 +285,15 @@ impl Body {
     pub fn interbus(&self) -> Option<&InterbusProfile> {
         match self {
             Body::Interbus(profile) => Some(profile),
-            Body::Hiperface(_) | Body::Biss(_) | Body::Ssi(_) => None,
+            Body::Hiperface(_) | Body::Biss(_) | Body::Ssi(_) | Body::Hiperdrive(_) => None,
+        }
+    }
+
+    /// The profile of an adapter or a hub; `None` of another device.
+    pub fn hiperdrive(&self) -> Option<&HiperdriveProfile> {
+        match self {
+            Body::Hiperdrive(profile) => Some(profile),
+            Body::Hiperface(_) | Body::Biss(_) | Body::Ssi(_) | Body::Interbus(_) => None,
         }
     }
 }
@@ -362,7 +387,7 @@ mod tests {
             ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
             ("schema: 1,", "", "schema is missing"),
             ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
-            ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\", \"ssi\" and"),
+            ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\", \"ssi\","),
             ("\"A1\"", "17", "identity.serial_number must be a text"),
             ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
             ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
@@ -403,6 +428,7 @@ mod tests {
             let expected = match kind {
                 ssi::KIND => 12,
                 interbus::KIND => 2,
+                hiperdrive::KIND => 5,
                 _ => 3,
             };
             assert_eq!(count, expected, "{kind}");

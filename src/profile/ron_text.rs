@@ -129,6 +129,15 @@ impl Entries {
         }
     }
 
+    /// Takes a map with whatever stands before its colons, in their order; empty when it is not there.
+    pub(super) fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
+        match self.entries.remove(name).map(unwrapped) {
+            None | Some(Value::Unit) => Ok(Vec::new()),
+            Some(Value::Map(map)) => Ok(map.into_iter().collect()),
+            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: "a map: {number: value, …}" }),
+        }
+    }
+
     /// What nobody took.
     pub(super) fn rest(self) -> Unknown {
         self.entries
@@ -235,7 +244,7 @@ pub(super) fn entries_text(unknown: &Unknown) -> String {
 }
 
 /// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.
-fn value_text(value: &Value) -> String {
+pub(super) fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
             && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

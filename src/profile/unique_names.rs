@@ -28,9 +28,11 @@ impl<'de> Visitor<'de> for Walk {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<UniqueNames, A::Error> {
         let mut seen = HashSet::new();
         while let Some(key) = map.next_key::<Value>()? {
-            if let Value::String(name) = key
-                && !seen.insert(name.clone())
-            {
+            let name = match &key {
+                Value::String(name) => name.clone(),
+                other => ron::to_string(other).unwrap_or_default(),
+            };
+            if !seen.insert(key) {
                 return Err(A::Error::custom(format_args!("{name} stands twice")));
             }
             map.next_value::<UniqueNames>()?;
@@ -105,6 +107,7 @@ mod tests {
         check("(a: 1, a: 1)", Some("a"));
         check("(a: [(b: 1), (b: 1, c: [], b: 2)])", Some("b"));
         check("{\"a\": 1, \"a\": 2}", Some("a"));
+        check("{158: 1, \"158\": 1, 160: 1, 0x9E: 2}", Some("158"));
         check("(a: Some((b: 1, b: 1)))", Some("b"));
     }
 }

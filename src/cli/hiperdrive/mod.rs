@@ -6,6 +6,7 @@ mod meaning;
 
 use super::kind::Kind;
 use super::{Failure, Result};
+use crate::profile::hiperdrive;
 use crate::protocol::hiperdrive::KIND;
 
 pub(super) use meaning::parameter_words;
@@ -25,8 +26,7 @@ pub(super) const COMMANDS: Kind = Kind {
     restore: |_, _, _, _| lacking("restore"),
     simulated: |_| lacking("simulate"),
     present: |_, _, _| lacking("reading from a link"),
-    // There are no profiles of them: whatever is compared is of another kind.
-    compare: |left, _| Err(left.is_not(KIND)),
+    compare: |left, right| Ok(hiperdrive::compare(&left.clone().into_hiperdrive()?, &right.clone().into_hiperdrive()?)),
     other_device: |_, _| None,
 };
 

@@ -12,6 +12,7 @@ mod record;
 mod restore;
 #[cfg(test)]
 mod test_profiles;
+mod text;
 mod warning;
 
 pub use compare::compare;

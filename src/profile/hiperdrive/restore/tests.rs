@@ -87,3 +87,34 @@ fn differences_are_named_by_drive() {
     assert_eq!(comparison.only_right.len(), 13);
     assert_eq!(comparison.only_right[0], "152 drive 4");
 }
+
+/// Steps a turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 / 256 = 20
+/// of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is 1800.
+#[test]
+fn the_ready_made_profiles_do_what_they_say() {
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        crate::profile::Document::parse(&text).unwrap().body.into_hiperdrive().unwrap()
+    };
+    let mut now = device();
+    now.positions = [(drive(1), 0), (drive(3), 0)].into();
+    for (name, steps, writes) in [
+        ("spindle-4-mm-in-0.01-mm.ron", 400.0, vec![(156, 256), (154, 400), (158, -204_400), (160, 204_400)]),
+        ("spindle-2-mm-in-0.1-mm.ron", 20.0, vec![(156, 256), (154, 20), (158, -10_220), (160, 10_220)]),
+        ("rotary-axis-in-0.1-degree.ron", 3600.0, vec![(156, 256), (154, 3600), (158, -1800), (160, 1800)]),
+        ("gentle-commissioning.ron", 65_536.0, vec![(166, 50), (186, 5)]),
+        ("short-drive-as-delivered.ron", 65_536.0, vec![]),
+    ] {
+        let profile = read(name);
+        let restore = plan_restore(&profile, &now, NONE).unwrap();
+        let write = |op: &Op| match op {
+            Op::Write { number, new, .. } => Some((number.get(), *new)),
+            _ => None,
+        };
+        assert_eq!(restore.plan.ops.iter().filter_map(write).collect::<Vec<_>>(), writes, "{name}");
+        assert_eq!((restore.missing, restore.mounting_left), (Vec::new(), Vec::new()), "{name}");
+        let after = now.image.with(&profile.image);
+        assert_eq!(after.scale(drive(1)).map(|scale| scale.steps_per_turn()), Some(steps), "{name}");
+    }
+}

@@ -1,0 +1,119 @@
+//! The text there and back, as a person writes it, and what is wrong with it.
+
+use super::super::test_profiles::{drive, identity, image_of, number, profile};
+use super::*;
+use crate::profile::{Body, Document};
+
+fn document(profile: HiperdriveProfile) -> Document {
+    let saved = Some("2024-06-03T14:05:00Z".to_owned());
+    Document { saved, note: None, body: Body::Hiperdrive(Box::new(profile)), unknown: Default::default() }
+}
+
+fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
+    Document::parse(text)?.body.into_hiperdrive()
+}
+
+/// As a person writes it, with no device in mind.
+const SHORT: &str = r#"(
+    schema: 1,
+    device: "hiperdrive",
+    parameters: {24: 0x10},
+    drives: [
+        (number: 2, parameters: {154: 400, 156: 256, 158: -1000, 160: 204400}),
+    ],
+)"#;
+
+fn replaced(from: &str, to: &str) -> String {
+    assert_eq!(SHORT.matches(from).count(), 1, "{from}");
+    SHORT.replace(from, to)
+}
+
+#[test]
+fn what_is_written_is_what_is_read() {
+    let text = document(profile()).emit();
+    assert_eq!(Document::parse(&text).unwrap(), document(profile()));
+    for line in [
+        "        category: \"HIPERDRIVE HUB-4\",\n",
+        "        serial_number: \"100\",\n",
+        "        (item: \"198 drive 3\", meaning: \"the position that was set\"),\n",
+        "    parameters: {\n        24: 0, // free register 1\n        26: 7, // free register 2\n    },\n",
+        "            number: 3,\n            variant: 7, // HDA30A\n            name: \"HDA30A\",\n            serial_number: \"4712\",\n",
+        "                152: 1, // requested\n",
+        // 511 turns of 65536 steps.
+        "                158: -33488896, // lower limit [steps], -511.000 turns\n",
+        "                166: 350, // maximum speed [0.1 rpm]\n",
+    ] {
+        assert!(text.contains(line), "{line} is not in\n{text}");
+    }
+}
+
+#[test]
+fn a_profile_by_hand_is_of_no_device() {
+    let profile = parse(SHORT).unwrap();
+    assert!(profile.identity.is_of_no_device());
+    assert_eq!(profile.image, image_of(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
+    assert_eq!(profile.drive(drive(2)), Some(&ProfileDrive::at(drive(2))));
+    let text = document(profile.clone()).emit();
+    assert!(!text.contains("identity"), "{text}");
+    // 204400 steps of 400 a turn.
+    assert!(text.contains("160: 204400, // upper limit [steps], 511.000 turns\n"), "{text}");
+    assert_eq!(parse(&text), Ok(profile));
+}
+
+#[test]
+fn parameters_of_drives_may_stand_beside_those_of_the_device() {
+    let text = r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 366: 100})"#;
+    assert_eq!(parse(text).unwrap().image, image_of(&[(166, 200), (366, 100)]));
+}
+
+#[test]
+fn what_is_not_known_is_kept() {
+    let text = SHORT
+        .replace("24: 0x10", "24: 0x10, 45: 7, \"owner\": (name: \"CK\")")
+        .replace("number: 2,", "number: 2, axis: \"feed\",")
+        .replace("154: 400,", "154: 400, 155: Some(3),")
+        .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
+    let document = Document::parse(&text).unwrap();
+    let profile = document.body.hiperdrive().unwrap();
+    assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
+    let written = document.emit();
+    for kept in
+        ["45: 7,", "\"owner\": (name: \"CK\"),", "axis: \"feed\",", "155: Some(3),", "colour: \"red\",", "by: \"CK\""]
+    {
+        assert!(written.contains(kept), "{kept} is not in\n{written}");
+    }
+    assert_eq!(Document::parse(&written), Ok(document));
+}
+
+#[test]
+fn a_slip_is_told_where_it_stands() {
+    let cases = [
+        ("24: 0x10", "24: \"a\"", "parameters.24 must be a whole number"),
+        ("24: 0x10", "24: 1, 24: 2", "line 4, column "),
+        ("24: 0x10", "258: 1", "drives[0].parameters.158: 158 drive 2 stands twice"),
+        ("24: 0x10", "107: 1", "parameters.107: actual position is not kept by the device"),
+        ("24: 0x10", "101: 1", "parameters.101: control word is not kept by the device"),
+        ("{24: 0x10}", "[24]", "parameters must be a map: {number: value, …}"),
+        (
+            "154: 400",
+            "154: 0",
+            "drives[0].parameters.154: parameter 254 (position scale numerator) cannot be 0: it may be 1 to 65535",
+        ),
+        ("number: 2", "number: 9", "drives[0].number must be a number from 1 to 8"),
+        ("number: 2,", "", "drives[0].number is missing"),
+        ("drives: [", "drives: [(number: 2), ", "drives[1].number: drive 2 stands twice"),
+        ("drives: [", "identity: (category: \"HUB\"), drives: [", "identity.category must be \"HIPERDRIVE SINGLE\""),
+        ("drives: [", "mounting: [(item: \"107\")], drives: [", "mounting[0].item: 107 is not kept"),
+        ("drives: [", "mounting: [(item: \"x\")], drives: [", "mounting[0].item: \"x\" is no parameter"),
+    ];
+    for (from, to, why) in cases {
+        let error = parse(&replaced(from, to)).unwrap_err().to_string();
+        assert!(error.starts_with(why), "{to}: {error}");
+    }
+}
+
+#[test]
+fn who_it_is_is_kept() {
+    let profile = HiperdriveProfile::of(identity("7", &[(8, "1")]), image_of(&[(898, 64)]));
+    assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
+}
