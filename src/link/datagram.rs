@@ -1,6 +1,6 @@
 //! Packets beside a stream of bytes: cyclic data that are old with the next ones, and are not sent again when one is lost.
 
-use core::net::Ipv4Addr;
+use core::net::{Ipv4Addr, SocketAddrV4};
 
 use super::LinkError;
 use crate::units::Moment;
@@ -12,6 +12,15 @@ pub trait Datagrams: Send {
 
     /// From now on packets go to this port of the target.
     fn aim(&mut self, port: u16);
+
+    /// Packets of the target also go to all who listen there, and are taken from there as well. In this process there is only
+    /// one who listens.
+    ///
+    /// # Errors
+    /// When there is no way to listen.
+    fn join(&mut self, _group: SocketAddrV4) -> Result<(), LinkError> {
+        Ok(())
+    }
 
     /// Sends one packet. Nobody says whether it arrives.
     ///

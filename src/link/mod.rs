@@ -11,6 +11,7 @@ mod serial;
 mod sim;
 mod tcp;
 mod trace;
+mod udp;
 mod url;
 
 use std::sync::Arc;
@@ -21,9 +22,10 @@ pub use datagram::{DatagramPort, Datagrams, Shout};
 pub use error::{LinkError, LinkErrorKind};
 pub use replay::ReplayLink;
 pub use serial::{PortInfo, SerialLink, ports};
-pub use sim::SimLink;
+pub use sim::{SimLink, SimPort};
 pub use tcp::TcpLink;
 pub use trace::{Direction, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header};
+pub use udp::{UdpPort, UdpShout};
 pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 
 use crate::units::{CharacterFormat, Moment};

@@ -1,9 +1,11 @@
 //! `sim:` — a virtual device in this process. In virtual time, waiting for an answer takes no time at all.
 
+use std::collections::VecDeque;
+use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{ByteLink, Clock, LinkError};
-use crate::sim::ByteDevice;
+use super::{ByteLink, Clock, DatagramPort, Datagrams, LinkError};
+use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
 /// A wire to a virtual device. The device can be shared: with a test that looks into it, or with the link that comes
@@ -59,5 +61,79 @@ impl ByteLink for SimLink {
 
     fn check(&mut self) -> Result<(), LinkError> {
         Ok(())
+    }
+}
+
+/// Where packets to and from a virtual device begin.
+pub struct SimPort {
+    device: Arc<Mutex<dyn DatagramDevice>>,
+    clock: Arc<dyn Clock>,
+    next: u16,
+}
+
+/// The first port that is given away; any will do.
+const FIRST_PORT: u16 = 50_000;
+
+impl SimPort {
+    /// To that device.
+    pub fn new(device: Arc<Mutex<dyn DatagramDevice>>, clock: Arc<dyn Clock>) -> Self {
+        SimPort { device, clock, next: FIRST_PORT }
+    }
+}
+
+impl DatagramPort for SimPort {
+    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError> {
+        // What is on its way to the one before goes to nobody.
+        let port = self.next;
+        self.next = self.next.checked_add(1).unwrap_or(FIRST_PORT);
+        let (device, clock) = (self.device.clone(), self.clock.clone());
+        Ok(Box::new(SimPackets { device, clock, port, arrived: VecDeque::new() }))
+    }
+}
+
+struct SimPackets {
+    device: Arc<Mutex<dyn DatagramDevice>>,
+    clock: Arc<dyn Clock>,
+    port: u16,
+    arrived: VecDeque<Vec<u8>>,
+}
+
+impl SimPackets {
+    fn with_device<T>(&self, work: impl FnOnce(&mut dyn DatagramDevice) -> T) -> T {
+        let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
+        work(&mut *device)
+    }
+}
+
+impl Datagrams for SimPackets {
+    fn port(&self) -> u16 {
+        self.port
+    }
+
+    fn aim(&mut self, _port: u16) {
+        // The device is all that listens.
+    }
+
+    fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {
+        let (now, from) = (self.clock.now(), SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
+        self.with_device(|device| device.on_datagram(now, from, packet));
+        Ok(())
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError> {
+        loop {
+            let now = self.clock.now();
+            let (packets, next) = self.with_device(|device| (device.poll_datagrams(now), device.poll_datagrams_at()));
+            let own = packets.into_iter().filter(|(to, _)| to.port() == self.port).map(|(_, packet)| packet);
+            self.arrived.extend(own);
+            if let Some(packet) = self.arrived.pop_front() {
+                *into = packet;
+                return Ok(true);
+            }
+            if now >= until {
+                return Ok(false);
+            }
+            self.clock.sleep_until(next.map_or(until, |next| next.min(until)));
+        }
     }
 }

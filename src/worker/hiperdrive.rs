@@ -1,5 +1,168 @@
-//! HIPERDRIVE drives behind an adapter or a hub, at the end of a session, and the handle that moves them.
+//! HIPERDRIVE drives behind an adapter or a hub, at the end of a session: its jobs, the cyclic connection that moves them and
+//! the handle for it.
 
+mod commit;
+mod control;
+mod job;
 mod motion;
+mod open;
+mod prepare;
 
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::Arc;
+
+use control::Control;
+pub use job::{
+    Change, ChangeKind, Commit, Committed, Doing, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Remark,
+    WEAR_WARNING, device_key,
+};
 pub use motion::{DriveView, Motion, View};
+pub use open::{check, open};
+
+use super::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::device::hiperdrive::check::check as check_device;
+use crate::device::hiperdrive::{Master, Reading, Station, identify, network, position, read_status, save, survey};
+use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
+use crate::protocol::hiperdrive::DriveNumber;
+use crate::sim::hiperdrive::Target;
+use crate::store::Store;
+
+/// An adapter or a hub with its drives.
+pub struct Hiperdrive {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    control: Control,
+    /// Which drive is polled.
+    watched: DriveNumber,
+    /// The virtual one.
+    target: Option<Target>,
+    remark: Option<Remark>,
+}
+
+impl fmt::Debug for Hiperdrive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Hiperdrive({})", self.station)
+    }
+}
+
+/// What a job tells on its way.
+type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
+
+impl Hiperdrive {
+    /// The host's side of explicit messages.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+}
+
+/// What a session with an adapter or a hub begins with.
+pub struct Way {
+    /// Explicit messages.
+    pub wire: Box<dyn ByteLink>,
+    /// Where cyclic data begin; `None` for a link that has none.
+    pub port: Option<Box<dyn DatagramPort>>,
+    /// What is known of the device.
+    pub station: Station,
+    /// The device, where it lives in this process.
+    pub target: Option<Target>,
+}
+
+impl Session<Hiperdrive> {
+    /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
+    pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
+        let Way { wire, station, target, .. } = way;
+        let is_virtual = target.is_some();
+        let control = Control::new(clock.clone());
+        let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
+        Session::with(device, clock, store, is_virtual)
+    }
+
+    /// What moves the drives. It is the same for the whole session; without the cyclic connection nothing comes of it.
+    pub fn motion(&self) -> Motion {
+        self.device.control.motion()
+    }
+
+    /// What is known about the device.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// The device, where it lives in this process.
+    pub fn target(&self) -> Option<Target> {
+        self.device.target.clone()
+    }
+}
+
+impl Device for Hiperdrive {
+    type Job = HiperdriveJob;
+    type Output = HiperdriveOutput;
+    type Error = JobError;
+    type Remark = Remark;
+    type Sample = Reading;
+    type Watch = Infallible;
+    type Doing = Doing;
+
+    fn run(&mut self, desk: &mut Desk, job: HiperdriveJob, tell: Told<'_>) -> Result<HiperdriveOutput, JobError> {
+        use HiperdriveOutput as Out;
+        let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        let mut parameter = |done, total, number| step(done, total, Doing::Parameter(number));
+        Ok(match job {
+            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
+            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk))?)),
+            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk))?)),
+            HiperdriveJob::Survey => {
+                let survey = survey(&mut self.master(desk), &mut parameter)?;
+                self.control.rule_by(&survey);
+                Out::Surveyed(Box::new(survey))
+            }
+            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk))?)),
+            HiperdriveJob::Check => {
+                let told = &mut |done, total, what| step(done, total, Doing::Step(what));
+                Out::Check(check_device(&mut self.master(desk), told)?)
+            }
+            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
+            HiperdriveJob::Read(number) => Out::Value(number, self.master(desk).read(number)?),
+            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(desk))?)),
+            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Take => {
+                self.take(desk)?;
+                Out::Taken
+            }
+            HiperdriveJob::Give => Out::Given,
+            HiperdriveJob::Watch(drive) => {
+                self.watched = drive;
+                Out::Watched(drive)
+            }
+        })
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+        let drive = self.watched;
+        if let Some(actual) = self.control.actual(drive) {
+            return Ok(Reading { at: desk.clock.now(), drive, actual });
+        }
+        Ok(position(&mut self.master(desk), drive)?)
+    }
+
+    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+        match *what {}
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        match error {
+            JobError::Device(error) => error.is_cancelled(),
+            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_cancelled(),
+            _ => false,
+        }
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        self.remark.take()
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}

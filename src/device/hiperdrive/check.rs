@@ -1,5 +1,6 @@
 //! The device check: what an adapter or a hub and its drives say, with a verdict a line. It sets nothing and moves nothing.
 
+use std::fmt;
 use std::time::Duration;
 
 use super::identify::{drive_status, identify, of, own};
@@ -45,6 +46,28 @@ pub enum Step {
     DriveTemperature(DriveNumber),
     /// Scaling, limits and position of a drive.
     Range(DriveNumber),
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_drive =
+            |f: &mut fmt::Formatter<'_>, what, drive: &DriveNumber| write!(f, "drive {}: {what}", drive.get());
+        match self {
+            Step::Messages => f.write_str("messages"),
+            Step::Device => f.write_str("device"),
+            Step::Supply => f.write_str("supply"),
+            Step::Temperature => f.write_str("temperature"),
+            Step::Address => f.write_str("address"),
+            Step::Memory => f.write_str("memory"),
+            Step::Drives => f.write_str("drives"),
+            Step::Request(drive) => of_drive(f, "requested", drive),
+            Step::Line(drive) => of_drive(f, "RS-485", drive),
+            Step::Timeout(drive) => of_drive(f, "time-out", drive),
+            Step::Errors(drive) => of_drive(f, "state and errors", drive),
+            Step::DriveTemperature(drive) => of_drive(f, "temperature", drive),
+            Step::Range(drive) => of_drive(f, "scaling and limits", drive),
+        }
+    }
 }
 
 /// One fact that the check found.

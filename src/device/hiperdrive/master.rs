@@ -81,8 +81,13 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`].
-    pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+    pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         Ok(self.line.wait(duration)?)
+    }
+
+    /// Whether the user wishes an end.
+    pub(super) fn check_cancel(&self) -> Result<(), Error> {
+        Ok(self.line.check_cancel()?)
     }
 
     /// Does what leads to a safe end: in it, a wish to end is not heard.
@@ -139,23 +144,13 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Writes a parameter and reads it back.
-    ///
-    /// # Errors
-    /// As [`set`](Self::set); [`Error::NotTaken`].
-    pub fn write(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
-        self.set(number, wanted)?;
-        let reads = self.read_number(number)?;
-        if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) }
-    }
-
     /// Sets a parameter. Where the reply is lost it is read back, and set again only where it is not there yet; what does
     /// something else when it is set is never sent twice.
     ///
     /// # Errors
     /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], and nothing is sent; [`Error::Refuses`],
     /// [`Error::Refused`]; the way.
-    pub fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+    pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = settable(number)?;
         row.check(number, wanted)?;
         let kind = self.station.known.kinds.get(&row.number).copied().unwrap_or(row.kind);
@@ -200,7 +195,12 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// [`Error::Refused`]; the way.
-    pub fn set_attribute(&mut self, asked: Asked, (class, attribute): (u16, u16), data: Vec<u8>) -> Result<(), Error> {
+    pub(super) fn set_attribute(
+        &mut self,
+        asked: Asked,
+        (class, attribute): (u16, u16),
+        data: Vec<u8>,
+    ) -> Result<(), Error> {
         self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never)?;
         Ok(())
     }

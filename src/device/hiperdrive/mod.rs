@@ -15,7 +15,10 @@ mod error;
 mod identify;
 mod master;
 mod network;
+mod rules;
+mod save;
 mod station;
+pub mod write;
 
 pub use discover::{Found, discover};
 pub use error::{Asked, Damage, Error, Refusal};
@@ -23,5 +26,7 @@ pub use identify::{
     DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
 };
 pub use master::{Master, Opened};
-pub use network::{Network, network};
+pub use network::{Network, network, settings};
+pub use rules::{Rules, read_rules};
+pub use save::{read_state, save};
 pub use station::{PARAMETERS, Station};

@@ -3,6 +3,7 @@
 use super::error::Asked;
 use super::identify::own;
 use super::{Error, Master};
+use crate::profile::hiperdrive::NetworkSettings;
 use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration, PacketError};
 use crate::protocol::hiperdrive::AddressSwitch;
 
@@ -35,22 +36,33 @@ impl Network {
 /// The way.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(own(12)?)?;
-    let control = object(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse)?;
-    let interface = object(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse)?;
-    let (class, attribute) = MAC;
-    let mac = told(master.attribute(Asked::Mac, class, attribute))?.and_then(|data| data.try_into().ok());
+    let control = told(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+    let interface = told(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+    let (class, number) = MAC;
+    let mac = told(master.attribute(Asked::Mac, class, number))?.and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
 
+/// What a plan can change of it.
+///
+/// # Errors
+/// [`Error::Refused`] where the device has no such settings; the way.
+pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
+    let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
+    let control = attribute(master, control, ConfigurationControl::parse)?;
+    let interface = attribute(master, interface, InterfaceConfiguration::parse)?;
+    Ok(NetworkSettings { source: control.source(), interface })
+}
+
 /// An attribute of the TCP/IP object.
-fn object<T>(
+fn attribute<T>(
     master: &mut Master<'_>,
     attribute: u16,
     parse: impl FnOnce(&[u8]) -> Result<T, PacketError>,
-) -> Result<Option<T>, Error> {
+) -> Result<T, Error> {
     let asked = Asked::Network { attribute };
-    let Some(data) = told(master.attribute(asked, ConfigurationControl::CLASS, attribute))? else { return Ok(None) };
-    parse(&data).map(Some).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+    let data = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
+    parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
 }
 
 /// What was told; nothing where it was refused.

@@ -3,6 +3,7 @@
 //! Sizes and kinds of connection that a device takes its description would say (`U`): with parameter words and from one to the
 //! other is asked for first, then to all who listen, then without parameter words.
 
+use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use super::{Master, Repeats};
@@ -31,6 +32,8 @@ pub struct Opened {
     pub layout: Layout,
     /// Where packets to the target go.
     pub port: u16,
+    /// Where its packets come from, besides, where it sends them to all who listen.
+    pub group: Option<SocketAddrV4>,
     /// What ends it.
     pub close: ForwardClose,
 }
@@ -122,7 +125,7 @@ impl Master<'_> {
             transport: Transport::CYCLIC,
             path: Path::assemblies(configuration, to, from),
         };
-        let ours = Item::SocketToOriginator(SocketAddress::new(core::net::Ipv4Addr::UNSPECIFIED, port));
+        let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         // Opened twice it would be refused as in use: it is sent once.
         let (reply, items) = self.request_with(Asked::Open, &open.request(), &[ours], Repeats::Never)?;
         let opened = ForwardOpened::parse(&reply.data);
@@ -137,9 +140,15 @@ impl Master<'_> {
             timeout: open.connection_timeout.after(to_target_interval),
             layout,
             port: items.socket_to_target().map_or(self.station.udp, |address| address.port),
+            group: items.socket_to_originator().and_then(group),
             close: ForwardClose { timeout: open.timeout, owner, path: open.path },
         })
     }
+}
+
+/// Where one has to listen for what goes to all.
+fn group(to: SocketAddress) -> Option<SocketAddrV4> {
+    to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }
 
 fn is_of_connection(refusal: &Refusal) -> bool {

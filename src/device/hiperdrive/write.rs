@@ -1,0 +1,259 @@
+//! The one way to write to a device: a plan, a consent to it, what was read is read again, then exactly the operations that
+//! were shown, each read back (reference 4).
+//!
+//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+
+use std::time::Duration;
+
+use super::error::Asked;
+use super::identify::{drive_status, of, own, topology};
+use super::network::settings;
+use super::{Error, Identity, Master};
+use crate::profile::Consent;
+use crate::profile::hiperdrive::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
+use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration};
+use crate::protocol::hiperdrive::{
+    DriveNumber, ErrorCode, ParameterNumber, State, StatusWord, Topology, nearest_reference,
+};
+
+/// A plan that a person consented to and whose base still holds.
+pub struct Confirmed<'p> {
+    plan: &'p HiperdrivePlan,
+}
+
+/// What was written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// Operations carried out, of the plan's.
+    pub ops: usize,
+    /// Things changed, counted as a comparison counts them.
+    pub written: u64,
+    /// Those of them that were read back and found as they should be.
+    pub verified: u64,
+    /// Saves spent, or that may have been.
+    pub write_cycles: u64,
+}
+
+/// A write that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("after {} of the operations: {cause}", done.ops)]
+pub struct Interrupted {
+    /// What was written until then. Without a save it is gone when the supply goes.
+    pub done: Written,
+    /// What the operation changes that was under way, and of which is not known how far it came; `None` where it did not
+    /// begin.
+    pub unclear: Option<String>,
+    /// Why it ended.
+    pub cause: Error,
+}
+
+/// What is told of a write: the operation that begins, from 0.
+pub type News = usize;
+
+/// A save or a recall takes 200 ms at most; so long it is waited for.
+const SAVES: Duration = Duration::from_secs(2);
+/// A presence test takes so long with an adapter (reference 4).
+const ADAPTER_RESETS: Duration = Duration::from_secs(2);
+/// And so long with a hub.
+const HUB_RESETS: Duration = Duration::from_secs(8);
+/// Beyond what the manual promises.
+const SPARE: Duration = Duration::from_millis(500);
+/// Between two looks at parameter 47.
+const LOOK: Duration = Duration::from_millis(50);
+/// Before the first look after something that resets: it may not have begun.
+const BEGINS: Duration = Duration::from_millis(100);
+
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the device for which it was
+/// made, and the same drives; and that none moves.
+///
+/// # Errors
+/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; [`Error::OtherPlan`]; the way.
+pub fn confirm<'p>(
+    master: &mut Master<'_>,
+    plan: &'p HiperdrivePlan,
+    consent: Consent,
+    identity: &Identity,
+) -> Result<Confirmed<'p>, Error> {
+    if !consent.covers(plan.id()) {
+        return Err(Error::OtherPlan);
+    }
+    let changed = |item: String| Err(Error::Changed { item });
+    if master.read_number(own(17)?)?.to_string() != identity.serial_number {
+        return changed("the device itself".to_owned());
+    }
+    for drive in touched(plan, identity) {
+        if let Some(known) = identity.drive(drive)
+            && master.read_text(of(123, drive)?)? != known.serial_number
+        {
+            return changed(format!("drive {}", drive.get()));
+        }
+        let status = master.read_number(of(105, drive)?)?;
+        // Of 16 bits.
+        if StatusWord::new(status as u16).state() == State::Moving {
+            return Err(Error::Moving { drive });
+        }
+    }
+    for (number, before) in &plan.base.values {
+        if master.read_number(*number)? != *before {
+            return changed(Item(*number).to_string());
+        }
+    }
+    if let Some(before) = &plan.base.network
+        && settings(master)? != *before
+    {
+        return changed("network".to_owned());
+    }
+    Ok(Confirmed { plan })
+}
+
+/// The drives that a plan is about: all of them where it is about the device as a whole.
+fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
+    let of_op = |op: &Op| match op {
+        Op::Write { number, .. } => number.drive(),
+        Op::Service(Service::Acknowledge(drive)) => Some(*drive),
+        Op::Service(_) | Op::Network { .. } => None,
+    };
+    let resets = |op: &Op| matches!(op, Op::Service(service) if *service != Service::Save && service.code().is_some());
+    if plan.ops.iter().any(resets) {
+        return identity.drives.iter().map(|drive| drive.number).collect();
+    }
+    let mut drives: Vec<DriveNumber> = plan.ops.iter().filter_map(of_op).collect();
+    drives.sort();
+    drives.dedup();
+    drives
+}
+
+/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
+/// operations.
+///
+/// # Errors
+/// [`Interrupted`], with what was written until then.
+pub fn carry_out(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    tell: &mut dyn FnMut(News),
+) -> Result<Written, Box<Interrupted>> {
+    let mut done = Written::default();
+    for (number, op) in confirmed.plan.ops.iter().enumerate() {
+        tell(number);
+        if let Err(cause) = master.check_cancel() {
+            return Err(Box::new(Interrupted { done, unclear: None, cause }));
+        }
+        if let Err(cause) = master.shielded(|master| perform(master, op, &mut done)) {
+            return Err(Box::new(Interrupted { done, unclear: Some(op.item()), cause }));
+        }
+        done.ops += 1;
+    }
+    Ok(done)
+}
+
+fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
+    match op {
+        Op::Write { number, new, .. } => {
+            write(master, *number, *new)?;
+            done.verified += 1;
+        }
+        Op::Service(service) => perform_service(master, *service, done)?,
+        Op::Network { from, to } => {
+            done.write_cycles += 1;
+            write_network(master, from, to)?;
+            done.verified += 1;
+        }
+    }
+    done.written += op.weight();
+    Ok(())
+}
+
+/// A parameter is written and read back. A reference is rounded to 64 steps (reference 4).
+fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+    master.set(number, wanted)?;
+    let reads = master.read_number(number)?;
+    let rounded = i32::try_from(wanted).ok().filter(|_| number.base() == 198).and_then(nearest_reference);
+    if reads == wanted || rounded.is_some_and(|rounded| i64::from(rounded) == reads) {
+        Ok(())
+    } else {
+        Err(Error::NotTaken { number, wanted, reads })
+    }
+}
+
+fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written) -> Result<(), Error> {
+    match service {
+        Service::Acknowledge(drive) => return acknowledge(master, drive),
+        Service::Save | Service::FactoryAll => done.write_cycles += 1,
+        Service::Recall | Service::Factory | Service::Reset => {}
+    }
+    let Some(code) = service.code() else { return Ok(()) };
+    master.set(ParameterNumber::SAVE, code)?;
+    await_idle(master, service)
+}
+
+/// Waits until parameter 47 is 0.
+fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
+    let resets = match topology(master)? {
+        Topology::Adapter => ADAPTER_RESETS,
+        Topology::Hub4 | Topology::Hub8 => HUB_RESETS,
+    };
+    let patience = match service {
+        Service::Save | Service::Recall | Service::Factory => SAVES,
+        Service::Reset | Service::FactoryAll | Service::Acknowledge(_) => resets + SPARE,
+    };
+    let begun = master.now();
+    if matches!(service, Service::Reset | Service::FactoryAll) {
+        master.wait(BEGINS)?;
+    }
+    loop {
+        // While it resets, it may refuse to say anything.
+        let reads = match master.read_number(ParameterNumber::SAVE) {
+            Ok(0) => return Ok(()),
+            Ok(reads) => reads,
+            Err(Error::Refused { .. }) => -1,
+            Err(error) => return Err(error),
+        };
+        let waited = master.now().since(begun);
+        if waited >= patience {
+            return Err(Error::Busy { reads, milliseconds: waited.as_millis() as u64 });
+        }
+        master.wait(LOOK)?;
+    }
+}
+
+/// Ends the fault of a drive: 197 = 0 where it is of RS-485 alone, otherwise the drives are reset before it (reference 4).
+fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
+    let status = drive_status(master, drive)?;
+    let recent = status.buffer.iter().take(usize::from(status.faults.max(1)));
+    let only_line = recent.into_iter().all(|code| *code == ErrorCode::RS485);
+    if !only_line {
+        master.set(ParameterNumber::SAVE, -4)?;
+        await_idle(master, Service::Reset)?;
+    }
+    let number = of(197, drive)?;
+    master.set(number, 0)?;
+    match master.read_number(number)? {
+        0 => Ok(()),
+        reads => Err(Error::NotTaken { number, wanted: 0, reads }),
+    }
+}
+
+/// Where the address comes from, then the addresses: setting it to stored stores the present address (reference 1).
+fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
+    if from.source != to.source {
+        let attribute = ConfigurationControl::ATTRIBUTE;
+        let asked = Asked::Network { attribute };
+        let before = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
+        let before = ConfigurationControl::parse(&before);
+        let before = before.map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })?;
+        set_network(master, attribute, before.with(to.source).emit().to_vec())?;
+    }
+    if from.interface != to.interface {
+        set_network(master, InterfaceConfiguration::ATTRIBUTE, to.interface.emit())?;
+    }
+    if settings(master)? == *to {
+        Ok(())
+    } else {
+        Err(Error::NetworkNotTaken { attribute: InterfaceConfiguration::ATTRIBUTE })
+    }
+}
+
+fn set_network(master: &mut Master<'_>, attribute: u16, data: Vec<u8>) -> Result<(), Error> {
+    master.set_attribute(Asked::SetNetwork { attribute }, (ConfigurationControl::CLASS, attribute), data)
+}

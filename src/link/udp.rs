@@ -1,0 +1,351 @@
+//! Packets over UDP: cyclic data to and from one target ([`UdpPort`]), and a question to all who listen ([`UdpShout`]).
+
+use std::io::{self, ErrorKind};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+
+use super::{Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, Shout};
+use crate::units::Moment;
+
+/// The longest packet that is looked at; process data are far shorter.
+const LONGEST: usize = 1500;
+/// Packets that wait to be taken. In a flood the rest is dropped.
+const WAITING: usize = 64;
+/// So soon an ear notices that nobody listens any more.
+const GLANCE: Duration = Duration::from_millis(100);
+
+/// Where packets to and from the target of a TCP connection begin: at the address of ours that leads to it.
+pub struct UdpPort {
+    target: String,
+    clock: Arc<dyn Clock>,
+}
+
+impl UdpPort {
+    /// To a target, as `host:port` of its TCP connection.
+    pub fn new(target: &str, clock: Arc<dyn Clock>) -> Self {
+        UdpPort { target: target.to_owned(), clock }
+    }
+}
+
+impl DatagramPort for UdpPort {
+    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError> {
+        let fail = |kind| LinkError::new(&self.target, kind);
+        let mut addresses = self.target.to_socket_addrs().map_err(|_| fail(LinkErrorKind::NotFound))?;
+        let found = addresses.find_map(|address| match address {
+            SocketAddr::V4(address) => Some(address),
+            SocketAddr::V6(_) => None,
+        });
+        let target = found.ok_or_else(|| {
+            fail(LinkErrorKind::Unreachable("cyclic data need an address of IP version 4".to_owned()))
+        })?;
+        let unreachable = |error: io::Error| fail(LinkErrorKind::Unreachable(error.to_string()));
+        let local = leads_to(target).map_err(unreachable)?;
+        let socket = UdpSocket::bind((local, 0)).map_err(unreachable)?;
+        let port = socket.local_addr().map_err(unreachable)?.port();
+        let (sender, heard) = bounded(WAITING);
+        let mut packets = Packets {
+            name: self.target.clone(),
+            target,
+            local,
+            port,
+            socket: Arc::new(socket),
+            ears: Vec::new(),
+            sender,
+            heard,
+            clock: self.clock.clone(),
+        };
+        let socket = packets.socket.clone();
+        packets.listen(socket)?;
+        Ok(Box::new(packets))
+    }
+}
+
+/// The address of ours from which packets to a target leave.
+fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
+    // Sends nothing, and chooses the way.
+    socket.connect(target)?;
+    match socket.local_addr()? {
+        SocketAddr::V4(address) => Ok(*address.ip()),
+        SocketAddr::V6(_) => Err(ErrorKind::Unsupported.into()),
+    }
+}
+
+/// Packets to and from one target. A thread listens, so that one waits exactly, and for no longer than a packet takes.
+struct Packets {
+    name: String,
+    target: SocketAddrV4,
+    local: Ipv4Addr,
+    port: u16,
+    socket: Arc<UdpSocket>,
+    /// Dropped, they end.
+    ears: Vec<Ear>,
+    sender: Sender<Vec<u8>>,
+    heard: Receiver<Vec<u8>>,
+    clock: Arc<dyn Clock>,
+}
+
+/// A thread that listens at a socket, until this is dropped.
+struct Ear {
+    deaf: Arc<AtomicBool>,
+}
+
+impl Drop for Ear {
+    fn drop(&mut self) {
+        self.deaf.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Packets {
+    fn fail(&self, error: &io::Error) -> LinkError {
+        LinkError::new(&self.name, LinkErrorKind::Unreachable(error.to_string()))
+    }
+
+    fn listen(&mut self, socket: Arc<UdpSocket>) -> Result<(), LinkError> {
+        socket.set_read_timeout(Some(GLANCE)).map_err(|error| self.fail(&error))?;
+        let deaf = Arc::new(AtomicBool::new(false));
+        let (hears, sender, from) = (deaf.clone(), self.sender.clone(), *self.target.ip());
+        let thread = std::thread::Builder::new().name("cyclic packets".to_owned());
+        let started = thread.spawn(move || {
+            let mut buffer = [0; LONGEST];
+            while !hears.load(Ordering::Relaxed) {
+                match socket.recv_from(&mut buffer) {
+                    // What others send is dropped, and so is what nobody takes.
+                    Ok((count, SocketAddr::V4(sent_by))) if *sent_by.ip() == from => {
+                        let _ = sender.try_send(buffer.iter().take(count).copied().collect());
+                    }
+                    Ok(_) => {}
+                    // A port that is closed at the other end is told here; it may be opened again.
+                    Err(error) if is_passing(&error) => {}
+                    Err(_) => return,
+                }
+            }
+        });
+        started.map_err(|error| self.fail(&error))?;
+        self.ears.push(Ear { deaf });
+        Ok(())
+    }
+}
+
+fn is_passing(error: &io::Error) -> bool {
+    use ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
+    matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
+}
+
+impl Datagrams for Packets {
+    fn port(&self) -> u16 {
+        self.port
+    }
+
+    fn aim(&mut self, port: u16) {
+        self.target.set_port(port);
+    }
+
+    fn join(&mut self, group: SocketAddrV4) -> Result<(), LinkError> {
+        let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, group.port())).map_err(|error| self.fail(&error))?;
+        socket.join_multicast_v4(group.ip(), &self.local).map_err(|error| self.fail(&error))?;
+        self.listen(Arc::new(socket))
+    }
+
+    fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {
+        match self.socket.send_to(packet, self.target) {
+            Ok(_) => Ok(()),
+            // Of a packet before.
+            Err(error) if is_passing(&error) => Ok(()),
+            Err(error) => Err(LinkError::during_use(&self.name, &error)),
+        }
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError> {
+        match self.heard.recv_timeout(until.since(self.clock.now())) {
+            Ok(packet) => {
+                *into = packet;
+                Ok(true)
+            }
+            Err(RecvTimeoutError::Timeout) => Ok(false),
+            Err(RecvTimeoutError::Disconnected) => Err(LinkError::new(&self.name, LinkErrorKind::Lost)),
+        }
+    }
+}
+
+/// A question to all who listen at a port, in all networks that this computer is part of.
+pub struct UdpShout {
+    socket: UdpSocket,
+    to: Vec<SocketAddrV4>,
+    clock: Arc<dyn Clock>,
+}
+
+impl UdpShout {
+    /// To all in every network.
+    ///
+    /// # Errors
+    /// When the system has no socket left.
+    pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+        let mut networks = vec![Ipv4Addr::BROADCAST];
+        networks.extend(networks_of_ours());
+        networks.dedup();
+        Self::to(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
+    }
+
+    /// To these addresses.
+    ///
+    /// # Errors
+    /// When the system has no socket left.
+    pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
+        let open = || {
+            let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
+            socket.set_broadcast(true)?;
+            Ok(socket)
+        };
+        let socket = open().map_err(|error: io::Error| Self::fail(&to, &error))?;
+        Ok(UdpShout { socket, to, clock })
+    }
+
+    fn fail(to: &[SocketAddrV4], error: &io::Error) -> LinkError {
+        let to: Vec<String> = to.iter().map(ToString::to_string).collect();
+        LinkError::new(to.join(", "), LinkErrorKind::Unreachable(error.to_string()))
+    }
+}
+
+/// Addresses of all in the networks that are reached without a gateway, where the system tells them.
+fn networks_of_ours() -> Vec<Ipv4Addr> {
+    std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
+}
+
+/// Of the table of routes as Linux has it: interface, destination, gateway, flags, …, mask (the eighth).
+fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
+    let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
+    let mut found = Vec::new();
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        let &[_, network, "00000000", _, _, _, _, mask, ..] = fields.as_slice() else { continue };
+        let (Some(network), Some(mask)) = (address(network), address(mask)) else { continue };
+        // A network of one has nobody to ask, and the network of all is asked anyway.
+        if mask != 0 && mask != u32::MAX {
+            found.push(Ipv4Addr::from(network | !mask));
+        }
+    }
+    found
+}
+
+impl Shout for UdpShout {
+    fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError> {
+        let mut failed = None;
+        let mut sent = false;
+        for to in &self.to {
+            match self.socket.send_to(packet, to) {
+                Ok(_) => sent = true,
+                Err(error) => failed = Some(error),
+            }
+        }
+        match failed {
+            Some(error) if !sent => Err(Self::fail(&self.to, &error)),
+            _ => Ok(()),
+        }
+    }
+
+    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
+        let mut buffer = [0; LONGEST];
+        loop {
+            let left = until.since(self.clock.now());
+            if left.is_zero() {
+                return Ok(None);
+            }
+            let heard = self.socket.set_read_timeout(Some(left)).and_then(|()| self.socket.recv_from(&mut buffer));
+            match heard {
+                Ok((count, SocketAddr::V4(from))) => {
+                    *into = buffer.iter().take(count).copied().collect();
+                    return Ok(Some(*from.ip()));
+                }
+                Ok(_) => {}
+                Err(error) if is_passing(&error) => {}
+                Err(error) => return Err(Self::fail(&self.to, &error)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::RealClock;
+
+    fn pair() -> (UdpSocket, Box<dyn Datagrams>, Arc<RealClock>) {
+        let target = UdpSocket::bind("127.0.0.1:0").unwrap();
+        target.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+        let clock = Arc::new(RealClock::start());
+        let mut packets = UdpPort::new("127.0.0.1:44818", clock.clone()).open().unwrap();
+        packets.aim(target.local_addr().unwrap().port());
+        (target, packets, clock)
+    }
+
+    #[test]
+    fn packets_go_where_they_are_aimed_and_come_back_to_the_port() {
+        let (target, mut packets, clock) = pair();
+        packets.send(b"out").unwrap();
+        let mut buffer = [0; 16];
+        let (count, from) = target.recv_from(&mut buffer).unwrap();
+        assert_eq!((&buffer[..count], from.port()), (&b"out"[..], packets.port()));
+        target.send_to(b"in 1", from).unwrap();
+        target.send_to(b"in 2", from).unwrap();
+        let mut heard = b"old".to_vec();
+        let until = clock.now() + Duration::from_secs(5);
+        assert!(packets.receive(until, &mut heard).unwrap());
+        assert_eq!(heard, b"in 1");
+        assert!(packets.receive(until, &mut heard).unwrap());
+        assert_eq!(heard, b"in 2");
+        let until = clock.now() + Duration::from_millis(5);
+        assert!(!packets.receive(until, &mut heard).unwrap());
+        assert!(clock.now() >= until, "it waits for as long as it was told");
+    }
+
+    #[test]
+    fn what_others_send_is_dropped_and_a_closed_port_is_no_loss() {
+        let (target, mut packets, clock) = pair();
+        let to = ("127.0.0.1", packets.port());
+        // All of 127/8 is this computer.
+        if let Ok(other) = UdpSocket::bind("127.0.0.2:0") {
+            other.send_to(b"stray", to).unwrap();
+        }
+        target.send_to(b"own", to).unwrap();
+        let mut heard = Vec::new();
+        assert!(packets.receive(clock.now() + Duration::from_secs(5), &mut heard).unwrap());
+        assert_eq!(heard, b"own");
+        drop(target);
+        for _ in 0..3 {
+            packets.send(b"nobody").unwrap();
+            assert!(!packets.receive(clock.now() + Duration::from_millis(20), &mut heard).unwrap());
+        }
+    }
+
+    #[test]
+    fn who_was_asked_answers() {
+        let target = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let SocketAddr::V4(address) = target.local_addr().unwrap() else { panic!() };
+        let clock = Arc::new(RealClock::start());
+        let mut shout = UdpShout::to(vec![address], clock.clone()).unwrap();
+        shout.shout(b"who?").unwrap();
+        let mut buffer = [0; 16];
+        let (count, from) = target.recv_from(&mut buffer).unwrap();
+        assert_eq!(&buffer[..count], b"who?");
+        target.send_to(b"me", from).unwrap();
+        let mut heard = Vec::new();
+        let by = shout.hear(clock.now() + Duration::from_secs(5), &mut heard).unwrap();
+        assert_eq!((by, heard.as_slice()), (Some(Ipv4Addr::LOCALHOST), &b"me"[..]));
+        assert_eq!(shout.hear(clock.now() + Duration::from_millis(20), &mut heard).unwrap(), None);
+    }
+
+    #[test]
+    fn networks_are_read_from_the_table_of_routes() {
+        let table = "Iface\tDestination\tGateway \tFlags\tRefCnt\tUse\tMetric\tMask\t\tMTU\tWindow\tIRTT\n\
+            eth0\t00000000\t0101A8C0\t0003\t0\t0\t100\t00000000\t0\t0\t0\n\
+            eth0\t0001A8C0\t00000000\t0001\t0\t0\t100\t00FFFFFF\t0\t0\t0\n\
+            eth1\t0000100A\t00000000\t0001\t0\t0\t101\t0000F0FF\t0\t0\t0\n\
+            tun0\t0100070A\t00000000\t0005\t0\t0\t50\tFFFFFFFF\t0\t0\t0\nbroken\n";
+        assert_eq!(broadcasts(table), [Ipv4Addr::new(192, 168, 1, 255), Ipv4Addr::new(10, 31, 255, 255)]);
+    }
+}

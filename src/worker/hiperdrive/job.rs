@@ -1,0 +1,241 @@
+//! What can be asked of an adapter or a hub with its drives, and what comes of it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use crate::device::hiperdrive::check::{Line, Step};
+use crate::device::hiperdrive::write::{Interrupted, Written};
+use crate::device::hiperdrive::{Error, Identity, Network, Reading, Status, Survey};
+use crate::profile::Consent;
+use crate::profile::hiperdrive::{
+    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, PlanError, RestoreOptions, Service,
+};
+use crate::protocol::hiperdrive::{DriveNumber, KIND, ParameterNumber, Value};
+use crate::store::DeviceKey;
+use crate::worker::NotBegun;
+
+/// Saves from which a person should know that they may be numbered: an assumption, since the manual names no limit (`U`).
+pub const WEAR_WARNING: u64 = 50_000;
+
+/// What a session with an adapter or a hub does. Reading changes nothing; drives move only between [`Take`](Self::Take) and
+/// [`Give`](Self::Give), by the session's `Motion`.
+#[derive(Debug)]
+pub enum HiperdriveJob {
+    /// Who is there: for a window, after connecting.
+    Hello,
+    /// Everything that can be read.
+    Survey,
+    /// Who is there.
+    Identify,
+    /// Errors and states of all drives.
+    Status,
+    /// What device and drives say, with a verdict a line.
+    Check,
+    /// Where a drive is, once.
+    Position(DriveNumber),
+    /// A parameter.
+    Read(ParameterNumber),
+    /// Address switches and TCP/IP object.
+    Network,
+    /// Everything that can be restored.
+    Save,
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+    /// Opens the cyclic connection. Nothing moves by that.
+    Take,
+    /// Stops all drives and closes it.
+    Give,
+    /// From now on this drive is polled.
+    Watch(DriveNumber),
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the device as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<HiperdriveProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Make it like this, and save it; what the image says nothing about stays as it is.
+    Write(Box<Image>),
+    /// Make it like this, and save nothing: without supply it is as it was.
+    Try(Box<Image>),
+    /// The drive's place becomes this position.
+    SetPosition {
+        /// Which drive.
+        drive: DriveNumber,
+        /// In steps as scaled; it is rounded to 64 of them.
+        position: i32,
+        /// Save it, and all that was not saved before.
+        save: bool,
+    },
+    /// The device does something.
+    Do(Service),
+    /// The device gets its address in another way.
+    Network(NetworkSettings),
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edits are written: those that are not yet stay edited.
+    Edits,
+    /// Values are written for now.
+    Try,
+    /// A position is set.
+    Position,
+    /// The device does something.
+    Service(Service),
+    /// The address.
+    Network,
+}
+
+impl Change {
+    /// Its kind.
+    pub const fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Write(_) => ChangeKind::Edits,
+            Change::Try(_) => ChangeKind::Try,
+            Change::SetPosition { .. } => ChangeKind::Position,
+            Change::Do(service) => ChangeKind::Service(*service),
+            Change::Network(_) => ChangeKind::Network,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: HiperdrivePlan,
+    /// The device it is for.
+    pub identity: Identity,
+    /// What the device keeps, as it was read for the plan.
+    pub image: Image,
+    /// Saves that this computer has seen the device take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Items that are as they should be already.
+    pub unchanged: u64,
+    /// Items of a profile that the device does not have.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<Item>,
+}
+
+impl Prepared {
+    /// So many saves after this, where a person should know.
+    pub fn wear(&self) -> Option<u64> {
+        let cost = self.plan.write_cycles();
+        let after = self.cycles_seen.unwrap_or(0).saturating_add(cost);
+        (cost > 0 && after >= WEAR_WARNING).then_some(after)
+    }
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+}
+
+/// What a commit did.
+pub type Committed = crate::worker::Committed<Written>;
+
+/// What is said on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
+    ControlLost,
+}
+
+/// The step that a job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// A parameter is read.
+    Parameter(ParameterNumber),
+    /// A step of the check.
+    Step(Step),
+    /// An operation of a plan is carried out: what it changes.
+    Operation(String),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Parameter(number) => match number.row() {
+                Some(row) => write!(f, "{} ({})", Item(*number), row.name),
+                None => Item(*number).fmt(f),
+            },
+            Doing::Step(step) => step.fmt(f),
+            Doing::Operation(item) => f.write_str(item),
+        }
+    }
+}
+
+/// What a job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum HiperdriveOutput {
+    Hello(Box<Identity>),
+    Surveyed(Box<Survey>),
+    Identity(Box<Identity>),
+    Status(Box<Status>),
+    Check(Vec<Line>),
+    Position(Reading),
+    Value(ParameterNumber, Value),
+    Network(Box<Network>),
+    Saved(Box<HiperdriveProfile>),
+    Prepared(Box<Prepared>),
+    Committed(Box<Committed>),
+    Taken,
+    Given,
+    Watched(DriveNumber),
+}
+
+/// Why a job ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The device.
+    #[error(transparent)]
+    Device(#[from] Error),
+    /// It cannot be planned; nothing was written.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// Its before-image cannot be kept; nothing was written.
+    #[error(transparent)]
+    NotBegun(#[from] NotBegun),
+    /// It was begun and not finished.
+    #[error("{interrupted}; before-image: {}", backup.display())]
+    Interrupted {
+        /// What was written, and why it ended.
+        interrupted: Box<Interrupted>,
+        /// The before-image.
+        backup: PathBuf,
+        /// Operations of the plan.
+        planned: usize,
+        /// The kind of change.
+        kind: ChangeKind,
+    },
+}
+
+/// How backups and the logbook know a device: saves are those of the adapter or hub, whatever is plugged into it.
+pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
+    DeviceKey {
+        kind: KIND.to_owned(),
+        device_type: identity.category.clone(),
+        serial_number: identity.serial_number.clone(),
+        is_virtual,
+    }
+}

@@ -1,0 +1,66 @@
+//! From a change that a user wants to a plan. Reads; writes nothing.
+
+use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use crate::device::hiperdrive::{Master, read_state, settings};
+use crate::profile::hiperdrive::{
+    HiperdrivePlan, Image, Restore, plan_edits, plan_network, plan_restore, plan_service, plan_set_position,
+};
+use crate::protocol::hiperdrive::ParameterNumber;
+use crate::worker::commit::cycles_seen;
+use crate::worker::{Desk, Progress, Tell};
+
+pub(super) fn prepare(
+    device: &mut Hiperdrive,
+    desk: &mut Desk,
+    change: &Change,
+    tell: Told<'_>,
+) -> Result<Prepared, JobError> {
+    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let mut master = device.master(desk);
+    let told = &mut |done, total, number| {
+        tell(Tell::Progress(Progress { done, total, what: Doing::Parameter(number) }));
+    };
+    let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
+    let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| read_state(master, numbers, told);
+    let (identity, image, plan) = match change {
+        Change::Restore { profile, options } => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let plan = plan_restore(profile, &state, *options)?;
+            (identity, state.image, plan)
+        }
+        Change::Write(wanted) => {
+            let (identity, state) = state(&mut master, beside(wanted))?;
+            let plan = plan_edits(&state.image, wanted, &state.positions)?;
+            (identity, state.image, only(plan))
+        }
+        Change::Try(wanted) => {
+            let (identity, state) = state(&mut master, beside(wanted))?;
+            let plan = plan_edits(&state.image, wanted, &state.positions)?.without_save();
+            (identity, state.image, only(plan))
+        }
+        Change::SetPosition { drive, position, save } => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let plan = plan_set_position(&state.image, *drive, *position)?;
+            (identity, state.image, only(if *save { plan } else { plan.without_save() }))
+        }
+        Change::Do(service) => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let plan = plan_service(&state.image, *service);
+            (identity, state.image, only(plan))
+        }
+        Change::Network(wanted) => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let now = settings(&mut master)?;
+            let switch = ParameterNumber::new(12).map(|number| master.read_number(number)).transpose()?;
+            let plan = plan_network(&now, switch, wanted)?;
+            (identity, state.image, only(plan))
+        }
+    };
+    let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let Restore { plan, unchanged, missing, mounting_left } = plan;
+    Ok(Prepared { kind: change.kind(), plan, identity, image, cycles_seen, unchanged, missing, mounting_left })
+}
+
+fn only(plan: HiperdrivePlan) -> Restore {
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new() }
+}
