@@ -3,6 +3,7 @@
 
 mod commit;
 mod control;
+mod cyclic;
 mod job;
 mod motion;
 mod open;
@@ -13,6 +14,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use control::Control;
+pub use cyclic::{Cyclic, Pump};
 pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Remark,
     WEAR_WARNING, device_key,

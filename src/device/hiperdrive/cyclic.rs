@@ -1,6 +1,19 @@
 //! The cyclic connection as its originator sees it: what is sent when, what comes, what is counted, and when it is lost.
-//! Pure: packets and moments are handed in.
+//! Pure: packets and moments are handed in, and nobody waits here.
+//!
+//! ```text
+//! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (whoever owns a clock and a port sends them)
+//! ```
+//!
+//! A connection of which nothing has come for three intervals is lost: the drives are told to stop, for as long as that takes,
+//! then to be off, and it is over. It never comes back; a person opens another.
 
+mod connection;
+mod drives;
 mod figures;
+#[cfg(test)]
+mod tests;
 
+pub use connection::Connection;
+pub use drives::Drives;
 pub use figures::{Bucket, CyclicLost, Histogram, LinkFigures};

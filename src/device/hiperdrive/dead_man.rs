@@ -162,10 +162,13 @@ impl DeadMan {
         matches!(self.stage, Stage::Rest { moves: None })
     }
 
-    /// The connection is gone: what was under way has ended so.
-    pub fn lose(&mut self) {
-        if self.act.is_some() {
+    /// The connection ends, or is gone: what was under way has ended so, and the drive is to stand.
+    pub fn lose(&mut self, now: Moment) {
+        if self.stage.has_motion() {
+            self.stop(now, Ended::Lost);
+        } else if matches!(self.stage, Stage::Lead(_)) {
             self.end(Ended::Lost);
+            self.hold_what_is(self.actual().status.state());
         }
     }
 

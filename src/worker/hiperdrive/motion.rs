@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::device::hiperdrive::cyclic::{CyclicLost, LinkFigures};
-use crate::device::hiperdrive::dead_man::{Ended, Intent, Lock, Permit, Phase, Wish};
+use crate::device::hiperdrive::cyclic::{CyclicLost, Drives, LinkFigures};
+use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
 use crate::link::Clock;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, Setpoint};
 
@@ -131,6 +131,53 @@ impl Motion {
     /// What a drive may do at the moment, all things considered.
     pub fn permitted(&self, drive: DriveNumber) -> Permit {
         self.lock().permitted(drive)
+    }
+
+    /// A connection begins: no act up to the number that comes back moves anything over it.
+    pub(super) fn open(&self) -> u64 {
+        let now = self.0.clock.now();
+        let mut cell = self.lock();
+        let number = cell.intent.number + 1;
+        cell.intent = Intent::rest(cell.intent.drive, number, now);
+        cell.view = View { open: true, ..View::default() };
+        number
+    }
+
+    /// What is wanted at this moment, for whoever makes the next packet of it.
+    pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+        let cell = self.lock();
+        make(&cell.intent, &|drive| cell.permitted(drive))
+    }
+
+    /// What has become of the drives.
+    pub(super) fn publish(&self, drives: &Drives) {
+        let of = |man: &DeadMan| DriveView {
+            number: man.drive(),
+            actual: man.actual(),
+            sent: man.sent(),
+            phase: man.phase(),
+            act: man.act(),
+            ended: man.ended(),
+        };
+        let mut views: Vec<DriveView> = drives.men().map(of).collect();
+        views.sort_by_key(|view| view.number);
+        let view = View {
+            open: !drives.is_ending(),
+            drives: views,
+            link: drives.figures().clone(),
+            lost: drives.lost().cloned(),
+        };
+        self.lock().view = view;
+    }
+
+    /// The connection's thread has failed, or never began.
+    pub(super) fn fail(&self) {
+        let mut cell = self.lock();
+        (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
+    }
+
+    pub(super) fn lost(&self) -> Option<CyclicLost> {
+        self.lock().view.lost.clone()
     }
 
     fn lock(&self) -> MutexGuard<'_, Cell> {

@@ -1,0 +1,258 @@
+//! The dead-man against virtual drives: what a person does, what goes wrong, and that the drive stands each time.
+
+mod any;
+mod bench;
+mod ladder;
+
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish};
+use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, Percent, RunEnd};
+use encoder_studio::sim::hiperdrive::Load;
+
+use bench::Bench;
+
+const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+const TURN: i32 = 65_536;
+
+fn jog(direction: Direction) -> Wish {
+    Wish::Jog { direction, effort: Effort::JOG }
+}
+
+fn run_endless() -> Wish {
+    Wish::Run { direction: Direction::Clockwise, end: RunEnd::Endless, effort: FULL }
+}
+
+fn to(target: i32) -> Wish {
+    Wish::Move { target, effort: FULL }
+}
+
+/// The words that were sent, each once, in the order of their sending.
+fn words(bench: &mut Bench) -> String {
+    let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
+    words.join(" ")
+}
+
+/// Reference 3: 0000, 0400, 0401, 0409, 0439, 0479, and for the next job 0439. A drive at rest has bits 4 and 5 clear.
+#[test]
+fn the_published_words_lead_to_a_target() {
+    let mut bench = Bench::new();
+    bench.run(50);
+    assert_eq!(words(&mut bench), "0000");
+    bench.act(to(163_840));
+    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(words(&mut bench), "0000 0400 0401 0409 0439 0479 0449");
+    assert_eq!((bench.position(), bench.man.phase()), (163_840, Phase::Idle));
+    bench.run(100);
+    bench.act(Wish::Step { by: -TURN, effort: FULL });
+    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(words(&mut bench), "0449 0479 0439 0409");
+    assert_eq!(bench.position(), 163_840 - TURN);
+    bench.act(Wish::Lead(Goal::Off));
+    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
+}
+
+/// Reference 3: 1459 and 1419 clockwise, 1449 and 1409 the other way, and out of speed mode through 0400.
+#[test]
+fn a_jog_runs_while_it_is_held() {
+    let mut bench = Bench::new();
+    bench.act(Wish::Lead(Goal::Enabled));
+    assert_eq!(bench.until_over(), Ended::Done);
+    words(&mut bench);
+    for (direction, sent, sign) in [
+        (Direction::Clockwise, "0409 1419 1459 1419 0400 0401 0409", 1),
+        (Direction::Counterclockwise, "0409 1409 1449 1409 0400 0401 0409", -1),
+    ] {
+        bench.act(jog(direction));
+        bench.run(1000);
+        let phase = bench.man.phase();
+        assert!(matches!(phase, Phase::Moving(Motive::Run { direction: way, .. }) if way == direction), "{phase:?}");
+        // 10 % of 35 rpm, in tenths.
+        assert_eq!(bench.actual().speed, sign * 35);
+        assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+        bench.act(Wish::Stop);
+        bench.run(500);
+        assert_eq!(words(&mut bench), sent);
+        assert_eq!((bench.man.phase(), bench.man.ended().map(|ended| ended.1)), (Phase::Idle, Some(Ended::Stopped)));
+        let stood = bench.position();
+        assert!(stood * i32::from(sign) > 0 || sign < 0, "{stood}");
+        assert_eq!(bench.man.sent().target, stood, "the target is where it stands");
+        bench.run(1000);
+        assert_eq!((bench.position(), bench.status()), (stood, 0x2A37));
+    }
+}
+
+/// However a hand trembles, a jog never turns into a job.
+#[test]
+fn a_jog_pressed_again_and_again() {
+    let mut bench = Bench::new();
+    for times in 1..60 {
+        bench.act(jog(if times % 3 == 0 { Direction::Clockwise } else { Direction::Counterclockwise }));
+        bench.run(times * 10);
+        bench.act(Wish::Stop);
+        bench.run(600 / times);
+    }
+    bench.run(500);
+    let stood = bench.position();
+    bench.run(2000);
+    assert_eq!((bench.position(), bench.man.phase()), (stood, Phase::Idle));
+    bench.act(to(stood + 1000));
+    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.position(), stood + 1000);
+}
+
+#[test]
+fn a_job_waits_and_goes_on() {
+    let mut bench = Bench::new();
+    let job = bench.act(to(3 * TURN));
+    bench.run(1000);
+    let pause = bench.act(Wish::Pause);
+    bench.run(300);
+    assert_eq!(bench.man.phase(), Phase::Paused { target: 3 * TURN });
+    assert_eq!((bench.status() & 0x2000, bench.man.act()), (0x2000, pause));
+    assert!(job < pause && bench.man.ended().is_none());
+    let waited = bench.position();
+    bench.run(1000);
+    assert_eq!(bench.position(), waited);
+    bench.act(Wish::Resume);
+    assert_eq!(bench.until_over(), Ended::Arrived);
+    assert_eq!(bench.position(), 3 * TURN);
+    // There is nothing to pause now, nor to resume.
+    bench.act(Wish::Pause);
+    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToPause));
+    bench.act(Wish::Resume);
+    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
+    // One that is stopped while it waits is gone.
+    bench.act(to(0));
+    bench.run(1000);
+    bench.act(Wish::Pause);
+    bench.run(300);
+    bench.act(Wish::Stop);
+    bench.run(300);
+    bench.act(Wish::Resume);
+    assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
+    // A jog is not paused but ended.
+    bench.act(jog(Direction::Clockwise));
+    bench.run(500);
+    bench.act(Wish::Pause);
+    bench.run(500);
+    assert_eq!(bench.man.phase(), Phase::Idle);
+}
+
+/// What is refused here never reaches the drive.
+#[test]
+fn what_may_not_be_is_refused() {
+    let none = Effort { speed: Percent::NONE, ..FULL };
+    let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), endless: false };
+    let free = || permit(Some((-TURN, TURN)), &[]);
+    let outside = |target| Refusal::Outside { target, low: -TURN, high: TURN };
+    for (label, wish, permit, refusal) in [
+        ("not read", to(1), Permit::default(), Refusal::Locked(Lock::Unread)),
+        ("limits not read", to(1), permit(None, &[]), Refusal::Locked(Lock::Unread)),
+        (
+            "no time-out",
+            jog(Direction::Clockwise),
+            permit(Some((0, 9)), &[Lock::NoTimeout]),
+            Refusal::Locked(Lock::NoTimeout),
+        ),
+        ("limits", to(1), permit(Some((0, 9)), &[Lock::LimitsUnconfirmed]), Refusal::Locked(Lock::LimitsUnconfirmed)),
+        ("not requested", to(1), permit(Some((0, 9)), &[Lock::NotRequested]), Refusal::Locked(Lock::NotRequested)),
+        ("above", to(TURN + 1), free(), outside(TURN + 1)),
+        ("below", to(i32::MIN), free(), outside(i32::MIN)),
+        ("a step beyond", Wish::Step { by: i32::MAX, effort: FULL }, free(), outside(i32::MAX)),
+        ("no speed", Wish::Move { target: 1, effort: none }, free(), Refusal::NoEffort),
+        ("endless", run_endless(), free(), Refusal::Endless),
+    ] {
+        let mut bench = Bench::new();
+        bench.permit = permit;
+        bench.act(wish);
+        assert_eq!(bench.until_over(), Ended::Refused(refusal), "{label}");
+        bench.run(500);
+        assert_eq!((words(&mut bench).as_str(), bench.position()), ("0000", 0), "{label}");
+    }
+    let mut bench = Bench::new();
+    bench.permit = Permit { endless: true, ..free() };
+    bench.act(run_endless());
+    bench.run(1000);
+    assert_eq!(words(&mut bench), "0400 0401 0409 1439 1479");
+}
+
+/// A fault ends what runs. Nothing moves until a person has acknowledged it, and nothing by that alone.
+#[test]
+fn a_fault_is_acknowledged_before_anything_moves() {
+    let mut bench = Bench::new();
+    bench.act(to(5 * TURN));
+    bench.run(1000);
+    words(&mut bench);
+    bench.fail(ErrorCode::OVER_CURRENT);
+    assert_eq!(bench.until_over(), Ended::Fault);
+    bench.run(1000);
+    assert_eq!(words(&mut bench), "0479 0469 0401");
+    let stood = bench.position();
+    bench.act(to(0));
+    assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
+    bench.act(Wish::Lead(Goal::Enabled));
+    assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
+    words(&mut bench);
+    bench.act(Wish::Acknowledge);
+    assert_eq!(bench.until_over(), Ended::Done);
+    assert_eq!((words(&mut bench).as_str(), bench.status()), ("0401 0481 0401 0400", 0x2A31));
+    bench.run(1000);
+    assert_eq!(bench.position(), stood);
+    bench.act(to(0));
+    assert_eq!(bench.until_over(), Ended::Arrived);
+}
+
+/// Something stands in the way.
+#[test]
+fn a_blocked_drive_ends_the_act() {
+    let mut bench = Bench::new();
+    bench.load(Load { wall_above: Some(f64::from(TURN)), ..Load::default() });
+    bench.act(to(2 * TURN));
+    assert_eq!(bench.until_over(), Ended::Fault);
+    assert_eq!(bench.position(), TURN);
+}
+
+/// At the end of the range a run ends, and so does the act.
+#[test]
+fn a_run_ends_with_the_range() {
+    let mut bench = Bench::new();
+    bench.write(160, TURN.into());
+    bench.act(Wish::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
+    assert_eq!(bench.until_over(), Ended::RangeEnd);
+    bench.run(500);
+    assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A37, Phase::Idle));
+    // Once more, where there is nowhere to go.
+    bench.act(Wish::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
+    assert_eq!(bench.until_over(), Ended::RangeEnd);
+}
+
+/// Switch S3 points to a drive: the bus leads nowhere.
+#[test]
+fn a_drive_that_does_not_follow_is_told() {
+    let mut bench = Bench::new();
+    bench.station.turn_s3(bench.now, 1);
+    bench.act(to(TURN));
+    let ended = bench.until_over();
+    assert!(matches!(ended, Ended::NoAnswer(_)), "{ended:?}");
+    bench.station.turn_s3(bench.now, 0);
+    bench.run(3000);
+    assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
+}
+
+/// A drive that loses its supply for a moment comes back with the words still on the wire.
+#[test]
+fn a_drive_that_starts_anew_does_not_take_up_its_job() {
+    for after in [100, 110, 500, 1500] {
+        let mut bench = Bench::new();
+        bench.act(to(5 * TURN));
+        bench.run(after);
+        // 47 = -4: the drives are reset, and the connection stays.
+        bench.write(47, -4);
+        let ended = bench.until_over();
+        assert!(matches!(ended, Ended::Left(_) | Ended::NoAnswer(_)), "{after} ms: {ended:?}");
+        let stood = bench.position();
+        bench.run(3000);
+        assert_eq!(bench.position(), stood, "{after} ms");
+        assert_eq!(bench.status() & 0x0004, 0, "nobody has enabled it");
+    }
+}

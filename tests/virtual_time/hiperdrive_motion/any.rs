@@ -1,0 +1,88 @@
+//! Any session of a person with a drive, thousands of steps long, with everything that can go wrong in between.
+
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock, Wish};
+use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
+use encoder_studio::sim::hiperdrive::Load;
+
+use super::bench::Bench;
+use super::{FULL, TURN};
+
+const SESSIONS: u64 = 100;
+const STEPS: u64 = 5000;
+
+fn wish(dice: &mut fastrand::Rng) -> Wish {
+    let effort = if dice.bool() { FULL } else { Effort::JOG };
+    let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
+    match dice.u8(..14) {
+        0 => Wish::Rest,
+        1 => Wish::Lead(Goal::ALL[dice.usize(..4)]),
+        2 | 3 => Wish::Acknowledge,
+        4 | 5 => Wish::Move { target: dice.i32(-3 * TURN..3 * TURN), effort },
+        6 | 7 => Wish::Step { by: dice.i32(-TURN..TURN), effort },
+        8 => Wish::Pause,
+        9 => Wish::Resume,
+        10 | 11 => Wish::Jog { direction, effort },
+        12 => Wish::Run { direction, end: RunEnd::RangeEnd, effort },
+        _ => Wish::Stop,
+    }
+}
+
+fn mishap(bench: &mut Bench, dice: &mut fastrand::Rng) {
+    let now = bench.now;
+    match dice.u8(..16) {
+        0 | 1 => bench.fail([ErrorCode::OVER_CURRENT, ErrorCode::RS485][dice.usize(..2)]),
+        2 => {
+            let wall_above = Some(bench.position().into());
+            bench.load(Load { wall_above, ..Load::default() });
+        }
+        3 => bench.load(Load { percent: 60, ..Load::default() }),
+        4 | 5 => bench.load(Load::default()),
+        6 => bench.station.turn_s3(now, dice.u8(..3)),
+        7 => bench.station.turn_s3(now, 0),
+        8 => bench.reset(),
+        9 => bench.reconnect(),
+        10 => bench.permit.locks = vec![Lock::LimitsUnconfirmed],
+        11 | 12 => bench.permit.locks.clear(),
+        13 => bench.late = dice.usize(..4),
+        _ => {}
+    }
+}
+
+/// The bench looks at each word. Here: once nobody wants a motion any more, the drive stands within the ladder and the
+/// time in which it brakes; and it keeps standing.
+#[test]
+fn any_session_ends_at_a_standstill() {
+    let mut moved = 0u64;
+    for seed in 0..SESSIONS {
+        let mut dice = fastrand::Rng::with_seed(seed);
+        let mut bench = Bench::new();
+        let mut unwanted = 0;
+        let mut word = bench.man.sent().control;
+        for step in 0..STEPS {
+            if dice.u8(..30) == 0 {
+                let wish = wish(&mut dice);
+                bench.act(wish);
+            }
+            if dice.u8(..150) == 0 {
+                mishap(&mut bench, &mut dice);
+            }
+            bench.cut_out = dice.u8(..20) == 0;
+            bench.cut_back = dice.u8(..20) == 0;
+            bench.absent = dice.u8(..200) == 0 || (bench.absent && dice.u8(..40) != 0);
+            let stale = bench.intent.is_stale(bench.now) && bench.absent;
+            let sent = bench.cycle();
+            let wanted = bench.intent.wish.moves() && !stale && bench.permit.locks.is_empty();
+            assert!(wanted || sent.control.is_standing(), "{seed}/{step}: {:?} after {word:?}", sent.control);
+            word = sent.control;
+            unwanted = if wanted { 0 } else { unwanted + 1 };
+            let moves = bench.actual().status.state() == State::Moving || bench.actual().speed != 0;
+            moved += u64::from(moves);
+            // Losses make it longer: a stop word may need some tries.
+            assert!(!moves || unwanted < 40, "{seed}/{step}: {unwanted} intervals unwanted, {:?}", bench.man.phase());
+            if bench.man.gives_up() {
+                bench.reconnect();
+            }
+        }
+    }
+    assert!(moved > SESSIONS * STEPS / 20, "hardly anything has moved: {moved}");
+}

@@ -1,0 +1,170 @@
+//! A virtual drive, its dead-man and the wire between them, cycle by cycle.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Permit, Wish};
+use encoder_studio::protocol::hiperdrive::{
+    Actual, ControlBit, ControlWord, DriveNumber, ErrorCode, OutImage, ParameterNumber, Setpoint, State, Value,
+};
+use encoder_studio::sim::hiperdrive::{Load, Setup, Station};
+use encoder_studio::units::Moment;
+
+pub(super) const INTERVAL: Duration = Duration::from_millis(10);
+/// Eight intervals.
+const TIMEOUT: Duration = Duration::from_millis(80);
+
+/// All of it. The intent is kept fresh unless somebody is absent.
+pub(super) struct Bench {
+    pub(super) station: Station,
+    pub(super) man: DeadMan,
+    pub(super) now: Moment,
+    pub(super) intent: Intent,
+    pub(super) permit: Permit,
+    /// Nobody refreshes what is wanted.
+    pub(super) absent: bool,
+    /// Nothing reaches the drive.
+    pub(super) cut_out: bool,
+    /// Nothing comes back.
+    pub(super) cut_back: bool,
+    /// Reports come so many cycles late.
+    pub(super) late: usize,
+    /// The drive moves when it does, whatever it is sent: it answers as if a jog were under way.
+    pub(super) heard: Option<Actual>,
+    reports: VecDeque<Actual>,
+    words: Vec<u16>,
+    before: ControlWord,
+}
+
+impl Bench {
+    pub(super) fn new() -> Self {
+        let mut station = Station::new(Setup::default());
+        station.open(Moment::START, TIMEOUT);
+        let intent = Intent::rest(DriveNumber::FIRST, 7, Moment::START);
+        Bench {
+            station,
+            man: DeadMan::new(DriveNumber::FIRST, 7),
+            now: Moment::START,
+            intent,
+            permit: Permit { limits: Some((-20_000_000, 20_000_000)), locks: Vec::new(), endless: false },
+            absent: false,
+            cut_out: false,
+            cut_back: false,
+            late: 0,
+            heard: None,
+            reports: VecDeque::new(),
+            words: Vec::new(),
+            before: ControlWord::OFF,
+        }
+    }
+
+    /// A person wants something: the number of the act.
+    pub(super) fn act(&mut self, wish: Wish) -> u64 {
+        let number = self.intent.number + 1;
+        self.intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: self.now };
+        number
+    }
+
+    /// One interval: what was sent, looked at from all sides.
+    pub(super) fn cycle(&mut self) -> Setpoint {
+        if !self.absent {
+            self.intent.refreshed = self.now;
+        }
+        let fresh = !self.intent.is_stale(self.now);
+        let spent = self.man.ended().map_or(7, |(number, _)| number);
+        let report = self.station.image(self.now).drives[0];
+        self.reports.push_back(report);
+        let heard = (self.reports.len() > self.late).then(|| self.reports.pop_front()).flatten();
+        let heard = heard.filter(|_| !self.cut_back);
+        let setpoint = self.man.next(self.now, self.heard.or(heard), &self.intent, &self.permit);
+        let word = setpoint.control;
+        assert!(!word.has(ControlBit::JogOne) && !word.has(ControlBit::JogTwo), "{word:?}");
+        if let Some(begins) = word.begins(self.before, report.status) {
+            let wish = self.intent.wish;
+            let act = fresh && wish.moves() && self.intent.number > spent && self.permit.locks.is_empty();
+            assert!(act, "{begins:?} by {word:?} behind {:?}, {:?} is wanted", self.before, self.intent);
+        }
+        if !self.cut_out {
+            let image = OutImage { drives: vec![setpoint.into()], pkw: None };
+            self.station.cyclic(self.now, &image, true);
+            self.before = word;
+        }
+        if self.words.last() != Some(&word.word()) {
+            self.words.push(word.word());
+        }
+        self.now = self.now + INTERVAL;
+        setpoint
+    }
+
+    pub(super) fn run(&mut self, ms: u64) {
+        (0..ms / 10).for_each(|_| {
+            self.cycle();
+        });
+    }
+
+    /// Until the act that was wanted last has ended: how.
+    pub(super) fn until_over(&mut self) -> Ended {
+        for _ in 0..6000 {
+            self.cycle();
+            if let Some((number, ended)) = self.man.ended()
+                && number >= self.intent.number
+            {
+                return ended;
+            }
+        }
+        panic!("it never ends: {:?} {:?}", self.man.phase(), self.actual());
+    }
+
+    /// What the drive really does.
+    pub(super) fn actual(&mut self) -> Actual {
+        self.station.image(self.now).drives[0]
+    }
+
+    pub(super) fn status(&mut self) -> u16 {
+        self.actual().status.word()
+    }
+
+    pub(super) fn position(&mut self) -> i32 {
+        self.actual().position
+    }
+
+    pub(super) fn moves(&mut self) -> bool {
+        let actual = self.actual();
+        actual.speed != 0 || actual.status.state() == State::Moving
+    }
+
+    /// The words sent since the last time, each once, beginning with the one that was on the wire.
+    pub(super) fn take_words(&mut self) -> Vec<u16> {
+        let last = self.words.last().copied();
+        std::mem::replace(&mut self.words, last.into_iter().collect())
+    }
+
+    pub(super) fn fail(&mut self, code: ErrorCode) {
+        let now = self.now;
+        self.station.drive(DriveNumber::FIRST).unwrap().fail(now, code);
+    }
+
+    pub(super) fn load(&mut self, load: Load) {
+        let now = self.now;
+        self.station.drive(DriveNumber::FIRST).unwrap().set_load(now, load);
+    }
+
+    pub(super) fn write(&mut self, number: u16, value: i64) {
+        let number = ParameterNumber::new(number).unwrap();
+        self.station.write(self.now, number, &Value::Number(value)).unwrap();
+    }
+
+    /// The drives start anew, and the connection stays: 47 = −4. Refused while they are at it.
+    pub(super) fn reset(&mut self) {
+        let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
+    }
+
+    /// The connection is opened again, by somebody who has not acted yet.
+    pub(super) fn reconnect(&mut self) {
+        self.station.close(self.now);
+        self.station.open(self.now, TIMEOUT);
+        self.man = DeadMan::new(DriveNumber::FIRST, self.intent.number);
+        self.before = ControlWord::OFF;
+        self.reports.clear();
+    }
+}

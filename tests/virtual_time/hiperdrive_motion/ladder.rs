@@ -1,0 +1,200 @@
+//! Whatever ends a motion: the word that stands goes out with the same call, and up the ladder while the drive does not.
+
+use encoder_studio::device::hiperdrive::dead_man::{Ended, Goal, Lock, Phase, Rung, Wish};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber};
+use proptest::prelude::*;
+
+use super::bench::Bench;
+use super::{TURN, jog, to};
+
+/// What may happen while something moves.
+type Cause = fn(&mut Bench);
+
+const CAUSES: [(&str, Cause, Ended); 7] = [
+    (
+        "stop",
+        |bench| {
+            bench.act(Wish::Stop);
+        },
+        Ended::Stopped,
+    ),
+    (
+        "rest",
+        |bench| {
+            bench.act(Wish::Rest);
+        },
+        Ended::Stopped,
+    ),
+    (
+        "another drive",
+        |bench| {
+            bench.act(Wish::Move { target: 0, effort: super::FULL });
+            bench.intent.drive = DriveNumber::new(2).unwrap();
+        },
+        Ended::Replaced,
+    ),
+    (
+        "led elsewhere",
+        |bench| {
+            bench.act(Wish::Lead(Goal::Off));
+        },
+        Ended::Replaced,
+    ),
+    ("locked", |bench| bench.permit.locks.push(Lock::LimitsUnconfirmed), Ended::Locked(Lock::LimitsUnconfirmed)),
+    ("an older act", |bench| bench.intent.number -= 1, Ended::Stopped),
+    ("the same act with another wish", |bench| bench.intent.wish = to(9), Ended::Replaced),
+];
+
+#[test]
+fn each_cause_stops_with_the_same_call() {
+    for wish in [to(9 * TURN), jog(Direction::Clockwise), jog(Direction::Counterclockwise)] {
+        for (label, cause, ended) in CAUSES {
+            // From the first word of the motion on.
+            for after in (10..150).step_by(10).chain([900]) {
+                let mut bench = Bench::new();
+                bench.act(wish);
+                bench.run(after);
+                cause(&mut bench);
+                let sent = bench.cycle();
+                assert!(sent.control.is_standing(), "{label} after {after} ms: {:?}", sent.control);
+                let how = bench.man.ended().map(|ended| ended.1);
+                assert!(how == Some(ended) || after < 100, "{label} after {after} ms: {how:?}");
+                bench.run(300);
+                assert!(!bench.moves(), "{label} after {after} ms: {:?}", bench.actual());
+            }
+        }
+    }
+}
+
+/// Nobody says that it is wanted still: 250 ms, and an interval. When somebody does again, it stays as it is.
+#[test]
+fn a_frozen_hand_stops() {
+    for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
+        let mut bench = Bench::new();
+        bench.act(wish);
+        bench.run(1000);
+        bench.absent = true;
+        // The last refresh was an interval ago.
+        bench.run(240);
+        assert!(!bench.cycle().control.is_standing());
+        assert!(bench.cycle().control.is_standing());
+        assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Stale));
+        bench.run(200);
+        assert!(!bench.moves());
+        bench.absent = false;
+        let stood = bench.position();
+        bench.run(2000);
+        assert_eq!(bench.position(), stood, "the same act begins again");
+        // Also one that was frozen before it could begin.
+        bench.act(Wish::Lead(Goal::Off));
+        bench.until_over();
+        bench.act(wish);
+        bench.absent = true;
+        bench.now = bench.now + std::time::Duration::from_millis(300);
+        bench.station.open(bench.now, std::time::Duration::from_secs(1));
+        bench.run(100);
+        bench.absent = false;
+        bench.run(2000);
+        assert_eq!(bench.position(), stood);
+        assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Stale));
+    }
+}
+
+/// The drive says on and on that it moves: 200 ms a rung.
+#[test]
+fn up_the_ladder_while_it_does_not_stand() {
+    for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
+        let mut bench = Bench::new();
+        bench.act(wish);
+        bench.run(1000);
+        super::words(&mut bench);
+        bench.heard = Some(bench.actual());
+        bench.act(Wish::Stop);
+        let mut rungs = Vec::new();
+        for ms in (0..1000).step_by(10) {
+            let sent = bench.cycle();
+            assert!(sent.control.is_standing());
+            if let Phase::Stopping(rung) = bench.man.phase()
+                && rungs.last().is_none_or(|(last, _)| *last != rung)
+            {
+                rungs.push((rung, ms));
+            }
+        }
+        assert_eq!(rungs, [(Rung::Mode, 0), (Rung::Operational, 200), (Rung::Off, 400), (Rung::Close, 600)]);
+        assert!(bench.man.gives_up());
+        let moved = if stop == "0469" { "0479" } else { "1459" };
+        assert_eq!(super::words(&mut bench), format!("{moved} {stop} 0401 0000"));
+    }
+}
+
+/// Nothing comes back any more: it is taken for a drive that does not stand.
+#[test]
+fn a_drive_that_is_not_heard_is_stopped() {
+    let mut bench = Bench::new();
+    bench.act(to(9 * TURN));
+    bench.run(1000);
+    bench.cut_back = true;
+    bench.run(360);
+    assert!(bench.man.sent().control.is_standing());
+    assert_eq!(bench.man.ended().map(|ended| ended.1), Some(Ended::Deaf));
+    bench.run(600);
+    assert!(bench.man.gives_up() && !bench.moves());
+}
+
+/// A drive at rest that turns all the same loses operation, then everything.
+#[test]
+fn what_moves_unasked_is_stopped() {
+    let mut bench = Bench::new();
+    bench.act(Wish::Lead(Goal::Enabled));
+    bench.until_over();
+    super::words(&mut bench);
+    let mut moving = bench.actual();
+    moving.status = encoder_studio::protocol::hiperdrive::StatusWord::new(0x1A37);
+    bench.heard = Some(moving);
+    bench.run(150);
+    assert!(!bench.man.is_idle());
+    bench.run(700);
+    assert_eq!(super::words(&mut bench), "0409 0401 0000");
+    assert!(bench.man.gives_up());
+}
+
+/// Nothing moves after a connection was opened until somebody acts, whatever was wanted before.
+#[test]
+fn a_new_connection_moves_nothing() {
+    let mut bench = Bench::new();
+    bench.act(to(9 * TURN));
+    bench.run(1000);
+    bench.reconnect();
+    bench.run(300);
+    let stood = bench.position();
+    bench.run(3000);
+    assert_eq!((bench.position(), super::words(&mut bench).ends_with("0000")), (stood, true));
+    assert_eq!(bench.man.sent().target, stood);
+    // The master was lost: a fault, to be acknowledged.
+    bench.act(Wish::Acknowledge);
+    assert_eq!(bench.until_over(), Ended::Done);
+    bench.act(to(0));
+    assert_eq!(bench.until_over(), Ended::Arrived);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Reports that come late do not make a stop a start.
+    #[test]
+    fn late_reports_start_nothing(late in 0usize..6, before in 1u64..40, gap in 1u64..30, runs: bool) {
+        let mut bench = Bench::new();
+        bench.late = late;
+        bench.act(if runs { jog(Direction::Counterclockwise) } else { to(9 * TURN) });
+        bench.run(before * 10);
+        bench.act(Wish::Stop);
+        bench.run(gap * 10);
+        bench.act(to(9 * TURN));
+        bench.run(before * 10);
+        bench.act(Wish::Stop);
+        bench.run(600);
+        let stood = bench.position();
+        bench.run(2000);
+        prop_assert_eq!(bench.position(), stood);
+    }
+}
