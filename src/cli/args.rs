@@ -358,9 +358,12 @@ pub(super) struct Simulate {
     /// Make a pseudo-terminal and a symbolic link to it here.
     #[arg(long, value_name = "PATH", conflicts_with = "listen")]
     pub(super) pty: Option<PathBuf>,
-    /// Listen at HOST:PORT.
+    /// Listen at HOST:PORT; hiperdrive over TCP and over UDP.
     #[arg(long, value_name = "ADDR")]
     pub(super) listen: Option<String>,
+    /// hiperdrive: a hub with so many places for drives instead of an adapter.
+    #[arg(long, value_name = "PLACES", value_parser = ["4", "8"])]
+    pub(super) hub: Option<String>,
     /// biss: be an adapter in front of the encoder, which speaks the bridge protocol, instead of its UBICOM line.
     #[arg(long)]
     pub(super) bridge: bool,

@@ -1,8 +1,10 @@
-//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port. This is the one place that pumps
-//! a virtual device with the machine's clock.
+//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port, with UDP beside it for those that
+//! want it. This is the one place that pumps a virtual device with the machine's clock.
+
+mod datagrams;
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -10,7 +12,7 @@ use std::time::Duration;
 use super::args::Simulate;
 use super::{Done, Failure, Result};
 use crate::link::{Clock, RealClock};
-use crate::sim::ByteDevice;
+use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
 /// How long to wait for bytes when the device has nothing to say: also how late an interrupt is noticed.
@@ -23,10 +25,23 @@ pub(super) trait Simulated: ByteDevice {
     /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
     fn format(&self, now: Moment) -> Option<CharacterFormat>;
 
-    /// The same device for another client beside this one; `None` where there is one line to it, and clients come one
+    /// The same device for another client beside this one, at this address; `None` where there is one line to it, and clients come one
     /// after the other.
-    fn another(&self) -> Option<Box<dyn Simulated>> {
+    fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
+    }
+
+    /// The same device as it is sent datagrams, to the port at which it is reached over TCP.
+    fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
+        None
+    }
+
+    /// Where a device with datagrams is reached.
+    fn listens(&self, _at: SocketAddrV4) {}
+
+    /// It has closed the connection.
+    fn has_ended(&self) -> bool {
+        false
     }
 }
 
@@ -54,6 +69,7 @@ pub(super) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
             setting.split_once('=').ok_or_else(|| Failure::Usage(format!("{setting:?} is not NAME=VALUE")))?;
         pairs.push((name.to_owned(), value.to_owned()));
     }
+    pairs.extend(arguments.hub.clone().map(|places| ("hub".to_owned(), places)));
     pairs.extend(arguments.seed.map(|seed| ("seed".to_owned(), seed.to_string())));
     pairs.extend(arguments.fault.clone().map(|fault| ("fault".to_owned(), fault)));
     Ok(pairs)
@@ -76,8 +92,12 @@ enum Heard {
 
 impl Device {
     /// For another client.
-    fn another(&self) -> Option<Device> {
-        let simulated = self.simulated.another()?;
+    fn another(&self, peer: SocketAddr) -> Option<Device> {
+        let address = match peer {
+            SocketAddr::V4(peer) => *peer.ip(),
+            SocketAddr::V6(peer) => peer.ip().to_ipv4_mapped().unwrap_or(Ipv4Addr::UNSPECIFIED),
+        };
+        let simulated = self.simulated.another(address)?;
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
@@ -100,6 +120,9 @@ impl Device {
             let reply = self.simulated.poll(self.clock.now());
             if !reply.is_empty() {
                 client.write(&reply)?;
+            }
+            if self.simulated.has_ended() {
+                return Ok(());
             }
         }
         Ok(())
@@ -180,24 +203,41 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
             "{address}: cannot listen there: {error}. Give an address of this machine, as 127.0.0.1:4001."
         )]),
     };
-    let listener = TcpListener::bind(address).map_err(cannot)?;
+    let (listener, packets) = match device.simulated.datagrams() {
+        Some(own) => {
+            let (listener, socket, at) = datagrams::bind(address).map_err(cannot)?;
+            device.simulated.listens(at);
+            (listener, Some(datagrams::Served::new(socket, own, device.clock.clone())))
+        }
+        None => (TcpListener::bind(address).map_err(cannot)?, None),
+    };
     listener.set_nonblocking(true).map_err(cannot)?;
-    device.ready(&listener.local_addr().map_err(cannot)?.to_string())?;
     // Leaves when all clients have been left.
     std::thread::scope(|scope| {
+        let begun = packets
+            .iter()
+            .try_for_each(|packets| packets.start(scope, ended))
+            .and_then(|()| listener.local_addr())
+            .map_err(cannot)
+            .and_then(|at| device.ready(&at.to_string()));
+        // Nobody is left waiting for the end of a program that has not begun.
+        begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
-            match (listener.accept(), device.another()) {
-                (Ok((client, _)), None) => attend(device, client, ended),
-                (Ok((client, _)), Some(mut own)) => {
+            let Ok((client, peer)) = listener.accept() else {
+                std::thread::sleep(PATIENCE);
+                continue;
+            };
+            match device.another(peer) {
+                None => attend(device, client, ended),
+                Some(mut own) => {
                     let attended = move || attend(&mut own, client, ended);
                     // Where there is no thread for it, the client finds its connection closed.
                     let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
                 }
-                (Err(_), _) => std::thread::sleep(PATIENCE),
             }
         }
-    });
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Serves a client over TCP. One that cannot be served is gone; the next one may come.

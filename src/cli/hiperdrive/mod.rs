@@ -3,6 +3,7 @@
 mod decode;
 mod image;
 mod meaning;
+mod simulate;
 
 use super::kind::Kind;
 use super::{Failure, Result};
@@ -24,7 +25,7 @@ pub(super) const COMMANDS: Kind = Kind {
     act: |_, _, _| lacking("do"),
     decode: decode::decode,
     restore: |_, _, _, _| lacking("restore"),
-    simulated: |_| lacking("simulate"),
+    simulated: simulate::simulated,
     present: |_, _, _| lacking("reading from a link"),
     compare: |left, right| Ok(hiperdrive::compare(&left.clone().into_hiperdrive()?, &right.clone().into_hiperdrive()?)),
     other_device: |_, _| None,

@@ -1,5 +1,7 @@
 //! `simulate interbus`: the virtual gateway with its encoders, as a Modbus/TCP server.
 
+use std::net::Ipv4Addr;
+
 use crate::cli::args::Simulate;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -27,7 +29,7 @@ impl Simulated for Gateway {
     }
 
     /// A gateway has several masters at once.
-    fn another(&self) -> Option<Box<dyn Simulated>> {
+    fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection()))
     }
 }

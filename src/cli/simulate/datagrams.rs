@@ -1,0 +1,107 @@
+//! A virtual device that is reached over TCP and UDP at the same port. Packets go at their moments: they are slept for, not
+//! waited for with a socket's time-out, which comes only with the next tick of the system.
+
+use std::io::ErrorKind;
+use std::net::{SocketAddr, SocketAddrV4, TcpListener, ToSocketAddrs, UdpSocket};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::Scope;
+use std::time::Duration;
+
+use super::PATIENCE;
+use crate::link::{Clock, RealClock};
+use crate::sim::DatagramDevice;
+
+/// How long the sender sleeps at most: a packet is due no sooner behind the request that asks for it.
+const REST: Duration = Duration::from_millis(4);
+/// Ports that are tried where any will do.
+const TRIES: usize = 50;
+/// More than any packet has.
+const ROOM: usize = 2048;
+
+/// Both of a port, of IP version 4. Where the port is 0, one that is free for both.
+pub(super) fn bind(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
+    let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
+    for place in address.to_socket_addrs()? {
+        let SocketAddr::V4(place) = place else { continue };
+        let tries = if place.port() == 0 { TRIES } else { 1 };
+        for _ in 0..tries {
+            match both(place) {
+                Ok(bound) => return Ok(bound),
+                Err(error) => last = error,
+            }
+        }
+    }
+    Err(last)
+}
+
+fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
+    let listener = TcpListener::bind(place)?;
+    let at = SocketAddrV4::new(*place.ip(), listener.local_addr()?.port());
+    let socket = UdpSocket::bind(at)?;
+    socket.set_read_timeout(Some(PATIENCE))?;
+    Ok((listener, socket, at))
+}
+
+/// The datagrams of a device in real time.
+pub(super) struct Served {
+    socket: UdpSocket,
+    /// Held from taking packets until they are sent, so that none overtakes another.
+    device: Mutex<Box<dyn DatagramDevice>>,
+    clock: Arc<RealClock>,
+}
+
+impl Served {
+    pub(super) fn new(socket: UdpSocket, device: Box<dyn DatagramDevice>, clock: Arc<RealClock>) -> Self {
+        Served { socket, device: Mutex::new(device), clock }
+    }
+
+    /// Takes and sends packets until the program is interrupted.
+    ///
+    /// # Errors
+    /// Where there are no threads.
+    pub(super) fn start<'scope>(
+        &'scope self,
+        scope: &'scope Scope<'scope, '_>,
+        ended: &'scope AtomicBool,
+    ) -> std::io::Result<()> {
+        let named = |name: &str| std::thread::Builder::new().name(name.to_owned());
+        named("datagrams in").spawn_scoped(scope, move || self.receive(ended))?;
+        named("datagrams out").spawn_scoped(scope, move || self.send(ended))?;
+        Ok(())
+    }
+
+    fn receive(&self, ended: &AtomicBool) {
+        let mut buffer = [0; ROOM];
+        while !ended.load(Ordering::SeqCst) {
+            match self.socket.recv_from(&mut buffer) {
+                Ok((count, SocketAddr::V4(from))) => {
+                    let packet = buffer.get(..count).unwrap_or_default();
+                    self.pump(|device, clock| device.on_datagram(clock.now(), from, packet));
+                }
+                Ok(_) => {}
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                // Some systems tell here that a packet sent earlier had no receiver.
+                Err(_) => std::thread::sleep(Duration::from_millis(1)),
+            }
+        }
+    }
+
+    fn send(&self, ended: &AtomicBool) {
+        while !ended.load(Ordering::SeqCst) {
+            let next = self.pump(|_, _| ());
+            std::thread::sleep(next.min(REST));
+        }
+    }
+
+    /// Does something to the device, sends what is due, and says how long nothing more is.
+    fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
+        let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
+        work(&mut **device, &self.clock);
+        for (to, packet) in device.poll_datagrams(self.clock.now()) {
+            // What cannot be sent is lost, as on any network.
+            let _ = self.socket.send_to(&packet, to);
+        }
+        device.poll_datagrams_at().map_or(REST, |next| next.since(self.clock.now()))
+    }
+}
