@@ -10,7 +10,7 @@ use super::{ByteDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
 
 /// What is on its way, by the moment that counts for it; of the same moment, as it was put in.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Queue<T>(VecDeque<(Moment, T)>);
 
 impl<T> Default for Queue<T> {

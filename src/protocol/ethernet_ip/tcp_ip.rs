@@ -4,8 +4,8 @@ use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, ascii, text};
 
-/// Attribute 3. Bits that are not known are kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Attribute 3; 0 by default, which is what is stored. Bits that are not known are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ConfigurationControl(u32);
 
 /// Its bits 3 to 0.

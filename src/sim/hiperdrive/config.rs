@@ -26,7 +26,7 @@ pub struct Config {
     pub(super) serial_number: u16,
     pub(super) name: String,
     pub(super) order: ByteOrder,
-    pub(super) short_texts: bool,
+    pub(super) counted_texts: bool,
     pub(super) seed: u64,
     pub(super) faults: Faults,
 }
@@ -49,7 +49,7 @@ impl Default for Config {
             serial_number: 4711,
             name: "HIPERDRIVE".to_owned(),
             order: ByteOrder::Little,
-            short_texts: false,
+            counted_texts: false,
             seed: 0,
             faults: Faults::default(),
         }
@@ -164,7 +164,7 @@ impl Config {
                 self.order = setting.one_of(&orders, "little or big")?;
             }
             "text" => {
-                self.short_texts = setting.one_of(&[("plain", false), ("counted", true)], "plain or counted")?;
+                self.counted_texts = setting.one_of(&[("plain", false), ("counted", true)], "plain or counted")?;
             }
             "seed" => self.seed = setting.number("a whole number")?,
             "fault" => self.faults = setting.value.parse()?,

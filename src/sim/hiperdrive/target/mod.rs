@@ -1,22 +1,50 @@
-//! An EtherNet/IP target in front of a station: TCP connections and the datagrams of all of them, with their faults.
+//! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
+//!
+//! Chosen here (`U`): a session ends with its TCP connection, a cyclic connection does not: it lives by its own time-out, as
+//! its packets tell that the master lives. A stream that is no frames, and UnRegisterSession, end the TCP connection. What
+//! lost its supply answers again when somebody connects anew.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `plant` | what all connections have in common: time, sessions, faults |
+//! | `frames` | a frame and its reply |
+//! | `objects` | identity, parameters, what CIP asks of them |
+//! | `network` | the TCP/IP and Ethernet objects |
+//! | `connections` | the connection manager: who opens and closes what |
+//! | `cyclic` | the cyclic connection, packet by packet |
+
+mod connections;
+mod cyclic;
+mod frames;
+mod network;
+mod objects;
+mod plant;
+#[cfg(test)]
+mod tests;
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::config::Config;
 use super::station::Station;
-use crate::sim::{ByteDevice, DatagramDevice};
+use crate::protocol::ethernet_ip::Receiver;
+use crate::sim::line::Queue;
+use crate::sim::{ByteDevice, DatagramDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
+use plant::{Originator, Plant};
 
-/// A TCP connection to a virtual adapter or hub, and all its datagrams. Made of a [`Config`];
+/// A TCP connection to a virtual adapter or hub, and the datagrams of all of them. Made of a [`Config`];
 /// [`connection`](Self::connection) gives another originator's, and so does a clone.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<Plant>>,
-    peer: Ipv4Addr,
+    originator: Originator,
+    receiver: Receiver,
+    to_host: Queue<Vec<u8>>,
+    ended: bool,
 }
 
-/// What has come and gone so far.
+/// What has come so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
     /// Whole frames over TCP.
@@ -33,23 +61,20 @@ pub struct Figures {
     pub foreign: u64,
 }
 
-/// What all connections have in common.
-#[derive(Debug)]
-struct Plant {
-    station: Station,
-    figures: Figures,
-}
-
 impl Target {
     /// The virtual device as `config` wants it.
     pub fn new(config: &Config) -> Self {
-        let plant = Plant { station: Station::of(config), figures: Figures::default() };
-        Target { shared: Arc::new(Mutex::new(plant)), peer: Ipv4Addr::LOCALHOST }
+        Target::to(Arc::new(Mutex::new(Plant::new(config))), Ipv4Addr::LOCALHOST)
     }
 
-    /// Another originator's connection to the same device.
+    /// The connection of another originator, who has this address, to the same device.
     pub fn connection(&self, peer: Ipv4Addr) -> Self {
-        Target { shared: self.shared.clone(), peer }
+        Target::to(self.shared.clone(), peer)
+    }
+
+    fn to(shared: Arc<Mutex<Plant>>, peer: Ipv4Addr) -> Self {
+        let originator = lock(&shared).originator(peer);
+        Target { shared, originator, receiver: Receiver::default(), to_host: Queue::default(), ended: false }
     }
 
     /// Looks at the station, or does something to it that no bus can.
@@ -57,48 +82,108 @@ impl Target {
         work(&mut self.lock().station)
     }
 
-    /// What has come and gone so far.
+    /// The supply goes and comes back: sessions and connections are gone, and what was not saved.
+    pub fn power_cycle(&self) {
+        self.lock().power_cycle();
+    }
+
+    /// Where it is reached, over TCP and over UDP: what it says when it is asked, and where it wants cyclic data.
+    pub fn listen(&self, at: SocketAddrV4) {
+        let mut plant = self.lock();
+        (plant.listens, plant.udp) = (at, at.port());
+    }
+
+    /// Other faults from now on: a cable that was mended, or one that breaks only now. Frames and saves are counted on.
+    pub fn set_faults(&self, faults: &Faults) {
+        self.lock().set_faults(faults);
+    }
+
+    /// What has come so far.
     pub fn figures(&self) -> Figures {
         self.lock().figures
     }
 
-    fn lock(&self) -> MutexGuard<'_, Plant> {
-        // A virtual device left behind by a panicking test is still a device.
-        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    /// It has closed this TCP connection.
+    pub const fn has_ended(&self) -> bool {
+        self.ended
     }
+
+    fn lock(&self) -> MutexGuard<'_, Plant> {
+        lock(&self.shared)
+    }
+}
+
+fn lock(shared: &Mutex<Plant>) -> MutexGuard<'_, Plant> {
+    // A virtual device left behind by a panicking test is still a device.
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Clone for Target {
     fn clone(&self) -> Self {
-        self.connection(self.peer)
+        self.connection(self.originator.address)
+    }
+}
+
+impl Drop for Target {
+    fn drop(&mut self) {
+        let originator = self.originator;
+        self.lock().leave(originator);
     }
 }
 
 impl ByteDevice for Target {
-    fn on_bytes(&mut self, _now: Moment, _bytes: &[u8]) {}
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
+        self.receiver.push(bytes);
+        while !self.ended {
+            let mut plant = lock(&self.shared);
+            match self.receiver.next_frame() {
+                Ok(Some(frame)) => {
+                    let reply = plant.take(now, self.originator, &frame);
+                    self.ended = !plant.keeps(&frame);
+                    drop(plant);
+                    reply.into_iter().for_each(|(at, bytes)| self.to_host.insert(at, bytes));
+                }
+                Ok(None) => break,
+                Err(_) => {
+                    plant.figures.broken += 1;
+                    plant.leave(self.originator);
+                    self.ended = true;
+                }
+            }
+        }
+    }
 
-    fn poll(&mut self, _now: Moment) -> Vec<u8> {
-        Vec::new()
+    fn poll(&mut self, now: Moment) -> Vec<u8> {
+        self.lock().advance(now);
+        std::iter::from_fn(|| self.to_host.pop_until(now)).flatten().collect()
     }
 
     fn poll_at(&self) -> Option<Moment> {
-        None
+        self.to_host.due()
     }
 
     /// There is no serial line.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
-    fn connect(&mut self, _now: Moment) {}
+    fn connect(&mut self, now: Moment) {
+        (self.receiver, self.to_host, self.ended) = (Receiver::default(), Queue::default(), false);
+        let originator = self.originator;
+        let mut plant = self.lock();
+        plant.leave(originator);
+        plant.supply(now);
+    }
 }
 
 impl DatagramDevice for Target {
-    fn on_datagram(&mut self, _now: Moment, _from: SocketAddrV4, _packet: &[u8]) {}
+    fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
+        self.lock().on_datagram(now, from, packet);
+    }
 
-    fn poll_datagrams(&mut self, _now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)> {
-        Vec::new()
+    fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)> {
+        self.lock().poll_datagrams(now)
     }
 
     fn poll_datagrams_at(&self) -> Option<Moment> {
-        None
+        self.lock().poll_datagrams_at()
     }
 }

@@ -1,0 +1,151 @@
+//! A frame and its reply: sessions, lists, and what carries CIP messages.
+
+use std::net::SocketAddrV4;
+
+use super::plant::{Originator, Plant};
+use crate::protocol::ethernet_ip::{
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, Items, Reply, Request, Service,
+    SocketAddress,
+};
+
+/// The only service of encapsulation: CIP over TCP, and cyclic data over UDP. Item 0100h: version, capability, name.
+const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
+/// Attribute 8 of the identity object: operational.
+const OPERATIONAL: u8 = 3;
+/// A segment of the path that is not understood.
+const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
+
+type Refusal = EncapsulationStatus;
+
+impl Plant {
+    /// The reply to a frame, where there is one.
+    pub(super) fn answer(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
+        // So ODVA: options that are not known make a frame void, and so does the status of a reply.
+        if frame.options != 0 || frame.status != EncapsulationStatus::OK {
+            return None;
+        }
+        let body = match frame.command {
+            Command::NOP => return None,
+            Command::UNREGISTER_SESSION => {
+                if self.sessions.get(&frame.session) == Some(&from) {
+                    self.end(frame.session);
+                }
+                return None;
+            }
+            Command::REGISTER_SESSION => return Some(self.register(from, frame)),
+            Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES => Ok(self.list(frame.command)),
+            Command::SEND_RR_DATA => self.unconnected(from, frame),
+            Command::SEND_UNIT_DATA => self.connected(from, frame).transpose()?,
+            _ => Err(EncapsulationStatus::UNSUPPORTED),
+        };
+        Some(match body {
+            Ok(body) => frame.reply(&body),
+            Err(status) => frame.refusal(status),
+        })
+    }
+
+    /// A frame that came in a datagram: only who is there can be asked so.
+    pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
+        let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
+        if asked && frame.options == 0 {
+            let reply = frame.reply(&self.list(frame.command));
+            self.send(self.now, from, reply.emit());
+        }
+        asked
+    }
+
+    fn register(&mut self, from: Originator, frame: &Frame) -> Frame {
+        let status = match frame.body() {
+            Ok(Body::Register { version: Frame::VERSION, options: 0 }) => None,
+            Ok(Body::Register { version: Frame::VERSION, .. }) => Some(EncapsulationStatus::UNSUPPORTED),
+            Ok(Body::Register { .. }) => Some(EncapsulationStatus::VERSION),
+            _ => Some(EncapsulationStatus::MALFORMED),
+        };
+        // A TCP connection has one session.
+        let has_one = self.sessions.values().any(|whose| *whose == from);
+        if let Some(status) = status.or(has_one.then_some(EncapsulationStatus::UNSUPPORTED)) {
+            return frame.refusal(status);
+        }
+        let session = loop {
+            let session = self.rng.u32(1..);
+            if !self.sessions.contains_key(&session) {
+                break session;
+            }
+        };
+        self.sessions.insert(session, from);
+        Frame { session, ..frame.reply(&Body::Register { version: Frame::VERSION, options: 0 }) }
+    }
+
+    fn list(&mut self, command: Command) -> Body {
+        let items = match command {
+            Command::LIST_IDENTITY => vec![Item::Identity(IdentityItem {
+                version: Frame::VERSION,
+                socket: SocketAddress::new(*self.listens.ip(), self.listens.port()),
+                identity: self.identity(),
+                state: OPERATIONAL,
+            })],
+            Command::LIST_SERVICES => vec![Item::Unknown { kind: SERVICES.0, data: SERVICES.1.to_vec() }],
+            _ => Vec::new(),
+        };
+        Body::List(Items(items))
+    }
+
+    /// The items of a frame in its own session.
+    fn items(&self, from: Originator, frame: &Frame) -> Result<Items, Refusal> {
+        if self.sessions.get(&frame.session) != Some(&from) {
+            return Err(EncapsulationStatus::NO_SESSION);
+        }
+        match frame.body() {
+            Ok(Body::Data { interface: 0, items, .. }) => Ok(items),
+            _ => Err(EncapsulationStatus::MALFORMED),
+        }
+    }
+
+    /// SendRRData.
+    fn unconnected(&mut self, from: Originator, frame: &Frame) -> Result<Body, Refusal> {
+        let items = self.items(from, frame)?;
+        let (Some(Item::Null), Some(message)) = (items.0.first(), items.unconnected_data()) else {
+            return Err(EncapsulationStatus::MALFORMED);
+        };
+        let (reply, sockets) = self.message((from, frame.session), message, &items)?;
+        let items = [Item::Null, Item::UnconnectedData(reply.emit())].into_iter().chain(sockets).collect();
+        Ok(Body::Data { interface: 0, timeout_s: 0, items: Items(items) })
+    }
+
+    /// SendUnitData; nothing for a connection that there is not.
+    fn connected(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
+        let items = self.items(from, frame)?;
+        let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
+            return Err(EncapsulationStatus::MALFORMED);
+        };
+        let Some(to_originator) = self.connections.message(*connection, frame.session, self.now) else {
+            return Ok(None);
+        };
+        let (count, message) = data.split_first_chunk::<2>().ok_or(EncapsulationStatus::MALFORMED)?;
+        let (reply, _) = self.message((from, frame.session), message, &items)?;
+        let data = [&count[..], &reply.emit()].concat();
+        let items = Items(vec![Item::ConnectedAddress(to_originator), Item::ConnectedData(data)]);
+        Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
+    }
+
+    /// A CIP message; with its reply the sockets that are to be known beside it.
+    fn message(
+        &mut self,
+        from: (Originator, u32),
+        message: &[u8],
+        items: &Items,
+    ) -> Result<(Reply, Vec<Item>), Refusal> {
+        match Request::parse(message) {
+            Ok(request) if request.class() == Some(Request::CONNECTION_MANAGER) => {
+                Ok(self.manage(from, &request, items))
+            }
+            Ok(request) => Ok((self.object(&request), Vec::new())),
+            Err(_) => {
+                let service = message.first().and_then(|code| Service::new(*code));
+                let service = service.ok_or(EncapsulationStatus::MALFORMED)?;
+                let reply = Reply { service, status: PATH_SEGMENT, extended: Vec::new(), data: Vec::new() };
+                Ok((reply, Vec::new()))
+            }
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The cyclic connection (reference 7 and 9).
+
+use super::*;
+
+/// Reference 9: ForwardOpen, packets both ways, ForwardClose.
+#[test]
+fn the_published_connection() {
+    let mut host = Host::new("position=163840");
+    // The socket: family 2, port 2222, no address.
+    host.asks(OPEN, &format!("{OPENED} 00 80 10 00 00 02 08 AE 00 00 00 00 00 00 00 00 00 00 00 00"));
+    let ours = bytes(
+        "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 00 00 00 00 00 00",
+    );
+    let theirs =
+        "02 00 02 80 08 00 01 00 01 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 00 00 00 00 00 00 00 00";
+    // The reply took a while; an interval after the opening there is the first packet.
+    host.wait(4);
+    assert_eq!(host.datagrams(), []);
+    host.wait(1);
+    let (to, first) = host.datagrams().pop().unwrap();
+    assert_eq!(to, SocketAddrV4::new(PEER, 2222));
+    assert_eq!(first, theirs.replace("37 2A", "30 2A"));
+    let next = host.words(1, &[0x0000, 0x0400, 0x0401, 0x0409]);
+    let mut packet = ours.clone();
+    packet[10..14].copy_from_slice(&next.to_le_bytes());
+    host.target.on_datagram(host.now, FROM, &packet);
+    host.wait(10);
+    let (_, last) = host.datagrams().pop().unwrap();
+    // The fourteenth: 13 · 10 ms after the first.
+    assert_eq!(
+        last,
+        theirs
+            .replace("01 00 01 00 01 00 00 00 B1", "01 00 01 00 0E 00 00 00 B1")
+            .replace("12 00 01 00", "12 00 0E 00")
+    );
+    assert_eq!(host.target.figures().packets, 13);
+    host.asks(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
+    host.asks(CLOSE, "CE 00 01 01 07 01 01 00 34 12 CD AB 00 00 00 00");
+    host.datagrams();
+    host.wait(50);
+    assert_eq!(host.datagrams(), []);
+}
+
+/// The published request with other bytes in it.
+fn open_with(changes: &[(&str, &str)]) -> String {
+    changes.iter().fold(OPEN.to_owned(), |text, (from, to)| {
+        assert_eq!(text.matches(from).count(), 1, "{from}");
+        text.replace(from, to)
+    })
+}
+
+#[test]
+fn what_is_no_connection_of_this_device_is_refused_by_its_status() {
+    let refused = |extended: &str| format!("D4 00 01 01 {extended} 01 00 34 12 CD AB 00 00 00 00");
+    let assemblies = "04 20 04 24 68 2C 64 2C 65";
+    for (label, changes, extended) in [
+        ("other assemblies", &[("2C 65", "2C 66")][..], "17 01"),
+        ("configuration 103", &[("24 68", "24 67")], "17 01"),
+        ("class 5", &[("20 04", "20 05")], "17 01"),
+        ("configuration data", &[(assemblies, "06 20 04 24 68 2C 64 2C 65 80 01 01 00")], "15 03"),
+        ("to the target without parameter words", &[("16 48", "0E 48")], "28 01"),
+        ("of a hub", &[("16 48", "2E 48")], "27 01"),
+        ("back of a hub", &[("12 48", "2A 48")], "28 01"),
+        ("5 bytes", &[("16 48", "05 48")], "27 01"),
+        ("4999 us to the target", &[("10 27 00 00 16 48", "87 13 00 00 16 48")], "11 01"),
+        ("100.001 ms back", &[("10 27 00 00 12 48", "A1 86 01 00 12 48")], "11 01"),
+        ("multicast", &[("12 48", "12 28")], "08 01"),
+        ("several owners", &[("16 48", "16 C8")], "08 01"),
+        ("class 0", &[("12 48 01", "12 48 00")], "03 01"),
+        ("change of state", &[("12 48 01", "12 48 11")], "03 01"),
+        ("another maker", &[(assemblies, "09 34 04 01 00 0C 00 01 00 01 02 20 04 24 68 2C 64 2C 65")], "14 01"),
+        ("another type", &[(assemblies, "09 34 04 F2 03 0D 00 00 00 00 00 20 04 24 68 2C 64 2C 65")], "15 01"),
+        ("revision 2", &[(assemblies, "09 34 04 F2 03 0C 00 01 00 02 00 20 04 24 68 2C 64 2C 65")], "16 01"),
+        ("revision 1.3", &[(assemblies, "09 34 04 F2 03 0C 00 01 00 81 03 20 04 24 68 2C 64 2C 65")], "16 01"),
+    ] {
+        let mut host = Host::new("");
+        assert_eq!(host.open(&open_with(changes)), refused(extended), "{label}");
+        assert_eq!(host.open(OPEN), OPENED, "{label}");
+    }
+    let mut host = Host::new("");
+    host.asks(&OPEN.replace("CD AB 00 00 01 00 00 00", "CD AB 00 00 08 00 00 00"), "D4 00 09 00");
+    host.asks(&OPEN[..OPEN.len() - 3], "D4 00 13 00");
+    host.asks(&format!("{OPEN} 00"), "D4 00 15 00");
+}
+
+#[test]
+fn what_fits_is_taken() {
+    for (label, query, changes) in [
+        ("5 ms", "", &[("10 27 00 00 16 48", "88 13 00 00 16 48")][..]),
+        ("100 ms", "", &[("10 27 00 00 16 48", "A0 86 01 00 16 48"), ("10 27 00 00 12 48", "A0 86 01 00 12 48")]),
+        ("without parameter words", "", &[("16 48", "0E 48"), ("12 48", "0A 48")]),
+        // 8 · 5 + 6 = 46, + 2 = 42; 8 · 9 + 6 = 78, + 2 = 74; without words 8 less.
+        ("a hub of four", "hub=4", &[("16 48", "2E 48"), ("12 48", "2A 48")]),
+        ("a hub of eight", "hub=8", &[("16 48", "4E 48"), ("12 48", "4A 48")]),
+        ("that without words", "hub=8", &[("16 48", "46 48"), ("12 48", "42 48")]),
+        ("no configuration", "", &[("04 20 04 24 68 2C", "03 20 04 2C")]),
+        ("a key", "", &[("04 20 04 24 68", "09 34 04 F2 03 0C 00 01 00 81 02 20 04 24 68")]),
+        ("a key of zeros", "", &[("04 20 04 24 68", "09 34 04 00 00 00 00 00 00 00 00 20 04 24 68")]),
+    ] {
+        let mut host = Host::new(query);
+        let reply = host.open(&open_with(changes));
+        assert!(reply.starts_with("D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12"), "{label}: {reply}");
+    }
+}
+
+/// There is one master.
+#[test]
+fn a_second_master_is_refused() {
+    let mut host = Host::opened("");
+    assert_eq!(host.open(OPEN), "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00");
+    let other = OPEN.replace("34 12 CD AB", "34 12 CE AB");
+    let mut second = Host { target: host.target.connection(Ipv4Addr::new(10, 0, 0, 8)), now: host.now, session: 0 };
+    second.register();
+    assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
+    second.asks(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
+    // 80 ms without a packet, and the first is gone.
+    second.wait(80);
+    assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
+}
+
+/// Where packets go to is what the originator said.
+#[test]
+fn cyclic_data_go_where_they_are_wanted() {
+    for (socket, expected) in [
+        ("01 80 10 00 00 02 9C 41 00 00 00 00 00 00 00 00 00 00 00 00", SocketAddrV4::new(PEER, 40001)),
+        ("01 80 10 00 00 02 9C 41 0A 00 00 63 00 00 00 00 00 00 00 00", "10.0.0.99:40001".parse().unwrap()),
+    ] {
+        let mut host = Host::new("");
+        let mut data = unconnected(&bytes(OPEN));
+        data[6] = 3;
+        data.extend(bytes(socket));
+        let (status, _) = host.frame(0x6F, &data).unwrap();
+        host.wait(10);
+        let to: Vec<SocketAddrV4> = host.datagrams().into_iter().map(|(to, _)| to).collect();
+        assert_eq!((status, to), (0, vec![expected]));
+    }
+}
+
+#[test]
+fn only_packets_that_are_in_their_turn_count() {
+    let mut host = Host::opened("");
+    let next = host.words(1, &[0x0400]);
+    assert_eq!(host.status(), Some(0x2A31));
+    // The same again, an older one, and one before the first.
+    for sequence in [next - 1, next - 2, 0] {
+        host.word(sequence, 0x0401);
+    }
+    // Another connection; too short and too long; no packet; cut off anywhere.
+    host.packet_of(0x0002_0002, next, 1, &[0; 16]);
+    host.packet(next, 1, &[1; 15]);
+    host.packet(next, 1, &[1; 17]);
+    let whole = bytes(
+        "02 00 02 80 08 00 01 00 02 00 09 00 00 00 B1 00 16 00 01 00 01 00 00 00 01 04 64 64 00 80 02 00 00 00 00 00 00 00 00 00",
+    );
+    for length in 0..whole.len() {
+        host.target.on_datagram(host.now, FROM, &whole[..length]);
+    }
+    host.wait(10);
+    assert_eq!(host.status(), Some(0x2A31));
+    let figures = host.target.figures();
+    assert_eq!((figures.packets, figures.stale, figures.foreign, figures.malformed), (3, 3, 1, 42));
+    // One that was lost is no trouble.
+    host.word(next + 5, 0x0401);
+    host.wait(10);
+    assert_eq!(host.status(), Some(0x2A33));
+}
+
+/// An idle header stands for control words of 0.
+#[test]
+fn idle_data_do_not_count() {
+    let mut host = Host::opened("");
+    let next = host.words(1, &[0x0400, 0x0401]);
+    assert_eq!(host.status(), Some(0x2A33));
+    host.packet(next, 0, &[1, 4, 100, 100, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    host.wait(10);
+    assert_eq!(host.status(), Some(0x2A30));
+}
+
+/// Reference 7: four intervals times two. The drive fails and stands; another connection finds it so.
+#[test]
+fn a_silent_master_is_lost_at_its_time_out() {
+    let mut host = Host::opened("");
+    host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
+    host.wait(60);
+    assert_eq!(host.status().map(|status| status & 0x2000), Some(0), "it moves");
+    // 80 ms after the last packet, which was sent 70 ms ago.
+    host.wait(9);
+    assert!(!host.datagrams().is_empty());
+    host.wait(1);
+    host.wait(200);
+    let stopped = host.items("0E 03 20 65 24 01 30 6B");
+    assert_eq!(host.datagrams(), []);
+    host.wait(1000);
+    host.asks("0E 03 20 65 24 01 30 6B", &stopped);
+    // Not at its target, with fault 8601.
+    assert_ne!(stopped, "8E 00 00 00 00 80 02 00");
+    host.asks("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 86");
+    assert_eq!(host.open(OPEN), OPENED.replace("01 00 02 00 01", "02 00 02 00 01"));
+}
+
+/// A TCP connection that ends takes its session along, and leaves the cyclic connection to its time-out.
+#[test]
+fn a_cyclic_connection_outlives_its_tcp_connection() {
+    let mut host = Host::opened("");
+    let other = host.target.connection(PEER);
+    let session = host.session;
+    let now = host.now;
+    drop(std::mem::replace(&mut host, Host { target: other, now, session }));
+    assert_eq!(host.frame(0x6F, &unconnected(&bytes(CLOSE))).map(|(status, _)| status), Some(0x64));
+    host.words(1, &[0x0400, 0x0401]);
+    assert_eq!(host.status(), Some(0x2A33));
+    host.register();
+    host.asks(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
+}
+
+/// Reference 2: 2.5 turns, the high byte of every number first.
+#[test]
+fn the_order_of_bytes_is_the_one_asked_for() {
+    let mut host = Host::opened("order=big&position=163840");
+    host.packet(1, 1, &bytes("04 00 64 64 00 02 80 00 00 00 00 00 00 00 00 00"));
+    host.wait(10);
+    let (_, packet) = host.datagrams().pop().unwrap();
+    assert!(packet.ends_with("2A 31 00 00 00 02 80 00 00 00 00 00 00 00 00 00"), "{packet}");
+}
+
+/// Reference 9: read 166.
+#[test]
+fn parameter_words_are_answered_with_process_data() {
+    let mut host = Host::opened("");
+    host.packet(1, 1, &bytes("00 00 64 64 00 00 00 00 A6 10 00 00 00 00 00 00"));
+    host.wait(10);
+    let (_, packet) = host.datagrams().pop().unwrap();
+    assert!(packet.ends_with("A6 10 00 00 5E 01 00 00"), "{packet}");
+}
