@@ -1,5 +1,6 @@
 //! What can be written on the command line.
 
+mod act;
 mod analyse;
 mod decode;
 mod ssi;
@@ -10,11 +11,11 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(super) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
 pub(super) use decode::{Decode, Direction, Protocol, Words};
 pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
 
-use super::Failure;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
@@ -34,10 +35,10 @@ pub(super) struct Arguments {
 
 /// Which commands are for which kinds of device.
 const KINDS: &str = "\
-Kinds of device: hiperface, biss, ssi and interbus; diff, verify and restore find it in the profile. find is for hiperface
-alone; do has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout says how its
-frame is made, and ssi explains frames offline. Reading an INTERBUS encoder replaces its position for a moment. Of hiperdrive
-there is decode alone. Without hardware: --link sim:, as in
+Kinds of device: hiperface, biss, ssi, interbus and hiperdrive; diff, verify and restore find it in the profile. find is for
+hiperface and hiperdrive; do has other actions for each (help do). An SSI encoder sends its position and nothing else: --layout
+says how its frame is made, and ssi explains frames offline. Reading an INTERBUS encoder replaces its position for a moment.
+Without hardware: --link sim:, as in
 
   encoder-studio identify biss --link sim:
 
@@ -45,8 +46,8 @@ An address or a register is hexadecimal with 0x in front, else decimal.";
 
 #[derive(Args)]
 pub(super) struct Common {
-    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, bridge:PATH, bridge:tcp:HOST:PORT or
-    /// replay:FILE, with ?name=value&…
+    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
+    /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
     #[arg(long, global = true, value_name = "URL")]
     pub(super) link: Option<LinkUrl>,
     /// Print JSON.
@@ -65,7 +66,7 @@ pub(super) struct Common {
 pub(super) enum Command {
     /// Serial ports on this machine.
     Ports,
-    /// hiperface: every address, speed and parity that answers.
+    /// hiperface: every address, speed and parity that answers; hiperdrive: every adapter and hub in the network.
     Find(Find),
     /// Who is there.
     Identify(Device),
@@ -85,7 +86,7 @@ pub(super) enum Command {
     Restore(Restore),
     /// Write one value.
     Write(Write),
-    /// An action: hiperface restart, check, data fields …; biss calibrate, filter, preset … (help do lists them).
+    /// An action: hiperface restart, check, data fields …; biss calibrate, filter …; hiperdrive save … (help do lists them).
     Do(Do),
     /// Explain captured bytes, offline.
     Decode(Decode),
@@ -114,21 +115,26 @@ pub(super) enum DeviceKind {
     Ssi,
     /// INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); words of K1 and K2 are explained offline (decode).
     Interbus,
-    /// HIPERDRIVE with EtherNet/IP; its words and packets are explained offline (decode), and it is not reached over a link.
+    /// HIPERDRIVE with EtherNet/IP (enip:), one behind an adapter or up to eight behind a hub.
     Hiperdrive,
 }
 
 #[derive(Args)]
 pub(super) struct Find {
     /// The kind of device: an encoder of another kind has no address and one speed.
-    #[arg(value_parser = PossibleValuesParser::new(["hiperface"]).map(|_| DeviceKind::Hiperface))]
+    #[arg(value_parser = PossibleValuesParser::new(["hiperface", "hiperdrive"]).map(|word| found(&word)))]
     pub(super) device: DeviceKind,
-    /// Exactly one encoder is connected: also ask by broadcast.
+    /// hiperface: exactly one encoder is connected: also ask by broadcast.
     #[arg(long)]
     pub(super) one_encoder: bool,
-    /// Wait so long for the encoder to be switched off and on, and ask within its default window.
+    /// hiperface: wait so long for the encoder to be switched off and on, and ask within its default window.
     #[arg(long, value_name = "SECONDS")]
     pub(super) power_cycle: Option<u64>,
+}
+
+/// The kind of a word that there is.
+fn found(word: &str) -> DeviceKind {
+    if word == "hiperdrive" { DeviceKind::Hiperdrive } else { DeviceKind::Hiperface }
 }
 
 #[derive(Args)]
@@ -156,6 +162,15 @@ pub(super) struct Position {
     /// Time between two readings in milliseconds; 0: as fast as the line allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
+    #[command(flatten)]
+    pub(super) of: OfDrive,
+}
+
+#[derive(Args)]
+pub(super) struct OfDrive {
+    /// hiperdrive: which drive of a hub, 1 to 8; without it the first, or the one that a parameter's number names.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub(super) drive: Option<u8>,
 }
 
 #[derive(Args)]
@@ -172,7 +187,11 @@ pub(super) struct Read {
     ///
     /// interbus: steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7),
     /// cam-mask:P, temperature, operating-time.
+    ///
+    /// hiperdrive: a parameter's number: 17, 158; of another drive of a hub 158 with --drive 2, or 258.
     pub(super) item: String,
+    #[command(flatten)]
+    pub(super) of: OfDrive,
 }
 
 #[derive(Args)]
@@ -247,6 +266,9 @@ pub(super) struct Write {
     /// writes (filter, preset, calibration) are changed with "do biss …".
     ///
     /// interbus: what read has but for what is measured; a preset is stored and not fired.
+    ///
+    /// hiperdrive: a parameter that can be written, as read has it; it is saved where it can be. 101 to 104 move a drive and are
+    /// never written; 47 and 198 are "do hiperdrive save", "set-position" and others.
     pub(super) item: String,
     /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT); interbus: cw or ccw for the
     /// direction, START..STOP for a cam.
@@ -254,101 +276,8 @@ pub(super) struct Write {
     pub(super) value: String,
     #[command(flatten)]
     pub(super) consent: Consenting,
-}
-
-#[derive(Args)]
-pub(super) struct Do {
-    /// The kind of device.
-    pub(super) device: DeviceKind,
-    /// What to do.
-    pub(super) action: Action,
-    /// What the action takes, as said there.
-    #[arg(allow_negative_numbers = true)]
-    pub(super) arguments: Vec<String>,
     #[command(flatten)]
-    pub(super) consent: Consenting,
-    /// hiperface set-position: exactly this value, also when it breaks the phase to the sine signal.
-    #[arg(long)]
-    pub(super) exact: bool,
-    /// hiperface synchronise: the encoder is a kit, where its type does not tell.
-    #[arg(long)]
-    pub(super) kit: bool,
-    /// biss: how long the motor may take to turn, or the shaft to rest, as an action needs it; 30 without a terminal, 300
-    /// on one.
-    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
-    pub(super) timeout: Option<u16>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Action {
-    /// hiperface: restart the encoder and read its status.
-    Reset,
-    // Two kinds of device have it.
-    #[value(
-        help = "hiperface: the start-up sequence with a verdict a line, with restart behind it after a restart; biss: identity, errors, position, data sheet, limits, wear with a verdict a line; interbus: gateway, word order, handshake, identity"
-    )]
-    Check,
-    /// hiperface: POSITION, the nearest value that keeps the phase to the sine signal.
-    SetPosition,
-    /// hiperface: POSITION, for kit encoders, aligns the code tracks as well.
-    Synchronise,
-    // Brackets in what rustdoc reads would be links.
-    #[value(help = "hiperface: NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1]")]
-    CreateField,
-    /// hiperface: NUMBER SIZE, the last field only.
-    ResizeField,
-    /// hiperface: NUMBER, write protect.
-    LockField,
-    /// hiperface: NUMBER, make writable.
-    UnlockField,
-    /// hiperface: NUMBER, the last field only.
-    DeleteField,
-    /// hiperface: NUMBER HEX, the present code is given with --code.
-    ChangeCode,
-    /// hiperface: counter + 1.
-    IncrementCounter,
-    /// hiperface: counter to 0.
-    ClearCounter,
-    /// hiperface: SETTINGS, interface settings until the next restart.
-    ConfigureForNow,
-    /// biss: calibrate the singleturn; the motor turns counterclockwise, then clockwise, at 500 ± 2 rpm.
-    Calibrate,
-    #[value(
-        help = "biss: [save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm"
-    )]
-    WiegandTest,
-    /// biss: balanced|dynamic.
-    Filter,
-    #[value(
-        help = "biss: [ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value; without a value the stored one; interbus: [POSITION], the same at standstill"
-    )]
-    Preset,
-    // Two kinds of device have it.
-    #[value(
-        help = "biss: back to operation and the password cleared, after a procedure was cut off; interbus: out of a parameterisation that was left, to run"
-    )]
-    LeadBack,
-    /// interbus: back to what was delivered; experimental, since only the manual's appendix has it.
-    Default,
-    #[value(
-        help = "biss: [calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant"
-    )]
-    Mounting,
-}
-
-/// The action as it is written.
-pub(super) fn action_name(action: Action) -> String {
-    action.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
-}
-
-/// An action that is for another kind of device.
-pub(super) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
-    Failure::Usage(format!("{} is not an action of {kind} devices; these are {known}", action_name(action)))
-}
-
-/// An option that is for another kind of device.
-pub(super) fn no_option(option: &str, kind: &str) -> Failure {
-    Failure::Usage(format!("{option} is not for {kind} devices"))
+    pub(super) of: OfDrive,
 }
 
 #[derive(Args)]

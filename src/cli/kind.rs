@@ -1,7 +1,7 @@
 //! What the command line does with a kind of device, one function a command. What a kind does not have is refused as
 //! wrong usage.
 
-use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Restore, Save, Simulate, Status, Write};
+use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result, biss, hiperdrive, hiperface, interbus, ssi};
@@ -15,7 +15,7 @@ pub(super) struct Kind {
     pub(super) identify: fn(&Common, &Output) -> Result,
     pub(super) status: fn(&Common, &Output, &Status) -> Result,
     pub(super) position: fn(&Common, &Output, &Position) -> Result,
-    pub(super) read: fn(&Common, &Output, &str) -> Result,
+    pub(super) read: fn(&Common, &Output, &Read) -> Result,
     pub(super) save: fn(&Common, &Output, &Save) -> Result,
     pub(super) write: fn(&Common, &Output, &Write) -> Result,
     pub(super) act: fn(&Common, &Output, &Do) -> Result,

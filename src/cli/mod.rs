@@ -26,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command, Common, DeviceKind, Protocol, Words};
+use args::{Arguments, Command, Common, DeviceKind, OfDrive, Protocol, Words};
 use output::Output;
 
 use crate::link::LinkUrl;
@@ -146,15 +146,28 @@ fn dispatch(common: &Common, command: Command) -> Result {
         }
         Command::Position(position) => {
             no_layout(position.layout.as_ref(), position.device)?;
+            no_drive(&position.of, position.device)?;
             (kind::of(position.device).position)(common, &output, &position)
         }
-        Command::Read(read) => (kind::of(read.device).read)(common, &output, &read.item),
+        Command::Read(read) => {
+            no_drive(&read.of, read.device)?;
+            (kind::of(read.device).read)(common, &output, &read)
+        }
         Command::Save(save) => {
             no_layout(save.layout.as_ref(), save.device)?;
             (kind::of(save.device).save)(common, &output, &save)
         }
-        Command::Write(write) => (kind::of(write.device).write)(common, &output, &write),
-        Command::Do(act) => (kind::of(act.device).act)(common, &output, &act),
+        Command::Write(write) => {
+            no_drive(&write.of, write.device)?;
+            (kind::of(write.device).write)(common, &output, &write)
+        }
+        Command::Do(act) => {
+            no_drive(&act.of, act.device)?;
+            if act.all && act.device != DeviceKind::Hiperdrive {
+                return Err(args::no_option("--all", kind::of(act.device).name));
+            }
+            (kind::of(act.device).act)(common, &output, &act)
+        }
         Command::Decode(decode) => {
             no_words(&decode.words, decode.protocol)?;
             match decode.protocol.device() {
@@ -178,6 +191,14 @@ fn dispatch(common: &Common, command: Command) -> Result {
 fn no_layout(layout: Option<&String>, device: DeviceKind) -> Result<()> {
     match layout {
         Some(_) if device != DeviceKind::Ssi => Err(usage("--layout is for ssi devices; others tell that themselves")),
+        _ => Ok(()),
+    }
+}
+
+/// Only behind a hub there are several.
+fn no_drive(of: &OfDrive, device: DeviceKind) -> Result<()> {
+    match of.drive {
+        Some(_) if device != DeviceKind::Hiperdrive => Err(args::no_option("--drive", kind::of(device).name)),
         _ => Ok(()),
     }
 }

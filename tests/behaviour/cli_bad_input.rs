@@ -53,7 +53,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
         ("length", edited("0E 0F\"", "0E\"").into(), &["fields[0].bytes", "15", "16"]),
         ("digit", edited("0E 0F\"", "0E 0G\"").into(), &["fields[0].bytes", "G"]),
         ("schema", edited("schema: 1", "schema: 99").into(), &["schema 99", "1"]),
-        ("device", edited("\"hiperface\"", "\"hiperdrive\"").into(), &["hiperdrive", "hiperface"]),
+        ("device", edited("\"hiperface\"", "\"sse\"").into(), &["sse", "hiperface"]),
         ("latin", [good.as_bytes(), b"// Gr\xFC\xDFe"].concat(), &["UTF-8"]),
     ];
     for (name, content, words) in cases {

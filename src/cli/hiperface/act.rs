@@ -51,16 +51,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (Action::ResizeField, _) => return Err(usage("NUMBER SIZE")),
         (Action::LockField | Action::UnlockField | Action::DeleteField, _) => return Err(usage("one field number")),
         (Action::ChangeCode, _) => return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX")),
-        (
-            other @ (Action::Calibrate
-            | Action::WiegandTest
-            | Action::Filter
-            | Action::Preset
-            | Action::LeadBack
-            | Action::Default
-            | Action::Mounting),
-            _,
-        ) => return Err(no_action(other, KIND, ACTIONS)),
+        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
     };
     change_and_show(common, output, change, &act.consent, &action_name(act.action))
 }

@@ -24,7 +24,7 @@ pub(super) const COMMANDS: Kind = Kind {
     identify: inspect::identify,
     status: |common, output, _| inspect::status(common, output),
     position: inspect::position,
-    read: inspect::read,
+    read: |common, output, read| inspect::read(common, output, &read.item),
     save: profiles::save,
     write: write::write,
     act: act::act,

@@ -1,3 +1,5 @@
+//! Orders of writing, refusals, warnings: against the rules of the manual, worked out by hand.
+
 use super::*;
 use crate::profile::hiperdrive::test_profiles::{drive, image, image_of, number};
 use crate::profile::hiperdrive::{Warning, warnings};

@@ -1,3 +1,5 @@
+//! What is restored, left alone and refused, and what differs.
+
 use super::*;
 use crate::profile::hiperdrive::test_profiles::{drive, identity, image, image_of, number, profile};
 use crate::profile::hiperdrive::{MountingMark, Op, Service, compare};
