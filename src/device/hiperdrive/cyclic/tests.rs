@@ -28,6 +28,7 @@ fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
         timeout: interval * 8,
         layout: Layout { topology, pkw, order },
         port: 2222,
+        group: None,
         close,
     }
 }
