@@ -25,6 +25,7 @@ mod cli_simulate;
 mod cli_ssi;
 mod cli_status;
 mod foreign;
+mod hiperdrive_foreign;
 mod hiperdrive_offline;
 mod interbus_bad_input;
 mod interbus_foreign;

@@ -112,6 +112,14 @@ impl Bench {
         Some(foreign)
     }
 
+    /// Starts a foreign EtherNet/IP target with HIPERDRIVE parameters.
+    pub(crate) fn target(&self, arguments: &[&str]) -> Option<Foreign> {
+        python("enip_target.py")?;
+        let mut foreign = self.foreign("enip_target.py", arguments).unwrap();
+        foreign.url = format!("enip:{}", foreign.place);
+        Some(foreign)
+    }
+
     fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.load(Ordering::SeqCst);
         let link = self.file(&format!("enc{number}"));

@@ -5,6 +5,7 @@
 mod biss;
 mod echo;
 mod find;
+mod hiperdrive;
 mod hiperdrive_motion;
 mod interbus;
 mod interruption;

@@ -1,0 +1,168 @@
+//! The host's side of EtherNet/IP against a target with HIPERDRIVE parameters that is not our program, with every trouble that
+//! it can make. What was set and saved is told by its own log.
+
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::{Asked, Error, Found, discover};
+use encoder_studio::link::{Cancel, RealClock, UdpShout};
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::hiperdrive::{Image, NetworkSettings, Service};
+use encoder_studio::protocol::ethernet_ip::AddressSource;
+use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Value, Variant};
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+use encoder_studio::worker::hiperdrive::{
+    Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
+};
+
+use super::support::{Bench, Foreign};
+
+fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Hiperdrive> {
+    let url = format!("{}{query}", foreign.url).parse().unwrap();
+    open(&url, Store::at(&bench.path("store"))).unwrap()
+}
+
+fn image(values: &[(u16, i64)]) -> Box<Image> {
+    let own = |number| ParameterNumber::new(number).unwrap();
+    Box::new(Image { values: values.iter().map(|(number, value)| (own(*number), *value)).collect() })
+}
+
+fn change(session: &mut Session<Hiperdrive>, change: Change) -> Result<Committed, JobError> {
+    let prepared = match session.run_inline(HiperdriveJob::Prepare(change))? {
+        HiperdriveOutput::Prepared(prepared) => *prepared,
+        other => panic!("{other:?}"),
+    };
+    let consent = Consent::to(prepared.plan.id());
+    match session.run_inline(HiperdriveJob::Commit(Box::new(Commit { prepared, consent })))? {
+        HiperdriveOutput::Committed(done) => Ok(*done),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn whatever_the_target_is_like_it_is_read_and_written() {
+    let cases: [(&[&str], &str); 6] = [
+        (&[], ""),
+        (&["--counted", "--wide", "--pieces"], ""),
+        (&["--stale", "--forget=7"], ""),
+        (&["--cut=40", "--busy=300"], "?timeout=60"),
+        (&["--late=90:50"], "?timeout=60"),
+        (&["--lose-set=1", "--refuse=166:0x14"], "?timeout=60"),
+    ];
+    let bench = Bench::new();
+    for (options, query) in cases {
+        let Some(foreign) = bench.target(&[&["--topology=hub4", "--drives=1,3"], options].concat()) else { return };
+        let mut session = session(&bench, &foreign, query);
+        let survey = match session.run_inline(HiperdriveJob::Survey).unwrap_or_else(|why| panic!("{options:?}: {why}"))
+        {
+            HiperdriveOutput::Surveyed(survey) => *survey,
+            other => panic!("{other:?}"),
+        };
+        let identity = &survey.identity;
+        assert_eq!(
+            (identity.topology, identity.category.as_str()),
+            (Topology::Hub4, "HIPERDRIVE HUB-4"),
+            "{options:?}"
+        );
+        assert_eq!((identity.serial_number.as_str(), identity.version.as_str()), ("4321", "2.10"), "{options:?}");
+        let drives: Vec<_> = identity.drives.iter().map(|own| (own.number.get(), own.variant, own.requested)).collect();
+        assert_eq!(drives, [(1, Variant::new(7), true), (3, Variant::new(7), true)], "{options:?}");
+        assert_eq!(identity.drives[1].serial_number, "90817", "{options:?}");
+        let value = |number| survey.values.get(&ParameterNumber::new(number).unwrap());
+        assert_eq!(value(119), Some(&Value::Number(33)), "{options:?}");
+        assert_eq!(value(360), Some(&Value::Number(33_488_896)), "{options:?}");
+        assert_eq!(value(166).is_none(), options.contains(&"--refuse=166:0x14"), "{options:?}");
+        assert_eq!(survey.network.mac, Some([0x00, 0x50, 0xC2, 0x11, 0x22, 0x33]), "{options:?}");
+        assert_eq!(survey.network.interface.as_ref().unwrap().address.octets(), [192, 168, 1, 7], "{options:?}");
+        assert!(foreign.requests().is_empty(), "reading changes nothing: {options:?}");
+        let wanted = image(&[(24, 77), (188, 5), (358, -65536)]);
+        let done = change(&mut session, Change::Write(wanted)).unwrap_or_else(|why| panic!("{options:?}: {why}"));
+        assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{options:?}");
+        let mut log = foreign.requests();
+        // In which order parameters that do not concern each other are written is the plan's.
+        let saved = log.split_off(log.len().saturating_sub(2));
+        log.sort();
+        assert_eq!(log, ["SET 188 5", "SET 24 77", "SET 358 -65536"], "{options:?}");
+        assert_eq!(saved, ["SET 47 1", "STORE"], "{options:?}");
+    }
+}
+
+#[test]
+fn what_is_no_drive_says_who_it_is() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&["--product=Valve island"]) else { return };
+    let mut session = session(&bench, &foreign, "");
+    let error = session.run_inline(HiperdriveJob::Hello).unwrap_err();
+    let JobError::Device(error) = error else { panic!("{error}") };
+    assert_eq!(error, Error::NotHiperdrive { says: "Valve island".to_owned() });
+}
+
+#[test]
+fn who_is_there_is_found_by_asking_all() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&["--serial=77"]) else { return };
+    let Some(other) = bench.target(&["--product=Valve island"]) else { return };
+    let address = |foreign: &Foreign| foreign.place.parse::<SocketAddrV4>().unwrap();
+    let clock = Arc::new(RealClock::start());
+    let mut shout = UdpShout::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
+    let found = discover(&mut shout, &*clock, &Cancel::default()).unwrap();
+    let of =
+        |foreign: &Foreign| -> &Found { found.iter().find(|found| found.port == address(foreign).port()).unwrap() };
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(of(&foreign).is_hiperdrive() && !of(&other).is_hiperdrive());
+    assert_eq!(of(&foreign).identity.identity.serial_number, 0x1_0000 + 77);
+    assert_eq!(of(&foreign).identity.identity.product_name, "HIPERDRIVE EtherNet/IP");
+}
+
+#[test]
+fn services_settings_and_positions_are_carried_out_as_they_were_planned() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&["--busy=200"]) else { return };
+    let mut session = session(&bench, &foreign, "");
+    let first = DriveNumber::FIRST;
+    let done = change(&mut session, Change::SetPosition { drive: first, position: 1000, save: true }).unwrap();
+    // The nearest of 960 and 1024.
+    assert_eq!((done.written.verified, foreign.requests().join(", ")), (1, "SET 198 1024, SET 47 1, STORE".to_owned()));
+    change(&mut session, Change::Try(image(&[(170, 640), (166, 100)]))).unwrap();
+    let log = foreign.requests();
+    assert!(log.len() == 2 && !log.contains(&"STORE".to_owned()), "{log:?}");
+    change(&mut session, Change::Do(Service::Reset)).unwrap();
+    assert_eq!(foreign.requests(), ["SET 47 -4", "RESET"]);
+    let mut interface = match session.run_inline(HiperdriveJob::Network).unwrap() {
+        HiperdriveOutput::Network(network) => network.interface.unwrap(),
+        other => panic!("{other:?}"),
+    };
+    interface.address = [192, 168, 1, 9].into();
+    let settings = NetworkSettings { source: AddressSource::Stored, interface };
+    let done = change(&mut session, Change::Network(settings.clone())).unwrap();
+    assert_eq!(
+        (done.written.write_cycles, foreign.requests()),
+        (1, vec!["NETWORK 3".to_owned(), "NETWORK 5".to_owned()])
+    );
+    let done = change(&mut session, Change::Network(settings)).unwrap();
+    assert!(done.backup.is_none() && foreign.requests().is_empty(), "what is so already is not set");
+}
+
+#[test]
+fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
+    let bench = Bench::new();
+    let cases: [(&[&str], &str); 3] =
+        [(&["--silent-after=9"], "?timeout=60"), (&["--vanish-after=9"], ""), (&["--garbage"], "?timeout=60")];
+    for (options, query) in cases {
+        let Some(foreign) = bench.target(options) else { return };
+        let mut session = session(&bench, &foreign, query);
+        let begun = std::time::Instant::now();
+        let error = session.run_inline(HiperdriveJob::Survey).unwrap_err();
+        assert!(begun.elapsed() < Duration::from_secs(10), "{options:?}");
+        let JobError::Device(error) = error else { panic!("{error}") };
+        let is_expected = match error {
+            Error::NoReply { asked: Asked::Parameter(_), .. } => options.contains(&"--silent-after=9"),
+            Error::Link(_) => options.contains(&"--vanish-after=9"),
+            Error::Damaged { .. } | Error::NeverSilent => options.contains(&"--garbage"),
+            _ => false,
+        };
+        assert!(is_expected, "{options:?}: {error}");
+    }
+}

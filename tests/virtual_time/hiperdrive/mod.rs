@@ -1,0 +1,5 @@
+//! Drives behind an adapter or a hub over EtherNet/IP: sessions and requests, what is read and written with them, and how
+//! everything ends.
+
+mod scripted;
+mod support;

@@ -1,0 +1,339 @@
+//! A target that says what the test lets it say: golden bytes of the reference (section 9), and everything that a device may
+//! do to a request.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::{Asked, Damage, Error, Master, Station};
+use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
+use encoder_studio::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
+use encoder_studio::protocol::hiperdrive::{Topology, Value};
+use encoder_studio::units::{CharacterFormat, Moment};
+
+use super::support::{drive, number};
+
+/// What happens to a request.
+enum Act {
+    /// It is answered with this CIP reply, in a frame with its own context.
+    Reply(&'static str),
+    /// It is answered with a frame of this status, and nothing in it.
+    Status(u32),
+    /// It is answered under another number than its own, as an earlier one would be.
+    Stale(&'static str),
+    /// Nothing comes.
+    Silence,
+    /// These bytes come.
+    Bytes(&'static str),
+}
+
+/// A target that goes through a list.
+#[derive(Default)]
+struct Script {
+    acts: VecDeque<Act>,
+    sent: Vec<Vec<u8>>,
+    answers: Vec<u8>,
+    registered: u32,
+}
+
+struct Wire {
+    script: Arc<Mutex<Script>>,
+    clock: Arc<VirtualClock>,
+}
+
+fn bytes(text: &str) -> Vec<u8> {
+    text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
+}
+
+/// The reply of the reference, with session 12345678.
+const REGISTERED: &str = "65 00 04 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
+
+fn frame(context: &[u8], status: u32, cip: &[u8]) -> Vec<u8> {
+    let length = cip.len() as u16;
+    let mut data = if cip.is_empty() { Vec::new() } else { bytes("00 00 00 00 00 00 02 00 00 00 00 00 B2 00") };
+    if !cip.is_empty() {
+        data.extend(length.to_le_bytes());
+        data.extend(cip);
+    }
+    let mut frame = bytes("6F 00");
+    frame.extend((data.len() as u16).to_le_bytes());
+    frame.extend(bytes("78 56 34 12"));
+    frame.extend(status.to_le_bytes());
+    frame.extend(context);
+    frame.extend([0; 4]);
+    frame.extend(data);
+    frame
+}
+
+impl ByteLink for Wire {
+    fn send(&mut self, sent: &[u8]) -> Result<(), LinkError> {
+        let mut script = self.script.lock().unwrap();
+        script.sent.push(sent.to_vec());
+        let context = &sent[12..20];
+        if sent[0] == 0x65 {
+            script.registered += 1;
+            let mut reply = bytes(REGISTERED);
+            reply.splice(12..20, context.iter().copied());
+            script.answers.extend(reply);
+            return Ok(());
+        }
+        let answer = match script.acts.pop_front() {
+            Some(Act::Reply(cip)) => frame(context, 0, &bytes(cip)),
+            Some(Act::Status(status)) => frame(context, status, &[]),
+            Some(Act::Stale(cip)) => frame(&[0xEE; 8], 0, &bytes(cip)),
+            Some(Act::Bytes(text)) => bytes(text),
+            Some(Act::Silence) | None => Vec::new(),
+        };
+        script.answers.extend(answer);
+        Ok(())
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let mut script = self.script.lock().unwrap();
+        if script.answers.is_empty() {
+            self.clock.sleep_until(until);
+        }
+        // In whatever portions.
+        let count = script.answers.len().min(7);
+        into.extend(script.answers.drain(..count));
+        Ok(())
+    }
+
+    fn set_format(&mut self, _format: CharacterFormat) -> Result<(), LinkError> {
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
+
+/// A desk with a target that does these things one after the other.
+struct Desk {
+    script: Arc<Mutex<Script>>,
+    wire: Box<dyn ByteLink>,
+    clock: Arc<VirtualClock>,
+    station: Station,
+}
+
+impl Desk {
+    fn with(acts: impl IntoIterator<Item = Act>) -> Self {
+        let script = Script { acts: acts.into_iter().collect(), ..Script::default() };
+        let (script, clock) = (Arc::new(Mutex::new(script)), Arc::new(VirtualClock::default()));
+        let wire = Box::new(Wire { script: script.clone(), clock: clock.clone() });
+        Desk { script, wire, clock, station: Station::new(Duration::from_millis(20)) }
+    }
+
+    fn ask<T>(&mut self, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
+        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        let ctx = Ctx { wire: &mut *self.wire, clock: &*self.clock, cancel: &cancel, trace: &mut trace };
+        work(&mut Master::new(ctx, &mut self.station))
+    }
+
+    fn read(&mut self, own: u16) -> Result<Value, Error> {
+        self.ask(|master| master.read(number(own)))
+    }
+
+    fn sent(&self) -> Vec<Vec<u8>> {
+        self.script.lock().unwrap().sent.clone()
+    }
+
+    fn registered(&self) -> u32 {
+        self.script.lock().unwrap().registered
+    }
+}
+
+/// A frame with its context as 0.
+fn without_context(frame: &[u8]) -> Vec<u8> {
+    let mut frame = frame.to_vec();
+    frame[12..20].fill(0);
+    frame
+}
+
+const AT_163840: &str = "8E 00 00 00 00 80 02 00";
+
+#[test]
+fn a_session_begins_once_and_requests_are_the_references_bytes() {
+    let mut desk = Desk::with([Act::Reply(AT_163840), Act::Reply("8E 00 00 00 01 00")]);
+    assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
+    assert_eq!(desk.read(47).unwrap(), Value::Number(1));
+    let register = "65 00 04 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 01 00 00 00";
+    let get_107 = "6F 00 18 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
+        00 00 02 00 00 00 00 00 B2 00 08 00 0E 03 20 65 24 01 30 6B";
+    let get_47 = "6F 00 18 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
+        00 00 02 00 00 00 00 00 B2 00 08 00 0E 03 20 64 24 01 30 2F";
+    let sent = desk.sent();
+    let shown: Vec<_> = sent.iter().map(|frame| without_context(frame)).collect();
+    assert_eq!(shown, [bytes(register), bytes(get_107), bytes(get_47)]);
+    let contexts: Vec<&[u8]> = sent.iter().map(|frame| &frame[12..20]).collect();
+    assert!(contexts[0] != contexts[1] && contexts[1] != contexts[2], "each request has its own number");
+}
+
+#[test]
+fn what_answers_another_request_is_let_pass_and_counted() {
+    let mut desk = Desk::with([Act::Stale("8E 00 00 00 FF FF FF FF"), Act::Silence, Act::Reply(AT_163840)]);
+    assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
+    assert_eq!((desk.station.late(), desk.sent().len()), (1, 4), "it was asked three times, in one session");
+}
+
+#[test]
+fn a_forgotten_session_is_opened_anew() {
+    let mut desk = Desk::with([Act::Reply(AT_163840), Act::Status(0x64), Act::Reply("8E 00 00 00 05 00")]);
+    desk.read(107).unwrap();
+    assert_eq!(desk.read(105).unwrap(), Value::Number(5));
+    assert_eq!(desk.registered(), 2);
+}
+
+#[test]
+fn other_refusals_of_a_frame_are_told() {
+    let mut desk = Desk::with([Act::Status(0x02)]);
+    let refused = Error::Encapsulation { asked: Asked::Parameter(number(107)), status: EncapsulationStatus::new(2) };
+    assert_eq!(desk.read(107), Err(refused));
+}
+
+#[test]
+fn values_are_taken_as_long_as_they_come() {
+    for (own, cip, value) in [
+        (119, "8E 00 00 00 1F", Value::Number(31)),
+        (119, "8E 00 00 00 F6", Value::Number(-10)),
+        (119, "8E 00 00 00 F6 FF", Value::Number(-10)),
+        (11, "8E 00 00 00 1F", Value::Number(31)),
+        (186, "8E 00 00 00 FF 00", Value::Number(255)),
+        (188, "8E 00 00 00 01 00 00 00", Value::Number(1)),
+        (13, "8E 00 00 00 48 49 50 45", Value::Text("HIPE".to_owned())),
+        (13, "8E 00 00 00 04 48 49 50 45", Value::Text("HIPE".to_owned())),
+    ] {
+        assert_eq!(Desk::with([Act::Reply(cip)]).read(own).unwrap(), value, "{own}: {cip}");
+    }
+    let error = Desk::with([Act::Reply("8E 00 00 00 01 02 03")]).read(107).unwrap_err();
+    assert!(matches!(error, Error::Damaged { cause: Damage::Value(_), .. }), "{error}");
+}
+
+#[test]
+fn a_refusal_is_told_with_the_words_of_its_row() {
+    let mut desk = Desk::with([Act::Reply("8E 00 05 00")]);
+    let error = desk.read(13).unwrap_err();
+    let refusal = error.refusal().unwrap();
+    assert_eq!(refusal.status, GeneralStatus::new(5));
+    assert_eq!(error.to_string(), "reading parameter 13 (category): 0x05 path unknown");
+    // Of a drive it is asked whether it is there at all: 0 of parameter 120 says that it is not.
+    let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 00 00")]);
+    assert_eq!(desk.read(258), Err(Error::NoDrive { drive: drive(2) }));
+    let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 07 00")]);
+    assert!(matches!(desk.read(258), Err(Error::Refused { .. })));
+}
+
+#[test]
+fn what_there_is_not_and_what_is_only_written_is_not_asked_for() {
+    let mut desk = Desk::with([]);
+    assert_eq!(desk.read(155), Err(Error::Unknown(number(155))));
+    assert_eq!(desk.read(199), Err(Error::WriteOnly { number: number(199), name: "reset drive" }));
+    assert!(desk.sent().is_empty());
+}
+
+#[test]
+fn broken_frames_are_asked_again_and_silence_ends_in_time() {
+    for broken in [
+        // A length that no frame has; a frame whose end does not come; a message that is none.
+        "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
+        "6F 00 18 00 78 56",
+        "55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA",
+    ] {
+        let mut desk = Desk::with([Act::Bytes(broken), Act::Reply(AT_163840)]);
+        assert_eq!(desk.read(107).unwrap(), Value::Number(163_840), "{broken}");
+    }
+    let mut desk = Desk::with([Act::Reply("90 00 00 00"), Act::Reply(AT_163840)]);
+    assert_eq!(desk.read(107).unwrap(), Value::Number(163_840), "a reply to another service");
+    let mut desk = Desk::with([]);
+    let error = desk.read(107).unwrap_err();
+    assert_eq!(error, Error::NoReply { asked: Asked::Parameter(number(107)), tries: 5 });
+    assert!(error.is_lost() && desk.clock.now() < Moment::after_start(Duration::from_secs(10)));
+}
+
+/// ForwardOpen as the reference has it, but for what differs from connection to connection: numbers of both ways, of the
+/// connection and of whoever opens it.
+const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 .. .. .. .. .. .. 34 12 .. .. .. .. 01 00 00 00 \
+    10 27 00 00 16 48 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
+const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
+
+/// The CIP part of a frame and what stands behind it, with two dots for what is not looked at.
+fn cip(frame: &[u8], pattern: &str) -> (String, Vec<u8>) {
+    let pattern: Vec<&str> = pattern.split_whitespace().collect();
+    let (own, beside) = frame[40..].split_at(pattern.len());
+    let shown = own.iter().zip(&pattern).map(|(byte, wanted)| match *wanted {
+        ".." => "..".to_owned(),
+        _ => format!("{byte:02X}"),
+    });
+    (shown.collect::<Vec<_>>().join(" "), beside.to_vec())
+}
+
+fn flat(pattern: &str) -> String {
+    pattern.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_cyclic_connection_is_opened_with_the_references_bytes() {
+    let mut desk = Desk::with([Act::Reply(OPENED), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
+    let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
+    let (own, beside) = cip(&desk.sent()[1], OPEN);
+    assert_eq!(own, flat(OPEN));
+    // Where packets to us are to go: item 8001 with our port, in the order of the network.
+    assert_eq!(beside, bytes("01 80 10 00 00 02 12 34 00 00 00 00 00 00 00 00 00 00 00 00"));
+    assert_eq!((opened.to_target_id, opened.to_originator_id), (0x0002_0001, 0x0001_0001));
+    assert_eq!((opened.to_target_interval, opened.timeout), (Duration::from_millis(10), Duration::from_millis(80)));
+    assert_eq!((opened.port, opened.group, opened.layout.length()), (2222, None, 16));
+    desk.ask(|master| master.forward_close(&opened.close)).unwrap();
+    let close = "4E 02 20 06 24 01 03 FA .. .. 34 12 .. .. .. .. 04 00 20 04 24 68 2C 64 2C 65";
+    assert_eq!(cip(&desk.sent()[2], close).0, flat(close));
+}
+
+#[test]
+fn what_a_device_does_not_take_of_a_connection_is_asked_for_otherwise() {
+    let words = |desk: &Desk| {
+        let word = |frame: &Vec<u8>, at: usize| u16::from_le_bytes([frame[40 + at], frame[41 + at]]);
+        let sent = desk.sent();
+        let opens = sent.iter().skip(1);
+        opens.map(|frame| (word(frame, 32), word(frame, 38))).collect::<Vec<_>>()
+    };
+    let kind = || Act::Reply("D4 00 01 01 08 01");
+    let size = || Act::Reply("D4 00 01 01 27 01");
+    let cases: [(&str, Vec<Act>, Vec<(u16, u16)>); 3] = [
+        ("to all who listen", vec![kind(), Act::Reply(OPENED)], vec![(0x4816, 0x4812), (0x4816, 0x2812)]),
+        ("without parameter words", vec![size(), Act::Reply(OPENED)], vec![(0x4816, 0x4812), (0x480E, 0x480A)]),
+        (
+            "both",
+            vec![kind(), size(), kind(), Act::Reply(OPENED)],
+            vec![(0x4816, 0x4812), (0x4816, 0x2812), (0x480E, 0x480A), (0x480E, 0x280A)],
+        ),
+    ];
+    for (label, acts, asked) in cases {
+        let mut desk = Desk::with(acts);
+        let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap();
+        assert_eq!(words(&desk), asked, "{label}");
+        assert_eq!(opened.layout.pkw, asked.last().unwrap().0 == 0x4816, "{label}");
+    }
+    // Five drives of eight bytes and parameter words of a hub for four: 40 bytes.
+    let mut desk = Desk::with([Act::Reply(OPENED)]);
+    desk.ask(|master| master.forward_open(Topology::Hub4, 1)).unwrap();
+    assert_eq!(words(&desk), [(0x482E, 0x482A)]);
+}
+
+#[test]
+fn another_master_is_told_and_nothing_is_tried_twice() {
+    for (extended, reply) in
+        [(0x0106, "D4 00 01 01 06 01"), (0x0100, "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00")]
+    {
+        let mut desk = Desk::with([Act::Reply(reply)]);
+        let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
+        assert_eq!(error, Error::OtherMaster { extended });
+        assert_eq!(desk.sent().len(), 2);
+    }
+    let mut desk = Desk::with([Act::Reply("D4 00 01 01 11 01")]);
+    let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
+    let remedy = error.refusal().unwrap().remedy();
+    assert_eq!(remedy, Some("ask for a longer interval"));
+    // A reply that is lost may be one to a connection that is open: it is not opened twice.
+    let mut desk = Desk::with([]);
+    let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
+    assert_eq!((error, desk.sent().len()), (Error::NoReply { asked: Asked::Open, tries: 1 }, 2));
+}

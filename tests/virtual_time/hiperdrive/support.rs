@@ -1,0 +1,136 @@
+//! A virtual adapter or hub in virtual time, with a session on it, and all that went over the wire.
+
+use std::net::Ipv4Addr;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::{Station, Survey};
+use encoder_studio::link::{Clock, SimPort, VirtualClock};
+use encoder_studio::profile::Consent;
+use encoder_studio::profile::hiperdrive::Image;
+use encoder_studio::protocol::ethernet_ip::{Body, Command, Frame, Request};
+use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Value};
+use encoder_studio::sim::hiperdrive::{Config, Target};
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
+use encoder_studio::worker::hiperdrive::{
+    Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Way,
+};
+
+use crate::support::{MARGIN, Tap, TestLink};
+
+/// A virtual device with a session on it.
+pub(crate) struct Stand {
+    pub(crate) target: Target,
+    pub(crate) clock: Arc<VirtualClock>,
+    pub(crate) tap: Arc<Mutex<Tap>>,
+    pub(crate) folder: tempfile::TempDir,
+    pub(crate) session: Session<Hiperdrive>,
+}
+
+pub(crate) fn number(own: u16) -> ParameterNumber {
+    ParameterNumber::new(own).unwrap()
+}
+
+pub(crate) fn drive(own: u8) -> DriveNumber {
+    DriveNumber::new(own).unwrap()
+}
+
+pub(crate) fn image(values: &[(u16, i64)]) -> Box<Image> {
+    Box::new(Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() })
+}
+
+impl Stand {
+    /// A device as `sim:?…` describes it.
+    pub(crate) fn new(query: &str) -> Self {
+        let pairs = query.split('&').filter_map(|item| item.split_once('='));
+        let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+        Stand::at(Target::new(&Config::from_pairs(&pairs).unwrap()), Arc::new(VirtualClock::default()))
+    }
+
+    /// Another session with a device.
+    pub(crate) fn at(target: Target, clock: Arc<VirtualClock>) -> Self {
+        let tap = Arc::<Mutex<Tap>>::default();
+        let connection = target.connection(Ipv4Addr::UNSPECIFIED);
+        let wire = Box::new(TestLink::new(Arc::new(Mutex::new(connection)), clock.clone(), tap.clone()));
+        let port = SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone());
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path());
+        let station = Station::new(MARGIN);
+        let way = Way { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
+        let session = Session::to_target(way, clock.clone(), store);
+        Stand { target, clock, tap, folder, session }
+    }
+
+    pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {
+        self.tap.lock().unwrap()
+    }
+
+    pub(crate) fn run(&mut self, job: HiperdriveJob) -> Result<HiperdriveOutput, JobError> {
+        self.session.run_inline(job)
+    }
+
+    pub(crate) fn survey(&mut self) -> Survey {
+        match self.run(HiperdriveJob::Survey).unwrap() {
+            HiperdriveOutput::Surveyed(survey) => *survey,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn prepare(&mut self, change: Change) -> Result<Prepared, JobError> {
+        match self.run(HiperdriveJob::Prepare(change))? {
+            HiperdriveOutput::Prepared(prepared) => Ok(*prepared),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(crate) fn commit(&mut self, prepared: Prepared) -> Result<Committed, JobError> {
+        let consent = Consent::to(prepared.plan.id());
+        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent })))? {
+            HiperdriveOutput::Committed(committed) => Ok(*committed),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Plans a change and carries it out.
+    pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
+        let prepared = self.prepare(change)?;
+        self.commit(prepared)
+    }
+
+    /// A parameter as the device has it.
+    pub(crate) fn value(&self, own: u16) -> i64 {
+        let now = self.clock.now();
+        match self.target.with(|station| station.read(now, number(own))).unwrap() {
+            Value::Number(value) => value,
+            Value::Text(text) => panic!("{text}"),
+        }
+    }
+
+    /// What was asked of objects, in its order.
+    pub(crate) fn requests(&self) -> Vec<Request> {
+        let tap = self.tap();
+        let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());
+        let data = frames.filter(|frame| frame.command == Command::SEND_RR_DATA);
+        data.map(|frame| match frame.body().unwrap() {
+            Body::Data { items, .. } => Request::parse(items.unconnected_data().unwrap()).unwrap(),
+            other => panic!("{other:?}"),
+        })
+        .collect()
+    }
+
+    /// What was set, as parameter and data.
+    pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
+        use encoder_studio::protocol::ethernet_ip::{LogicalKind, Service};
+        let of_parameter = |request: &Request| {
+            let class = request.path.number(LogicalKind::Class)?;
+            ParameterNumber::of_attribute(class, request.path.number(LogicalKind::Attribute)?)
+        };
+        let requests = self.requests().into_iter().filter(|request| request.service != Service::GET);
+        requests.filter_map(|request| Some((of_parameter(&request)?.get(), request.data))).collect()
+    }
+
+    pub(crate) fn elapsed(&self) -> Duration {
+        self.clock.now().since_start()
+    }
+}
