@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::biss;
 use super::connect;
+use super::hiperdrive;
 use super::hiperface;
 use super::interbus;
 use super::keep::SettingsRead;
@@ -23,6 +24,7 @@ use crate::protocol::hiperface::EncoderTypes;
 use crate::protocol::ssi::Families;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::biss::Biss;
+use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::hiperface::Hiperface;
 use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;
@@ -46,6 +48,10 @@ pub enum Action {
     CloseSession(SessionId),
     /// End everything that runs, in all sessions.
     Stop,
+    /// Stop all drives of all sessions, and nothing else.
+    StopMotion,
+    /// The window has lost the keyboard, or has put something over itself: what is held is let go.
+    LetGo,
     /// What Esc does: stop what runs, else close what is open.
     Escape,
     /// Close the window; asks when something would be lost.
@@ -94,6 +100,8 @@ pub enum Action {
     Ssi(SessionId, ssi::Action),
     /// Something in the INTERBUS tab, about one session.
     Interbus(SessionId, interbus::Action),
+    /// Something in the HIPERDRIVE tab, about one session.
+    Hiperdrive(SessionId, hiperdrive::Action),
     /// A layout of an SSI encoder that is in no file yet.
     NewLayout,
     /// Something in the Signals tab.
@@ -136,6 +144,10 @@ pub enum Done {
     OpenedSsi(Attempt<Ssi>),
     /// A link to an INTERBUS encoder was opened, or not.
     OpenedInterbus(Attempt<Interbus>),
+    /// A link to HIPERDRIVE drives was opened, or not.
+    OpenedHiperdrive(Attempt<Hiperdrive>),
+    /// Devices that answer in this network, or why nobody could be asked.
+    FoundDrives(u32, Result<Vec<connect::FoundDevice>, Text>),
     /// The families of SSI encoders were read, with what is wrong with those of the user's own.
     Families(Arc<Families>, Vec<StoreError>),
     /// A link was opened for a search.

@@ -28,6 +28,9 @@ impl Studio {
 
     pub(super) fn close_session(&mut self, id: SessionId) {
         let Some(device) = self.device_mut(id) else { return };
+        if let Some(unit) = device.hiperdrive_mut() {
+            unit.moves.stop();
+        }
         if device.is_busy() || device.is_dirty() {
             let text = match (device.source(), device.is_dirty() && !device.keeps_edits()) {
                 (_, true) => "question.session_lost",
@@ -53,6 +56,7 @@ impl Studio {
     }
 
     pub(super) fn close(&mut self) {
+        self.stop_motion();
         let busy = self.devices.iter().any(AnyDevice::is_busy);
         let edits = self.devices.iter().any(AnyDevice::is_dirty);
         let recorded = self.devices.iter().any(|device| device.recorder().unsaved() >= MUCH);

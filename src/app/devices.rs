@@ -11,6 +11,7 @@ pub use wish::Wish;
 
 use super::action::{Known, ReadError, ReviewAction};
 use super::biss;
+use super::hiperdrive;
 use super::hiperface;
 use super::interbus;
 use super::line::Progressing;
@@ -36,6 +37,8 @@ pub enum AnyDevice {
     Ssi(Box<ssi::Encoder>),
     /// An INTERBUS encoder.
     Interbus(Box<interbus::Encoder>),
+    /// HIPERDRIVE drives behind an adapter or a hub.
+    Hiperdrive(Box<hiperdrive::Unit>),
 }
 
 /// The same for every kind.
@@ -46,6 +49,7 @@ macro_rules! each {
             AnyDevice::Biss($own) => $do,
             AnyDevice::Ssi($own) => $do,
             AnyDevice::Interbus($own) => $do,
+            AnyDevice::Hiperdrive($own) => $do,
         }
     };
 }
@@ -57,6 +61,7 @@ macro_rules! each_with_memory {
             AnyDevice::Hiperface($own) => $do,
             AnyDevice::Biss($own) => $do,
             AnyDevice::Interbus($own) => $do,
+            AnyDevice::Hiperdrive($own) => $do,
             AnyDevice::Ssi(_) => $none,
         }
     };
@@ -70,19 +75,20 @@ impl AnyDevice {
             Tab::Biss => Some(AnyDevice::Biss(Box::new(biss::Encoder::at_link(id, url)))),
             Tab::Ssi => Some(AnyDevice::Ssi(Box::new(ssi::Encoder::at_link(id, url, services)))),
             Tab::Interbus => Some(AnyDevice::Interbus(Box::new(interbus::Encoder::at_link(id, url)))),
+            Tab::Hiperdrive => Some(AnyDevice::Hiperdrive(Box::new(hiperdrive::Unit::at_link(id, url)))),
             Tab::Signals => None,
         }
     }
 
-    /// A profile; `None` of a kind that the window does not show.
+    /// A profile.
     pub(super) fn in_file(
         id: SessionId,
         file: (PathBuf, String),
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Option<Self> {
-        Some(match &document.body {
+    ) -> Self {
+        match &document.body {
             Body::Hiperface(_) => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
@@ -94,8 +100,10 @@ impl AnyDevice {
             Body::Interbus(_) => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
-            Body::Hiperdrive(_) => return None,
-        })
+            Body::Hiperdrive(_) => {
+                AnyDevice::Hiperdrive(Box::new(hiperdrive::Unit::in_file(id, file, document, services)))
+            }
+        }
     }
 
     /// Its number in the studio.
@@ -110,6 +118,7 @@ impl AnyDevice {
             AnyDevice::Biss(_) => Tab::Biss,
             AnyDevice::Ssi(_) => Tab::Ssi,
             AnyDevice::Interbus(_) => Tab::Interbus,
+            AnyDevice::Hiperdrive(_) => Tab::Hiperdrive,
         }
     }
 
@@ -186,7 +195,10 @@ impl AnyDevice {
 
     /// There is something to stop.
     pub fn is_active(&self) -> bool {
-        each!(self, own => own.session.is_active())
+        match self {
+            AnyDevice::Hiperdrive(own) => own.is_active(),
+            _ => each!(self, own => own.session.is_active()),
+        }
     }
 
     /// Connected and nothing runs: a job may begin.
@@ -197,7 +209,7 @@ impl AnyDevice {
     /// Its positions can come as a stream, thousands a second.
     pub fn streams(&self) -> bool {
         match self {
-            AnyDevice::Hiperface(_) | AnyDevice::Interbus(_) => false,
+            AnyDevice::Hiperface(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => false,
             AnyDevice::Biss(own) => own.streams(),
             // There is always an adapter.
             AnyDevice::Ssi(_) => true,
@@ -323,7 +335,10 @@ impl AnyDevice {
     }
 
     pub(super) fn stop(&mut self, services: &mut Services) {
-        each!(self, own => own.session.stop(services))
+        match self {
+            AnyDevice::Hiperdrive(own) => own.stop(services),
+            _ => each!(self, own => own.session.stop(services)),
+        }
     }
 
     pub(super) fn lose(&mut self, why: Text, services: &mut Services) {
@@ -421,5 +436,14 @@ impl AnyDevice {
 
     pub(super) fn interbus_mut(&mut self) -> Option<&mut interbus::Encoder> {
         if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
+    }
+
+    /// As HIPERDRIVE drives behind an adapter or a hub.
+    pub fn hiperdrive(&self) -> Option<&hiperdrive::Unit> {
+        if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
+    }
+
+    pub(super) fn hiperdrive_mut(&mut self) -> Option<&mut hiperdrive::Unit> {
+        if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
     }
 }

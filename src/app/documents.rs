@@ -6,7 +6,7 @@ use super::action::{Action, Done, Known, ReadError};
 use super::session::{Source, file_key};
 use super::studio::Studio;
 use super::{AnyDevice, Severity, Text, explain};
-use crate::profile::{Document, ProfileError};
+use crate::profile::Document;
 use crate::protocol::biss::Descriptions;
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{Store, read_file};
@@ -26,13 +26,8 @@ impl Studio {
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(path, key, *document));
                 } else {
-                    let found = document.device().to_owned();
-                    let file = (path.clone(), key);
-                    let Some(device) = AnyDevice::in_file(id, file, *document, known, &mut self.services) else {
-                        let error = ReadError::Profile(ProfileError::Device { found });
-                        self.services.tell(Severity::Error, vec![read_error(&path, &error)], None);
-                        return;
-                    };
+                    let file = (path, key);
+                    let device = AnyDevice::in_file(id, file, *document, known, &mut self.services);
                     self.devices.push(device);
                 }
                 if let Some(tab) = self.device(id).map(AnyDevice::tab) {

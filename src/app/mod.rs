@@ -11,6 +11,7 @@ mod documents;
 mod edits;
 pub mod explain;
 mod files;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod keep;

@@ -12,6 +12,7 @@ use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text, explain, ssi};
 use crate::link::{LinkUrl, TraceEntry};
 use crate::worker::biss::Biss;
+use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::hiperface::Hiperface;
 use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;
@@ -112,6 +113,7 @@ impl Studio {
                 self.open_task(url, earlier, prepare, opened(id, attempt))
             }
             Tab::Interbus => self.open_task(url, earlier, |_: &mut Session<Interbus>| (), opened(id, attempt)),
+            Tab::Hiperdrive => self.open_task(url, earlier, |_: &mut Session<Hiperdrive>| (), opened(id, attempt)),
             // No device is shown there.
             Tab::Signals => return,
         };

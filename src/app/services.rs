@@ -11,11 +11,13 @@ use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
 use super::{Text, explain};
+use crate::device::hiperdrive::{Error as DriveError, Found};
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
 use crate::protocol::ssi::Families;
 use crate::store::{Store, StoreError};
 use crate::worker::biss::{self, Biss};
+use crate::worker::hiperdrive::{self, Hiperdrive};
 use crate::worker::hiperface::{self, Hiperface};
 use crate::worker::interbus::{self, Interbus};
 use crate::worker::ssi::{self, Ssi};
@@ -37,6 +39,10 @@ pub struct World {
     pub open_ssi: Opener<Ssi>,
     /// Opens links to INTERBUS encoders.
     pub open_interbus: Opener<Interbus>,
+    /// Opens links to HIPERDRIVE drives.
+    pub open_hiperdrive: Opener<Hiperdrive>,
+    /// Asks who is there in this network.
+    pub discover: Arc<dyn Fn() -> Result<Vec<Found>, DriveError> + Send + Sync>,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -56,6 +62,8 @@ impl World {
             open_biss: Arc::new(biss::open),
             open_ssi: Arc::new(ssi::open),
             open_interbus: Arc::new(interbus::open),
+            open_hiperdrive: Arc::new(hiperdrive::open),
+            discover: Arc::new(super::connect::ask_all),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             now: Arc::new(Zoned::now),

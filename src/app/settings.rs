@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Language;
+use super::hiperdrive::Remembered;
 use super::tab::Tab;
 
 /// Dark or light.
@@ -34,6 +35,8 @@ pub struct Settings {
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
+    /// What is remembered of drives, by the device that they are behind.
+    drives: BTreeMap<String, Remembered>,
 }
 
 impl Default for Settings {
@@ -45,6 +48,7 @@ impl Default for Settings {
             layout: None,
             tab: Tab::Hiperface,
             size: None,
+            drives: BTreeMap::new(),
         }
     }
 }
@@ -85,6 +89,7 @@ impl Settings {
             layout: entry!(layout: Option<String>, usual.layout),
             tab: entry!(tab: Tab, usual.tab),
             size: entry!(size: Option<(u32, u32)>, usual.size),
+            drives: entry!(drives: BTreeMap<String, Remembered>, usual.drives),
         }
     }
 
@@ -96,6 +101,7 @@ impl Settings {
             ($($name:ident),*) => { $(if since.$name != usual.$name { self.$name = since.$name; })* };
         }
         keep!(theme, language, layout, tab, size);
+        self.drives.extend(since.drives);
         for (tab, links) in &since.links {
             links.iter().rev().for_each(|link| self.use_link(*tab, link));
         }
@@ -104,6 +110,16 @@ impl Settings {
     /// The settings as text.
     pub fn emit(&self) -> String {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
+    }
+
+    /// What is remembered of the drives behind a device.
+    pub(super) fn drives(&self, device: &str) -> Option<&Remembered> {
+        self.drives.get(device)
+    }
+
+    /// What is to be remembered of them.
+    pub(super) fn remember_drives(&mut self, device: String, what: Remembered) {
+        self.drives.insert(device, what);
     }
 
     /// Links to the devices of a tab that were used, the latest first.

@@ -101,6 +101,8 @@ impl Studio {
             }
             Action::CloseSession(id) => self.close_session(id),
             Action::Stop => self.stop(),
+            Action::StopMotion => self.stop_motion(),
+            Action::LetGo => self.let_go_of_jogs(),
             Action::Escape => self.escape(),
             Action::Close => self.close(),
             Action::Confirm => self.confirm(),
@@ -113,7 +115,7 @@ impl Studio {
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
                     Tab::Signals => FileQuestion::OpenCapture,
-                    Tab::Hiperface | Tab::Biss | Tab::Ssi | Tab::Interbus => FileQuestion::Open,
+                    Tab::Hiperface | Tab::Biss | Tab::Ssi | Tab::Interbus | Tab::Hiperdrive => FileQuestion::Open,
                 });
             }
             Action::Open(path) if is_capture(&path) => {
@@ -138,6 +140,7 @@ impl Studio {
             Action::Biss(id, action) => self.act_biss(id, action),
             Action::Ssi(id, action) => self.act_ssi(id, action),
             Action::Interbus(id, action) => self.act_interbus(id, action),
+            Action::Hiperdrive(id, action) => self.act_hiperdrive(id, action),
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -145,6 +148,7 @@ impl Studio {
                 self.services.tell(Severity::Error, vec![text], None);
             }
         }
+        self.hold_in_sight();
         self.keep();
     }
 
@@ -165,6 +169,8 @@ impl Studio {
         }
         self.services.pump_leaving();
         self.feed_exports();
+        self.remember_drives();
+        self.hold_in_sight();
         self.keep();
     }
 
@@ -238,7 +244,7 @@ impl Studio {
 
     /// Live values come in: the picture has to be drawn again and again.
     pub fn is_live(&self) -> bool {
-        self.devices.iter().any(AnyDevice::is_polling)
+        self.devices.iter().any(AnyDevice::is_polling) || self.is_in_control()
     }
 
     fn search(&self) -> Option<&connect::Search> {
@@ -324,6 +330,10 @@ impl Studio {
             Done::OpenedInterbus(attempt) => self.opened(attempt, |studio, id, opened| {
                 studio.with_interbus(id, |encoder, services| encoder.connect(opened, services));
             }),
+            Done::OpenedHiperdrive(attempt) => self.opened(attempt, |studio, id, opened| {
+                studio.with_hiperdrive(id, |unit, services| unit.connect(opened, services));
+            }),
+            Done::FoundDrives(number, found) => self.found_drives(number, found),
             Done::Interbus(id, done) => self.with_interbus(id, |encoder, services| encoder.done(done, services)),
             Done::Families(families, broken) => self.take_families(families, &broken),
             Done::Ssi(id, done) => self.with_ssi(id, |encoder, services| encoder.done(done, services)),
@@ -400,6 +410,10 @@ impl Studio {
     }
 
     fn escape(&mut self) {
+        // Before anything else: whoever presses it in a fright means the machine.
+        if self.moves() {
+            return self.stop_motion();
+        }
         if self.question.take().is_some() {
             return;
         }

@@ -1,8 +1,8 @@
 //! The tabs of the window.
 
-use super::connect::{BissForm, InterbusForm, SsiForm};
+use super::connect::{BissForm, HiperdriveForm, InterbusForm, SsiForm};
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, biss, hiperface, interbus, ssi};
+use crate::worker::{OpenError, biss, hiperdrive, hiperface, interbus, ssi};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -16,13 +16,15 @@ pub enum Tab {
     Ssi,
     /// INTERBUS encoders and their cams.
     Interbus,
+    /// HIPERDRIVE drives.
+    Hiperdrive,
     /// Captures of sine and cosine, whatever encoder they are from.
     Signals,
 }
 
 impl Tab {
     /// The tabs that show devices.
-    pub const DEVICES: [Tab; 4] = [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus];
+    pub const DEVICES: [Tab; 5] = [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus, Tab::Hiperdrive];
 
     /// The name of its bus, the same in every language; `None` for a tab that shows no device.
     pub fn bus(self) -> Option<&'static str> {
@@ -31,6 +33,7 @@ impl Tab {
             Tab::Biss => Some("BiSS"),
             Tab::Ssi => Some("SSI"),
             Tab::Interbus => Some("INTERBUS"),
+            Tab::Hiperdrive => Some("HIPERDRIVE"),
             Tab::Signals => None,
         }
     }
@@ -43,6 +46,7 @@ impl Tab {
             Tab::Biss => biss::check(url),
             Tab::Ssi => ssi::check(url),
             Tab::Interbus => interbus::check(url),
+            Tab::Hiperdrive => hiperdrive::check(url),
             Tab::Hiperface | Tab::Signals => hiperface::check(url),
         }
     }
@@ -53,6 +57,7 @@ impl Tab {
             Tab::Biss => BissForm::usual(),
             Tab::Ssi => SsiForm::usual(),
             Tab::Interbus => InterbusForm::usual(),
+            Tab::Hiperdrive => HiperdriveForm::usual(),
             Tab::Hiperface | Tab::Signals => LinkUrl::sim(),
         }
     }

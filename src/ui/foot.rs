@@ -45,7 +45,7 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
             if dirty {
                 let count = device.edits();
                 // What is edited of an INTERBUS encoder are values, of others bytes.
-                let are_values = device.tab() == Tab::Interbus;
+                let are_values = matches!(device.tab(), Tab::Interbus | Tab::Hiperdrive);
                 let text = Text::new(match (device.source(), count, are_values) {
                     (Source::Link(_), 1, false) => "memory.edited_one",
                     (Source::Link(_), _, false) => "memory.edited",

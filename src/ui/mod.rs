@@ -9,6 +9,7 @@ mod dialogs;
 mod docks;
 mod foot;
 mod header;
+mod hiperdrive;
 mod hiperface;
 pub mod icons;
 mod interbus;
@@ -35,6 +36,7 @@ pub fn pages(tab: crate::app::Tab) -> Vec<&'static str> {
         crate::app::Tab::Biss => biss::Page::ALL.into_iter().map(biss::Page::word).collect(),
         crate::app::Tab::Ssi => ssi::Page::ALL.into_iter().map(ssi::Page::word).collect(),
         crate::app::Tab::Interbus => interbus::Page::ALL.into_iter().map(interbus::Page::word).collect(),
+        crate::app::Tab::Hiperdrive => hiperdrive::Page::ALL.into_iter().map(hiperdrive::Page::word).collect(),
         crate::app::Tab::Signals => signals::Page::ALL.into_iter().map(signals::Page::word).collect(),
     }
 }

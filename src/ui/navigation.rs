@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::controls::{icon_button, name};
 use super::docks::Docks;
-use super::{Skin, Views, biss, hiperface, icons, interbus, signals, ssi};
+use super::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, signals, ssi};
 use crate::app::{Action, Studio, Tab};
 
 /// The tabs, with the pages of the open one.
@@ -52,7 +52,7 @@ macro_rules! tab_pages {
     };
 }
 
-tab_pages!(hiperface::Page, biss::Page, ssi::Page, interbus::Page, signals::Page);
+tab_pages!(hiperface::Page, biss::Page, ssi::Page, interbus::Page, hiperdrive::Page, signals::Page);
 
 /// The entries of a tab's pages; the page that was pressed. Edits that are not written mark the page that `edited` names.
 fn pages_ui<P: TabPage>(
@@ -103,6 +103,11 @@ fn open_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
             };
             let shown = &mut views.interbus(encoder).page;
             move_to(shown, pages_ui(ui, skin, interbus::Page::ALL, *shown, edited))
+        }),
+        Tab::Hiperdrive => studio.hiperdrive().is_some_and(|unit| {
+            let edited = |page| page == hiperdrive::Page::Parameters && unit.is_dirty();
+            let shown = &mut views.hiperdrive(unit).page;
+            move_to(shown, pages_ui(ui, skin, hiperdrive::Page::ALL, *shown, edited))
         }),
         Tab::Signals => {
             let shown = &mut views.signals.page;

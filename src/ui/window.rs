@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::navigation::navigation_ui;
-use super::{Skin, biss, header, hiperface, interbus, review, signals, ssi};
+use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, signals, ssi};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -24,6 +24,8 @@ pub struct Views {
     ssi: BTreeMap<SessionId, ssi::View>,
     /// The INTERBUS tab, for each session.
     interbus: BTreeMap<SessionId, interbus::View>,
+    /// The HIPERDRIVE tab, for each session.
+    hiperdrive: BTreeMap<SessionId, hiperdrive::View>,
     pub(super) signals: signals::View,
     pub(super) connect: ConnectView,
     pub(super) file: Option<FileView>,
@@ -55,6 +57,13 @@ impl Views {
     /// The SSI tab of a session.
     pub(super) fn ssi(&mut self, encoder: &crate::app::ssi::Encoder) -> &mut ssi::View {
         self.ssi.entry(encoder.session.id).or_default()
+    }
+
+    /// The HIPERDRIVE tab of a session.
+    pub(super) fn hiperdrive(&mut self, unit: &crate::app::hiperdrive::Unit) -> &mut hiperdrive::View {
+        let view = self.hiperdrive.entry(unit.session.id).or_default();
+        view.follow(unit);
+        view
     }
 
     /// The INTERBUS tab of a session.
@@ -189,6 +198,10 @@ impl Window {
                 let page = self.studio.interbus().map(|own| self.views.interbus(own).page).unwrap_or_default();
                 (page.word(), page.help())
             }
+            Tab::Hiperdrive => {
+                let page = self.studio.hiperdrive().map(|own| self.views.hiperdrive(own).page).unwrap_or_default();
+                (page.word(), page.help())
+            }
             Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
         };
         if self.views.help && dialogs::help_ui(ctx, skin, page) {
@@ -247,6 +260,7 @@ impl Window {
             (Modifiers::COMMAND, Key::Num2, Action::ShowTab(Tab::Biss)),
             (Modifiers::COMMAND, Key::Num3, Action::ShowTab(Tab::Ssi)),
             (Modifiers::COMMAND, Key::Num4, Action::ShowTab(Tab::Interbus)),
+            (Modifiers::COMMAND, Key::Num5, Action::ShowTab(Tab::Hiperdrive)),
             (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
         ];
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
@@ -254,7 +268,7 @@ impl Window {
             keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
             // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
-            if matches!(device.tab(), Tab::Ssi | Tab::Interbus) && !ctx.text_edit_focused() {
+            if matches!(device.tab(), Tab::Ssi | Tab::Interbus | Tab::Hiperdrive) && !ctx.text_edit_focused() {
                 keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
                 keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
                 keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));
@@ -306,7 +320,11 @@ impl Window {
         self.views.biss.retain(|id, _| self.studio.device(*id).is_some());
         self.views.ssi.retain(|id, _| self.studio.device(*id).is_some());
         self.views.interbus.retain(|id, _| self.studio.device(*id).is_some());
-        if self.studio.is_live() {
+        self.views.hiperdrive.retain(|id, _| self.studio.device(*id).is_some());
+        if self.studio.moves() {
+            // The heartbeat of whatever moves: 250 ms without a picture stop it.
+            ctx.request_repaint_after(Duration::from_millis(30));
+        } else if self.studio.is_live() {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
         }

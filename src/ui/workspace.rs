@@ -4,7 +4,7 @@ use egui::{Align, Layout, RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
 use super::panels::plot_ui;
-use super::{Skin, Views, biss, hiperface, icons, interbus, signals, ssi};
+use super::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, signals, ssi};
 use crate::app::connect;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
@@ -23,6 +23,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         Tab::Biss => biss_ui(ui, skin, studio, views, actions),
         Tab::Ssi => ssi_ui(ui, skin, studio, views, actions),
         Tab::Interbus => interbus_ui(ui, skin, studio, views, actions),
+        Tab::Hiperdrive => hiperdrive_ui(ui, skin, studio, views, actions),
         Tab::Signals => {
             signals::page_ui(ui, skin, &studio.signals, studio.hiperface(), &mut views.signals, actions);
         }
@@ -66,6 +67,15 @@ fn interbus_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, act
     running(ui, skin, device, None, actions);
     lost(ui, skin, device, actions);
     interbus::page_ui(ui, skin, (studio, device), encoder, views.interbus(encoder), actions);
+}
+
+fn hiperdrive_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    let (Some(unit), Some(device)) = (studio.hiperdrive(), studio.shown()) else {
+        return nothing(ui, skin, studio, actions);
+    };
+    running(ui, skin, device, None, actions);
+    lost(ui, skin, device, actions);
+    hiperdrive::page_ui(ui, skin, (studio, device), unit, views.hiperdrive(unit), actions);
 }
 
 /// No device is on the desk: the ways to one.

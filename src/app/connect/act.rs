@@ -40,12 +40,16 @@ impl Studio {
             Action::EditBiss(form) => self.edit(|connect| (connect.biss, connect.typed) = (*form, None)),
             Action::EditSsi(form) => self.edit(|connect| (connect.ssi, connect.typed) = (*form, None)),
             Action::EditInterbus(form) => self.edit(|connect| (connect.interbus, connect.typed) = (*form, None)),
+            Action::EditHiperdrive(form) => self.edit(|connect| (connect.hiperdrive, connect.typed) = (*form, None)),
+            Action::Discover => self.discover(),
+            Action::ChooseDevice(at) => self.choose_device(at),
             Action::Use(link) => self.edit(|connect| connect.take(link)),
             Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
             Action::Recording(path) => self.edit(|connect| {
                 let path = path.display().to_string();
                 (connect.form.file, connect.biss.file) = (path.clone(), path.clone());
-                (connect.ssi.file, connect.interbus.file) = (path.clone(), path);
+                (connect.ssi.file, connect.interbus.file) = (path.clone(), path.clone());
+                connect.hiperdrive.file = path;
                 connect.typed = None;
             }),
             Action::Connect => {

@@ -3,14 +3,19 @@
 
 mod act;
 mod biss_form;
+mod discovery;
 mod form;
+mod hiperdrive_form;
 mod interbus_form;
 mod ports;
 mod ssi_form;
 mod target;
 
 pub use biss_form::{BissForm, BissWay};
+pub(super) use discovery::ask_all;
+pub use discovery::{Discovery, FoundDevice};
 pub use form::{LinkForm, LinkKind};
+pub use hiperdrive_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
 pub use interbus_form::{InterbusForm, InterbusWay};
 pub use ports::{Offer, offered_ports};
 pub use ssi_form::{SsiForm, SsiWay};
@@ -46,6 +51,12 @@ pub enum Action {
     EditSsi(Box<SsiForm>),
     /// The form for an INTERBUS encoder was edited.
     EditInterbus(Box<InterbusForm>),
+    /// The form for HIPERDRIVE drives was edited.
+    EditHiperdrive(Box<HiperdriveForm>),
+    /// Ask who is there in this network.
+    Discover,
+    /// Fill in the device that answered.
+    ChooseDevice(usize),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
     /// Ask for a recording.
@@ -74,6 +85,10 @@ pub struct Connect {
     pub ssi: SsiForm,
     /// The link to an INTERBUS encoder as a form.
     pub interbus: InterbusForm,
+    /// The link to HIPERDRIVE drives as a form.
+    pub hiperdrive: HiperdriveForm,
+    /// Who has answered in this network.
+    pub discovery: Option<Discovery>,
     /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
     pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
@@ -107,7 +122,20 @@ impl Connect {
         let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
         let ssi = SsiForm::from_url(&last(Tab::Ssi).unwrap_or_else(SsiForm::usual));
         let interbus = InterbusForm::from_url(&last(Tab::Interbus).unwrap_or_else(InterbusForm::usual));
-        Connect { device, form, biss, ssi, interbus, typed: None, ports: None, problem: None, search: None }
+        let hiperdrive = HiperdriveForm::from_url(&last(Tab::Hiperdrive).unwrap_or_else(HiperdriveForm::usual));
+        Connect {
+            device,
+            form,
+            biss,
+            ssi,
+            interbus,
+            hiperdrive,
+            discovery: None,
+            typed: None,
+            ports: None,
+            problem: None,
+            search: None,
+        }
     }
 
     /// The link that was typed, else the one that the form stands for.
@@ -121,6 +149,7 @@ impl Connect {
                 Tab::Biss => self.biss.url(),
                 Tab::Ssi => self.ssi.url(),
                 Tab::Interbus => self.interbus.url(),
+                Tab::Hiperdrive => self.hiperdrive.url(),
                 Tab::Hiperface | Tab::Signals => self.form.url(),
             },
         }
@@ -140,6 +169,7 @@ impl Connect {
                 Tab::Biss => self.biss = BissForm::from_url(&url),
                 Tab::Ssi => self.ssi = SsiForm::from_url(&url),
                 Tab::Interbus => self.interbus = InterbusForm::from_url(&url),
+                Tab::Hiperdrive => self.hiperdrive = HiperdriveForm::from_url(&url),
                 Tab::Hiperface | Tab::Signals => self.form = LinkForm::from_url(&url),
             }
         }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::app::{biss, hiperface, interbus, ssi};
+use crate::app::{biss, hiperdrive, hiperface, interbus, ssi};
 
 /// What can be wished of every device.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,6 +62,7 @@ impl AnyDevice {
             AnyDevice::Biss(device) => Action::Biss(device.session.id, own!(biss, wish)),
             AnyDevice::Ssi(device) => Action::Ssi(device.session.id, own!(ssi, wish)),
             AnyDevice::Interbus(device) => Action::Interbus(device.session.id, own!(interbus, wish)),
+            AnyDevice::Hiperdrive(device) => Action::Hiperdrive(device.session.id, own!(hiperdrive, wish)),
         }
     }
 }

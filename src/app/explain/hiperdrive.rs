@@ -1,5 +1,61 @@
-//! A HIPERDRIVE in words: what its states, bits, errors and parameters are called.
+//! A HIPERDRIVE in words: the errors of jobs with it, what its states, bits, errors and parameters are called, how a motion
+//! ended.
 
+mod check;
+mod error;
+mod motion;
 mod names;
+mod write;
 
-pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit};
+pub use check::{check, source, switch};
+pub use error::{device, out_of_range, range};
+pub use motion::{ended, goal, lock, lost, phase, refusal, weight};
+pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit, variant};
+pub use write::{change, item, op, plan, service, warning, written};
+
+use super::{link, plain};
+use crate::app::Text;
+use crate::device::hiperdrive::Error;
+use crate::worker::hiperdrive::{Doing, JobError};
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![device(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotBegun(why) => vec![super::not_begun(why)],
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            write::interruption(interrupted, backup, *planned, *kind)
+        }
+    }
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match cause(error)? {
+        Error::Link(error) => Some(link(error)),
+        _ => None,
+    }
+}
+
+/// The link is open, and nobody answers over it.
+pub fn is_silence(error: &JobError) -> bool {
+    matches!(cause(error), Some(Error::NoReply { .. }))
+}
+
+fn cause(error: &JobError) -> Option<&Error> {
+    match error {
+        JobError::Device(error) => Some(error),
+        JobError::Interrupted { interrupted, .. } => Some(&interrupted.cause),
+        JobError::Plan(_) | JobError::NotBegun(_) => None,
+    }
+}
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::Parameter(number) => parameter(*number),
+        Doing::Step(own) => check::step(*own),
+        Doing::Operation(item) => plain(item),
+    }
+}

@@ -2,6 +2,7 @@
 //! settings nobody remembers.
 
 mod biss;
+mod hiperdrive;
 mod interbus;
 mod ssi;
 
@@ -50,7 +51,7 @@ pub(in crate::ui) fn connect_ui(
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
     let (mut form, mut biss, mut ssi) = (dialog.form.clone(), dialog.biss.clone(), dialog.ssi.clone());
-    let mut interbus = dialog.interbus.clone();
+    let (mut interbus, mut hiperdrive) = (dialog.interbus.clone(), dialog.hiperdrive.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
             ui.label(skin.heading(skin.say("connect.title")));
@@ -65,6 +66,7 @@ pub(in crate::ui) fn connect_ui(
                 Tab::Biss => biss::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
                 Tab::Ssi => ssi::form_ui(ui, skin, dialog, &mut ssi, &mut view.more, actions),
                 Tab::Interbus => interbus::form_ui(ui, skin, &mut interbus, &mut view.more, actions),
+                Tab::Hiperdrive => hiperdrive::form_ui(ui, skin, dialog, &mut hiperdrive, &mut view.more, actions),
                 Tab::Hiperface | Tab::Signals => hiperface(ui, skin, dialog, &mut form, view, actions),
             }
         });
@@ -93,6 +95,9 @@ pub(in crate::ui) fn connect_ui(
     }
     if interbus != dialog.interbus {
         actions.insert(0, Action::Connect(Connect::EditInterbus(Box::new(interbus))));
+    }
+    if hiperdrive != dialog.hiperdrive {
+        actions.insert(0, Action::Connect(Connect::EditHiperdrive(Box::new(hiperdrive))));
     }
     if ssi != dialog.ssi {
         actions.insert(0, Action::Connect(Connect::EditSsi(Box::new(ssi))));

@@ -1,6 +1,7 @@
 //! The position, large, and the plot of what was recorded.
 
 mod biss;
+mod hiperdrive;
 mod interbus;
 mod ssi;
 
@@ -43,6 +44,7 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
         AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder, ink),
         AnyDevice::Ssi(encoder) => ssi::value_ui(ui, skin, encoder, ink),
         AnyDevice::Interbus(encoder) => interbus::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Hiperdrive(unit) => hiperdrive::value_ui(ui, skin, unit, ink),
     }
     if paused {
         ui.label(skin.caption(skin.say("live.paused_by_job")));
@@ -172,7 +174,7 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
             AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
             AnyDevice::Biss(encoder) => biss::watch_menu(ui, skin, encoder, actions),
             // They have no other values beside the position.
-            AnyDevice::Ssi(_) | AnyDevice::Interbus(_) => {}
+            AnyDevice::Ssi(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => {}
         }
         if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
             views.rate = rate;

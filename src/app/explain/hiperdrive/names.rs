@@ -1,7 +1,8 @@
 //! What things in a HIPERDRIVE are called: states, bits of its words, errors with cause and remedy, parameters.
 
 use crate::app::Text;
-use crate::protocol::hiperdrive::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit};
+use crate::app::explain::plain;
+use crate::protocol::hiperdrive::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 
 /// A state of the drive.
 pub fn state(state: State) -> Text {
@@ -159,4 +160,13 @@ pub fn parameter(number: ParameterNumber) -> Text {
         _ => return Text::new("hd_parameter.other").with("number", number),
     };
     Text::new(id)
+}
+
+/// Which drive it is.
+pub fn variant(variant: Variant) -> Text {
+    match variant.row() {
+        Some(row) => plain(row.name),
+        None if variant == Variant::NONE => Text::new("hd_variant.none"),
+        None => Text::new("hd_variant.other").with("number", format!("{:04X}", variant.number())),
+    }
 }

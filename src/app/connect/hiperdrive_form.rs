@@ -1,0 +1,233 @@
+//! What a person fills in to connect a HIPERDRIVE, and the link it stands for. Nothing is opened here.
+
+use super::target::{assemble, entered, filled, host_and_port, parted, refused};
+use crate::app::Text;
+use crate::device::hiperdrive::PARAMETERS;
+use crate::link::{LinkUrl, Scheme};
+use crate::sim::hiperdrive::Config;
+use crate::worker::hiperdrive::check;
+
+/// How the drives are reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HiperdriveWay {
+    /// Virtual drives in this program.
+    #[default]
+    Virtual,
+    /// Over the network.
+    Network,
+    /// A recorded trace.
+    Replay,
+}
+
+/// What the virtual device is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VirtualHub {
+    /// An adapter with its drive.
+    #[default]
+    Adapter,
+    /// A hub with four places.
+    Four,
+    /// A hub with eight places.
+    Eight,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HiperdriveForm {
+    /// How the drives are reached.
+    pub way: HiperdriveWay,
+    /// What the virtual device is.
+    pub hub: VirtualHub,
+    /// Name or address of the device.
+    pub host: String,
+    /// Its TCP port; empty: 44818.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Milliseconds from one cyclic packet to the next; empty: 10.
+    pub interval: String,
+    /// The high byte of process data comes first.
+    pub big_endian: bool,
+    /// Where cyclic data go, unless the device says so itself; empty: as usual.
+    pub udp: String,
+    /// Milliseconds that a reply may take; empty: as usual.
+    pub timeout: String,
+    /// Which places of a virtual hub have a drive, such as `1,0,1`.
+    pub drives: String,
+    /// What goes wrong with a virtual device on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+/// The parameter for the byte order, and the order that is not usual.
+const BIG_ENDIAN: (&str, &str) = ("order", "big");
+/// The port of explicit messages.
+const PORT: &str = "44818";
+
+impl VirtualHub {
+    /// As the link says it.
+    const fn word(self) -> Option<&'static str> {
+        match self {
+            VirtualHub::Adapter => None,
+            VirtualHub::Four => Some("4"),
+            VirtualHub::Eight => Some("8"),
+        }
+    }
+
+    fn of_word(word: &str) -> Option<Self> {
+        [VirtualHub::Four, VirtualHub::Eight].into_iter().find(|hub| hub.word() == Some(word))
+    }
+}
+
+impl HiperdriveForm {
+    /// The virtual drive as the window begins with it: an adapter.
+    pub fn usual() -> LinkUrl {
+        LinkUrl::sim()
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let way = match url.scheme {
+            Scheme::Sim => HiperdriveWay::Virtual,
+            Scheme::Replay => HiperdriveWay::Replay,
+            Scheme::Enip | Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => HiperdriveWay::Network,
+        };
+        let mut form = HiperdriveForm { way, ..HiperdriveForm::default() };
+        match form.way {
+            HiperdriveWay::Replay => form.file = url.target.clone(),
+            HiperdriveWay::Network => {
+                (form.host, form.tcp_port) = parted(&url.target);
+                if form.tcp_port == PORT {
+                    form.tcp_port.clear();
+                }
+            }
+            HiperdriveWay::Virtual => {}
+        }
+        for (name, value) in url.query.pairs() {
+            let hub = VirtualHub::of_word(value).filter(|_| way == HiperdriveWay::Virtual && name == "hub");
+            if let Some(hub) = hub {
+                form.hub = hub;
+            } else if (name.as_str(), value.as_str()) == BIG_ENDIAN {
+                form.big_endian = true;
+            } else {
+                match form.entry(name) {
+                    Some(entry) => value.clone_into(entry),
+                    None => form.rest.push((name.clone(), value.clone())),
+                }
+            }
+        }
+        form
+    }
+
+    /// The entry of a parameter; `None` where there is none.
+    fn entry(&mut self, name: &str) -> Option<&mut String> {
+        let is_virtual = self.way == HiperdriveWay::Virtual;
+        match name {
+            "rpi" => Some(&mut self.interval),
+            "udp" => Some(&mut self.udp),
+            "timeout" => Some(&mut self.timeout),
+            "drives" if is_virtual => Some(&mut self.drives),
+            "fault" if is_virtual => Some(&mut self.fault),
+            _ => None,
+        }
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        let (scheme, target) = self.target()?;
+        let url = assemble(scheme, &target, &self.parameters())?;
+        check(&url).map_err(|error| refused(&url, &error))?;
+        Ok(url)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        Ok(match self.way {
+            HiperdriveWay::Virtual => (Scheme::Sim, String::new()),
+            HiperdriveWay::Network => {
+                let port = filled(&self.tcp_port).unwrap_or_else(|| PORT.to_owned());
+                (Scheme::Enip, host_and_port(&self.host, &port)?)
+            }
+            HiperdriveWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Vec<(String, String)> {
+        let is_virtual = self.way == HiperdriveWay::Virtual;
+        let mut parameters = Vec::new();
+        let mut add = |name: &str, value: &str| {
+            parameters.extend(filled(value).map(|value| (name.to_owned(), value)));
+        };
+        if is_virtual {
+            add("hub", self.hub.word().unwrap_or_default());
+            add("drives", &self.drives);
+            add("fault", &self.fault);
+        }
+        add("rpi", &self.interval);
+        if self.big_endian {
+            add(BIG_ENDIAN.0, BIG_ENDIAN.1);
+        }
+        add("udp", &self.udp);
+        add("timeout", &self.timeout);
+        // What only a virtual device has is not taken along.
+        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
+        for (name, value) in self.rest.iter().filter(|(name, _)| belongs(name)) {
+            // What has an entry by now is what that says.
+            if parameters.iter().all(|(own, _)| own != name) {
+                parameters.push((name.clone(), value.clone()));
+            }
+        }
+        parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        for link in [
+            "sim:",
+            "sim:?hub=4",
+            "sim:?hub=8&drives=1,0,1&rpi=20&order=big&seed=7",
+            "sim:?order=little",
+            "enip:192.168.1.5:44818",
+            "enip:192.168.1.5:50123?rpi=5&order=big&udp=2222&timeout=250",
+            "replay:monday.trace",
+        ] {
+            let url: LinkUrl = link.parse().unwrap();
+            let mut expected: Vec<_> = url.query.pairs().to_vec();
+            let back = HiperdriveForm::from_url(&url).url().unwrap();
+            let mut found: Vec<_> = back.query.pairs().to_vec();
+            expected.sort();
+            found.sort();
+            assert_eq!((back.scheme, &back.target, found), (url.scheme, &url.target, expected), "{link}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut HiperdriveForm)| {
+            let mut form = HiperdriveForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.host_missing");
+        assert_eq!(refused(|form| form.way = HiperdriveWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.interval = "4".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.drives = "2".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.timeout = "x".to_owned()), "form.parameter");
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let mut form = HiperdriveForm::from_url(&"sim:?hub=4&seed=5&rpi=20".parse().unwrap());
+        (form.way, form.host) = (HiperdriveWay::Network, "192.168.1.5".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "enip:192.168.1.5:44818?rpi=20");
+    }
+}

@@ -1,0 +1,231 @@
+//! What the user asks of a device and its drives, carried out: edits and motion at once, everything else as a job on its line
+//! or a task.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+
+use super::action::{Action, Motor};
+use super::job;
+use super::review::Review;
+use super::staged::Edit;
+use super::unit::Unit;
+use super::words;
+use crate::app::action::{FileQuestion, ReadError};
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::Source;
+use crate::app::{Severity, Text};
+use crate::device::hiperdrive::dead_man::Wish;
+use crate::profile::hiperdrive::HiperdriveProfile;
+use crate::profile::{Body, Document};
+use crate::worker::hiperdrive::HiperdriveJob;
+
+impl Unit {
+    /// Does what is asked.
+    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(HiperdriveJob::Survey, services);
+                }
+            }
+            Action::ReadStatus => {
+                self.submit(HiperdriveJob::Status, services);
+            }
+            Action::Check => {
+                self.submit(HiperdriveJob::Check, services);
+            }
+            Action::ReadPosition => {
+                self.submit(HiperdriveJob::Position(self.drive()), services);
+            }
+            Action::Poll(interval) => {
+                if let Some(line) = &mut self.session.line {
+                    let begins = line.polling().is_none();
+                    line.poll(interval);
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::SelectDrive(drive) => {
+                if self.drives().contains(&drive) {
+                    self.show_drive(drive);
+                    self.watch(services);
+                }
+            }
+            Action::SetMeasure(measure) => self.measure = measure,
+            Action::SetPitch(drive, pitch) => {
+                match pitch.filter(|own| own.nanometres > 0) {
+                    Some(pitch) => self.pitches.insert(drive, pitch),
+                    None => self.pitches.remove(&drive),
+                };
+                let ruler = self.ruler(drive);
+                if ruler.of(0, self.measure).is_none() {
+                    self.measure = super::Measure::default();
+                }
+            }
+            Action::Edit(edit) => self.edit(&edit),
+            Action::Undo => {
+                self.staged.undo();
+                self.refusal = None;
+            }
+            Action::Redo => {
+                self.staged.redo();
+                self.refusal = None;
+            }
+            Action::RevertAll => {
+                self.staged.revert();
+                self.refusal = None;
+            }
+            Action::Review => self.review_edits(services),
+            Action::Plan(change) => self.plan(*change, services),
+            Action::Take => self.take_control(services),
+            Action::Give => {
+                self.moves.stop();
+                self.submit(HiperdriveJob::Give, services);
+            }
+            Action::Drive(motor) => self.drive_by(motor, services),
+            Action::AskSave => {
+                let suggested = self.session.suggested_file();
+                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
+            }
+            Action::Save(path) => self.save(path, services),
+            Action::Restore(path) => match self.key() {
+                Some(of) => self.session.read_backup(of, path, services),
+                None => self.refuse(Text::new("session.not_connected"), services),
+            },
+        }
+    }
+
+    /// What moves a drive: refused in words where it may not be, so that nobody waits for a motion that does not come.
+    fn drive_by(&mut self, motor: Motor, services: &mut Services) {
+        let drive = self.drive();
+        let wish = match motor {
+            Motor::JogHold => return self.moves.hold(),
+            Motor::JogRelease => return self.moves.release(),
+            Motor::Stop => return self.moves.stop(),
+            Motor::JogEffort(effort) => return self.moves.set_jog_effort(effort),
+            Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
+            Motor::Expert(expert) => return self.moves.set_expert(expert),
+            Motor::ConfirmLimits(drive) => return self.moves.confirm_limits(drive),
+            Motor::JogPress { repeated: true, .. } => return,
+            Motor::JogPress { direction, .. } => Wish::Jog { direction, effort: self.moves.jog_effort() },
+            Motor::Lead(goal) => Wish::Lead(goal),
+            Motor::Acknowledge => Wish::Acknowledge,
+            Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort() },
+            Motor::Move { target } => Wish::Move { target, effort: self.moves.move_effort() },
+            Motor::Run { direction, end } => Wish::Run { direction, end, effort: self.moves.move_effort() },
+            Motor::Pause => Wish::Pause,
+            Motor::Resume => Wish::Resume,
+        };
+        if let Err(why) = self.may(drive, wish) {
+            // What was under way goes on: nothing else has begun.
+            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            return;
+        }
+        match motor {
+            Motor::JogPress { direction, repeated } => self.moves.press(drive, direction, repeated),
+            _ => {
+                self.moves.want(drive, wish);
+            }
+        }
+    }
+
+    /// Opens the cyclic connection; from then on the drive that is shown is seen all the time.
+    fn take_control(&mut self, services: &mut Services) {
+        if let Err(why) = self.can_take() {
+            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            return;
+        }
+        self.submit(HiperdriveJob::Take, services);
+    }
+
+    pub(super) fn edit(&mut self, edit: &Edit) {
+        self.refusal = match self.session.is_writing() {
+            true => Some(Text::new("session.busy")),
+            false => self.staged.edit(edit).err().map(|error| words::refused(&error)),
+        };
+    }
+
+    pub(super) fn refuse(&self, text: Text, services: &mut Services) {
+        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+    }
+
+    /// Starts a job, or says why not and gives false.
+    pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
+        let (what, writes) = (job::words(&job), matches!(job, HiperdriveJob::Commit(_)));
+        self.session.submit(job, what, writes, services)
+    }
+
+    /// A connected device is read again for it; a profile is written as it is edited.
+    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        match &self.session.source {
+            Source::Link(_) | Source::New { .. } => {
+                if self.submit(HiperdriveJob::Save, services) {
+                    self.session.save_to = Some(path);
+                }
+            }
+            Source::File { document, .. } => {
+                let mut document = (**document).clone();
+                if let Some(profile) = self.wanted_profile() {
+                    document.body = Body::Hiperdrive(Box::new(profile));
+                }
+                self.session.write_document(path, document, Vec::new(), services);
+            }
+        }
+    }
+
+    /// A profile was read for a file.
+    pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+        self.staged.refresh_some(&profile.image);
+        let Some(path) = self.session.save_to.take() else { return };
+        let mut remarks = Vec::new();
+        // The profile holds what the device has.
+        if self.is_dirty() {
+            remarks.push(Text::new("session.saved_without").with("count", self.edits()));
+        }
+        let now = Timestamp::now();
+        let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
+        let document = Document::new(seconds.to_string(), Body::Hiperdrive(Box::new(profile)));
+        self.session.write_document(path, document, remarks, services);
+    }
+
+    /// A backup was read, or not.
+    pub(in crate::app) fn take_backup(
+        &mut self,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        match result.and_then(|document| document.body.into_hiperdrive().map_err(ReadError::Profile)) {
+            Ok(profile) => self.plan_restore(profile, services),
+            Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
+        }
+    }
+
+    /// The connection is gone; what is known and edited stays.
+    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+        self.moves.end();
+        // What passed at last says most about why it was the last.
+        self.take_samples_and_frames();
+        self.forget_asked();
+        self.write_lost(&why);
+        self.session.lose(why, services);
+    }
+
+    /// Lets its thread go, every motion first; what runs ends as `end` says.
+    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.moves.end();
+        self.forget_asked();
+        self.session.let_go(end, services);
+    }
+
+    /// What was asked for on the line does not come any more.
+    fn forget_asked(&mut self) {
+        self.forget_readings();
+        self.target = None;
+        if self.review.as_ref().is_some_and(Review::is_plan) {
+            self.review = None;
+        }
+    }
+}

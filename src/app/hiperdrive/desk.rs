@@ -1,0 +1,87 @@
+//! HIPERDRIVE devices among those of the studio: which one is shown, what stops all of them, what is remembered of them.
+
+use super::action::Action;
+use super::unit::Unit;
+use crate::app::AnyDevice;
+use crate::app::services::Services;
+use crate::app::studio::{SessionId, Studio};
+use crate::app::tab::Tab;
+
+impl Studio {
+    /// The device or profile that the HIPERDRIVE tab shows.
+    pub fn hiperdrive(&self) -> Option<&Unit> {
+        self.device(self.shown.of(Tab::Hiperdrive)?)?.hiperdrive()
+    }
+
+    fn hiperdrives(&self) -> impl Iterator<Item = &Unit> {
+        self.devices.iter().filter_map(AnyDevice::hiperdrive)
+    }
+
+    /// Drives are connected, in whichever session: STOP has to be in reach.
+    pub fn has_drives(&self) -> bool {
+        self.hiperdrives().any(|unit| unit.session.line().is_some())
+    }
+
+    /// Some drive moves, as far as is known here, or is about to.
+    pub fn moves(&self) -> bool {
+        self.hiperdrives().any(Unit::is_moving)
+    }
+
+    /// Somebody has control of some drives: what they say comes by itself.
+    pub fn is_in_control(&self) -> bool {
+        self.hiperdrives().any(|unit| unit.moves.is_open())
+    }
+
+    /// Stops all drives of all sessions, whatever moves them.
+    pub(in crate::app) fn stop_motion(&mut self) {
+        self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.stop());
+    }
+
+    /// Whatever a person holds is let go, and what turns without an end: the window has lost the keyboard, or has put
+    /// something over itself.
+    pub(in crate::app) fn let_go_of_jogs(&mut self) {
+        self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.let_go());
+    }
+
+    /// A jog lives only as long as its panel can be seen: another tab or device, a dialog or a question end it.
+    pub(in crate::app) fn hold_in_sight(&mut self) {
+        let is_covered = self.connect.is_some() || self.question.is_some();
+        let seen = self.shown.of(Tab::Hiperdrive).filter(|_| self.settings.tab == Tab::Hiperdrive && !is_covered);
+        for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
+            if seen != Some(unit.session.id) || unit.review.is_some() {
+                unit.moves.release();
+            }
+        }
+    }
+
+    /// What is remembered of drives from one start to the next goes to them, and what is new of it into the settings.
+    pub(in crate::app) fn remember_drives(&mut self) {
+        for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
+            let Some(key) = unit.remembered_as() else { continue };
+            if unit.take_remembered(self.settings.drives(&key)) {
+                self.settings.remember_drives(key, unit.remembered());
+            }
+        }
+    }
+
+    pub(in crate::app) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {
+        match action {
+            Action::Reconnect => self.reconnect(id),
+            Action::WriteInto(target) => {
+                let profile = self.device(id).and_then(AnyDevice::hiperdrive).and_then(Unit::wanted_profile);
+                let Some(profile) = profile else { return };
+                self.show(Tab::Hiperdrive, target);
+                self.with_hiperdrive(target, |unit, services| unit.plan_restore(profile, services));
+            }
+            action => self.with_hiperdrive(id, |unit, services| unit.act(action, services)),
+        }
+    }
+
+    pub(in crate::app) fn with_hiperdrive(&mut self, id: SessionId, act: impl FnOnce(&mut Unit, &mut Services)) {
+        self.with_device(id, |device, services| {
+            if let Some(unit) = device.hiperdrive_mut() {
+                act(unit, services);
+            }
+        });
+    }
+}

@@ -1,0 +1,53 @@
+//! Edits of a device's parameters, kept over a crash.
+
+use std::path::PathBuf;
+
+use super::staged::Kept;
+use super::unit::Unit;
+use crate::app::session::{Drafted, Drafting, Session};
+use crate::profile::Document;
+use crate::protocol::hiperdrive::KIND;
+use crate::worker::hiperdrive::Hiperdrive;
+
+/// What is edited, each with its number.
+pub(in crate::app) type Edits = Vec<Kept>;
+
+impl Drafted for Unit {
+    const KIND: &'static str = KIND;
+    type Device = Hiperdrive;
+    type Edits = Edits;
+
+    fn session(&self) -> &Session<Hiperdrive> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Hiperdrive> {
+        &mut self.session
+    }
+
+    fn drafting(&self) -> &Drafting<Edits> {
+        &self.drafting
+    }
+
+    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
+        &mut self.drafting
+    }
+
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+
+    fn edited(&self) -> Edits {
+        self.staged.kept()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
+    }
+
+    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        let Some(profile) = document.body.hiperdrive() else { return };
+        self.staged.saved(profile.image.clone());
+        self.session.take_document(path, key, document);
+    }
+}

@@ -1,0 +1,33 @@
+//! The HIPERDRIVE tab: what is known of an adapter or a hub and its drives, what is wanted of them beside that, and the
+//! drives as a person moves them. Complete without a window.
+
+mod act;
+mod action;
+mod desk;
+mod drafts;
+pub mod forms;
+mod job;
+mod moves;
+mod news;
+mod record;
+mod remembered;
+mod review;
+mod rows;
+mod ruler;
+mod said;
+mod staged;
+mod trace;
+mod unit;
+pub mod words;
+mod write;
+
+pub use action::{Action, Motor};
+pub use moves::Moves;
+pub use record::Record;
+pub use remembered::Remembered;
+pub use review::{Review, ReviewState};
+pub use rows::Row;
+pub use ruler::{Beyond, Measure, Ruler};
+pub use said::Said;
+pub use staged::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged, is_editable};
+pub use unit::Unit;

@@ -1,0 +1,161 @@
+//! What may be asked of a drive at the moment, why not, and how it stands with what was asked: in words.
+
+use super::unit::Unit;
+use crate::app::session::Phase;
+use crate::app::{Severity, Text, explain};
+use crate::device::hiperdrive::dead_man::{Goal, Lock, Phase as Doing, Wish};
+use crate::protocol::hiperdrive::{DriveNumber, Percent, RunEnd, State, effective_torque};
+
+/// How it stands with what was asked of a drive.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// In words.
+    pub words: Text,
+    /// Nobody has to do anything about it.
+    pub is_well: bool,
+}
+
+impl Unit {
+    /// Whether the cyclic connection can be opened now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn can_take(&self) -> Result<(), Text> {
+        match self.session.why_not_ready() {
+            _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
+            Some(why) => Err(why),
+            None if self.moves.is_open() => Err(Text::new("hd_said.in_control")),
+            None if self.survey.is_none() => Err(explain::hiperdrive::lock(Lock::Unread)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the cyclic connection can be closed now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn can_give(&self) -> Result<(), Text> {
+        match self.session.why_not_ready() {
+            _ if !self.moves.is_open() => Err(Text::new("hd_refused.not_taken")),
+            Some(why) => Err(why),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a drive may be moved now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.may_be_led()?;
+        if let Some(lock) = self.moves.locks(drive).first() {
+            return Err(explain::hiperdrive::lock(*lock));
+        }
+        match self.state(drive) {
+            Some(State::Fault) => Err(Text::new("hd_refused.fault")),
+            Some(State::Locked) => Err(Text::new("hd_refused.lock")),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a drive may run past its limits.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.may_move(drive)?;
+        let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
+        if permitted { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+    }
+
+    fn may_be_led(&self) -> Result<(), Text> {
+        if !self.moves.is_open() {
+            return Err(Text::new("hd_refused.not_taken"));
+        }
+        if self.session.is_writing() || self.review.is_some() {
+            return Err(Text::new("hd_refused.busy"));
+        }
+        Ok(())
+    }
+
+    /// Whether this may be asked of a drive now.
+    pub(super) fn may(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+        let asks_target = match wish {
+            Wish::Move { target, .. } => Some(target),
+            _ => None,
+        };
+        match wish {
+            Wish::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
+            _ if wish.moves() => self.may_move(drive)?,
+            _ => self.may_be_led()?,
+        }
+        let Some(permit) = self.moves.permit(drive) else { return Err(Text::new("hd_refused.not_taken")) };
+        let place = |steps| self.place(drive, steps);
+        permit.check(wish, asks_target).map_err(|refusal| explain::hiperdrive::refusal(refusal, place))
+    }
+
+    /// A place as a person measures it, with its unit.
+    pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
+        let ruler = self.ruler(drive);
+        let value = ruler.of(i64::from(steps), self.measure);
+        let (value, measure) = value.map_or((f64::from(steps), super::Measure::Steps), |value| (value, self.measure));
+        Text::new("hd_entry.place")
+            .with_number("value", value, ruler.decimals(measure))
+            .with_text("unit", Text::new(measure.unit()))
+    }
+
+    /// States to which a drive can be led from the one it is in, by one word; none while nobody has control.
+    pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
+        let Some(state) = self.state(drive).filter(|_| self.may_be_led().is_ok()) else { return Vec::new() };
+        let mut reachable = Vec::new();
+        for row in state.transitions().filter(|row| row.word.is_some()) {
+            if !reachable.contains(&row.to) {
+                reachable.push(row.to);
+            }
+        }
+        reachable
+    }
+
+    /// What leads a drive to a state: its control word, and whether the manual says so.
+    pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
+        let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
+        let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
+        Some(Text::new(id).with("word", format!("0x{:04X}", row.word?.word())))
+    }
+
+    /// The goal that leads to a state; `None` for those that nothing leads to by itself. A fault is left by acknowledging.
+    pub fn goal(to: State) -> Option<Goal> {
+        match to {
+            State::NotReady => Some(Goal::Off),
+            State::Ready => Some(Goal::Ready),
+            State::Operational => Some(Goal::Operational),
+            State::Enabled => Some(Goal::Enabled),
+            State::Moving | State::Fault | State::Locked => None,
+        }
+    }
+
+    /// What is done with a drive, or how the last act ended; `None` without a cyclic connection, and before the first.
+    pub fn said(&self, drive: DriveNumber) -> Option<Said> {
+        let view = self.moves.drive(drive)?;
+        if view.phase != Doing::Idle {
+            return Some(Said { words: explain::hiperdrive::phase(view.phase), is_well: true });
+        }
+        let (_, ended) = view.ended?;
+        let words = explain::hiperdrive::ended(ended, |steps| self.place(drive, steps));
+        Some(Said { words, is_well: explain::hiperdrive::weight(ended) == Severity::Note })
+    }
+
+    /// What so many percent of the speed are, by parameter 166.
+    pub fn speed_of(&self, percent: Percent) -> Option<Text> {
+        let most = self.number(self.drive(), 166)?;
+        // Tenths of rpm, of a hundred.
+        let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
+        Some(Text::new("hd_entry.rpm").with_number("rpm", rpm, 1))
+    }
+
+    /// What so many percent of the torque are as the drive takes them: the next 25 % above.
+    pub fn torque_of(&self, percent: Percent) -> Option<Text> {
+        let effective = effective_torque(percent.get());
+        (effective != percent.get()).then(|| Text::new("hd_entry.torque").with("percent", effective))
+    }
+}

@@ -1,0 +1,401 @@
+//! An adapter or a hub with its drives on the desk, or a profile of one: what is known of it, the user's edits beside it,
+//! what runs on its line, and the drives as they are moved.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use super::drafts::Edits;
+use super::moves::Moves;
+use super::record::Record;
+use super::review::Review;
+use super::ruler::{Measure, Ruler};
+use super::staged::{Mark, Staged, is_editable};
+use crate::app::check::CheckLine;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text};
+use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Network, Reading, Status, Survey};
+use crate::link::LinkUrl;
+use crate::profile::hiperdrive::{HiperdriveProfile, Image, ProfileIdentity};
+use crate::profile::{Body, Document};
+use crate::protocol::hiperdrive::{
+    Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
+};
+use crate::sim::hiperdrive::Target;
+use crate::store::DeviceKey;
+use crate::worker::hiperdrive::{Hiperdrive, device_key};
+
+/// An adapter or a hub with its drives, or a profile of one.
+pub struct Unit {
+    /// What every session has.
+    pub session: Session<Hiperdrive>,
+    /// Everything that was read.
+    pub survey: Option<Survey>,
+    /// States and errors, as they were read last.
+    pub status: Option<Status>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
+    /// Parameters beside the edits of them.
+    pub staged: Staged,
+    /// What was recorded of the drive that is shown.
+    pub record: Record,
+    /// A write on its way.
+    pub review: Option<Review>,
+    /// The drives as they are moved.
+    pub moves: Moves,
+    /// What positions are shown in.
+    pub measure: Measure,
+    /// Why the last edit was not taken.
+    pub refusal: Option<Text>,
+    /// The virtual device behind the session.
+    pub target: Option<Target>,
+    /// Which drive is shown.
+    drive: DriveNumber,
+    pub(super) pitches: BTreeMap<DriveNumber, Length>,
+    /// What was remembered of it has been looked for.
+    pub(super) is_remembered: bool,
+    /// What was read last of each drive while nobody had control.
+    readings: BTreeMap<DriveNumber, Reading>,
+    /// Which drive is polled.
+    pub(super) watched: DriveNumber,
+    /// Polling has begun by itself since the link was opened.
+    pub(super) has_polled: bool,
+    /// Errors are to be read again as soon as the line is free.
+    pub(super) looks_at_errors: bool,
+    pub(in crate::app) drafting: Drafting<Edits>,
+}
+
+impl Unit {
+    /// A device at a link that is being opened.
+    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Unit::with(Session::at_link(id, url), Staged::default())
+    }
+
+    fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
+        Unit {
+            drafting: Drafting::new(session.id),
+            session,
+            survey: None,
+            status: None,
+            check: None,
+            staged,
+            record: Record::default(),
+            review: None,
+            moves: Moves::default(),
+            measure: Measure::default(),
+            refusal: None,
+            target: None,
+            drive: DriveNumber::FIRST,
+            pitches: BTreeMap::new(),
+            is_remembered: false,
+            readings: BTreeMap::new(),
+            watched: DriveNumber::FIRST,
+            has_polled: false,
+            looks_at_errors: false,
+        }
+    }
+
+    /// A profile of a device.
+    pub(in crate::app) fn in_file(
+        id: SessionId,
+        (path, key): (PathBuf, String),
+        document: Document,
+        services: &Services,
+    ) -> Self {
+        let staged = match &document.body {
+            Body::Hiperdrive(profile) => Staged::of_profile(profile.image.clone()),
+            _ => Staged::default(),
+        };
+        let mut unit = Unit::with(Session::in_file(id, (path, key), document), staged);
+        unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
+        unit.load_draft(services);
+        unit
+    }
+
+    /// The profile, where this is one.
+    pub fn profile(&self) -> Option<&HiperdriveProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        document.body.hiperdrive()
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(in crate::app) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
+        let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
+        Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
+    }
+
+    /// Who it is, as far as that is known.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Who it was, where this is a profile.
+    pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
+        self.profile().map(|profile| &profile.identity)
+    }
+
+    /// Its serial number; `None` where nothing has been read.
+    pub fn serial_number(&self) -> Option<&str> {
+        let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
+        self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
+    }
+
+    /// Its address and where it has it from.
+    pub fn network(&self) -> Option<&Network> {
+        self.survey.as_ref().map(|survey| &survey.network)
+    }
+
+    /// The drives that are plugged in, or that a profile speaks of.
+    pub fn drives(&self) -> Vec<DriveNumber> {
+        match self.identity() {
+            Some(own) => own.drives.iter().map(|drive| drive.number).collect(),
+            None => self.staged.wanted().map(Image::drives).unwrap_or_default(),
+        }
+    }
+
+    /// The drive that is shown.
+    pub fn drive(&self) -> DriveNumber {
+        self.drive
+    }
+
+    pub(super) fn show_drive(&mut self, drive: DriveNumber) {
+        if self.drive != drive {
+            self.moves.release();
+            self.drive = drive;
+            self.record.forget();
+        }
+    }
+
+    /// Who a drive is; `None` before it was read.
+    pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
+        self.identity()?.drive(drive)
+    }
+
+    /// A parameter as it was read.
+    pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
+        self.survey.as_ref()?.values.get(&number)
+    }
+
+    /// A number of a drive as it was read, by the number of drive 1.
+    pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
+        match self.value(ParameterNumber::of_drive(number, drive)?)? {
+            Value::Number(value) => Some(*value),
+            Value::Text(_) => None,
+        }
+    }
+
+    /// State and errors of a drive, as they were read last.
+    pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
+        self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
+    }
+
+    /// What a drive said last: over the cyclic connection, or where it was asked.
+    pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+        let read = || self.readings.get(&drive).map(|reading| reading.actual);
+        self.moves.actual(drive).or_else(read).or_else(|| self.surveyed(drive))
+    }
+
+    fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {
+        Some(Actual {
+            status: StatusWord::new(u16::try_from(self.number(drive, 105)?).ok()?),
+            speed: i16::try_from(self.number(drive, 106)?).ok()?,
+            position: i32::try_from(self.number(drive, 107)?).ok()?,
+        })
+    }
+
+    /// In which state a drive is.
+    pub fn state(&self, drive: DriveNumber) -> Option<State> {
+        self.actual(drive).map(|own| own.status.state())
+    }
+
+    /// Some drive moves, as far as is known here, or is about to.
+    pub fn is_moving(&self) -> bool {
+        let said = || {
+            let mut last = self.readings.values();
+            last.any(|own| own.actual.status.state() == State::Moving)
+        };
+        self.moves.is_moving() || self.session.line().is_some() && !self.moves.is_open() && said()
+    }
+
+    /// Steps and what a person measures in, of a drive as it is.
+    pub fn ruler(&self, drive: DriveNumber) -> Ruler {
+        let scale = self.staged.base().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
+        Ruler { scale, pitch: self.pitch(drive) }
+    }
+
+    /// The same as its scale is wanted.
+    pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
+        let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
+        Ruler { scale, pitch: self.pitch(drive) }
+    }
+
+    /// The pitch of the spindle behind a drive, where somebody has said so.
+    pub fn pitch(&self, drive: DriveNumber) -> Option<Length> {
+        self.pitches.get(&drive).copied()
+    }
+
+    /// How a drive's speed is scaled.
+    pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
+        let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
+        let scale = part(162).zip(part(164)).and_then(|(above, below)| SpeedScale::new(above, below).ok());
+        scale.unwrap_or(SpeedScale::FACTORY)
+    }
+
+    /// A drive's limits as it has them, in steps as scaled; `None` where they were not read.
+    pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
+        let (lower, upper) = self.staged.base()?.limits(drive)?;
+        Some((i32::try_from(lower).ok()?, i32::try_from(upper).ok()?))
+    }
+
+    /// The limits that a person has to look at before the drive moves; `None` where there is nothing to look at.
+    pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
+        self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
+    }
+
+    /// What is not right in what is wanted.
+    pub fn marks(&self) -> Vec<Mark> {
+        self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
+    }
+
+    /// Things that are edited.
+    pub(in crate::app) fn edits(&self) -> usize {
+        self.staged.differences().len()
+    }
+
+    pub(in crate::app) fn can_undo(&self) -> bool {
+        self.staged.can_undo()
+    }
+
+    pub(in crate::app) fn can_redo(&self) -> bool {
+        self.staged.can_redo()
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.staged.is_dirty()
+    }
+
+    /// There is something to stop.
+    pub fn is_active(&self) -> bool {
+        self.session.is_active() || self.is_moving()
+    }
+
+    /// Ends what runs, and every motion first.
+    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+        self.moves.stop();
+        self.session.stop(services);
+    }
+
+    /// Takes over what was read from the device; edits stay, unless they are another device's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        if self.is_another(&survey.identity) {
+            if self.staged.is_dirty() {
+                let text = Text::new("session.other_encoder").with("serial", &survey.identity.serial_number);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            self.forget_device(services);
+        }
+        let first = self.survey.is_none();
+        let image = image(&survey);
+        self.notice_scales(&image);
+        self.session.title = Some(title(&survey.identity));
+        self.staged.refresh(image);
+        self.survey = Some(survey);
+        self.readings.clear();
+        if !self.drives().contains(&self.drive)
+            && let Some(drive) = self.drives().first().copied()
+        {
+            self.show_drive(drive);
+        }
+        if first {
+            self.load_draft(services);
+            self.log_answer(services);
+        }
+        self.list_backups(services);
+    }
+
+    /// Where a scale is another one than it was, nobody has looked at the limits since.
+    fn notice_scales(&mut self, now: &Image) {
+        let Some(before) = self.staged.base() else { return };
+        let is_other = |drive: &DriveNumber| before.scale(*drive).is_some_and(|own| now.scale(*drive) != Some(own));
+        for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
+            self.moves.unconfirm(drive);
+        }
+    }
+
+    /// A drive was asked where it is.
+    pub(super) fn take_reading(&mut self, reading: Reading) {
+        let before = self.actual(reading.drive).map(|own| own.status.state());
+        self.readings.insert(reading.drive, reading);
+        self.notice_fault(reading.drive, before);
+    }
+
+    /// A drive that has failed since is asked why.
+    pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
+        if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
+            self.looks_at_errors = true;
+        }
+    }
+
+    /// Another device than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        self.identity().is_some_and(|known| {
+            (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
+        })
+    }
+
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = self.identity() else { return };
+        let fact = Text::new("log.hiperdrive")
+            .with("category", &identity.category)
+            .with("serial", &identity.serial_number)
+            .with("version", &identity.version)
+            .with("drives", identity.drives.len());
+        self.session.log_answer(vec![fact], services);
+    }
+
+    fn forget_device(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        (self.survey, self.status, self.check, self.review, self.refusal) = (None, None, None, None, None);
+        self.session.title = None;
+        self.staged.clear();
+        self.moves.forget();
+        self.record.forget();
+        self.readings.clear();
+        self.pitches.clear();
+        (self.is_remembered, self.measure) = (false, Measure::default());
+        (self.session.backups, self.session.writes) = (None, None);
+    }
+
+    /// The connection is gone: where drives are nobody knows any more.
+    pub(super) fn forget_readings(&mut self) {
+        self.readings.clear();
+        self.looks_at_errors = false;
+    }
+
+    /// Reads the list of backups and writes again, on a thread.
+    pub(super) fn list_backups(&mut self, services: &Services) {
+        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
+        self.session.list_backups(key, services);
+    }
+
+    /// How the logbook knows it.
+    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+}
+
+/// What can be edited of what was read.
+fn image(survey: &Survey) -> Image {
+    let editable = |(number, value): (&ParameterNumber, &Value)| match value {
+        Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),
+        _ => None,
+    };
+    Image { values: survey.values.iter().filter_map(editable).collect() }
+}
+
+/// The name by which the log and the jobs call a device.
+fn title(identity: &Identity) -> String {
+    format!("{} · {}", identity.category, identity.serial_number)
+}
