@@ -73,9 +73,9 @@ pub struct Way {
 impl Session<Hiperdrive> {
     /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
     pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
-        let Way { wire, station, target, .. } = way;
+        let Way { wire, port, station, target } = way;
         let is_virtual = target.is_some();
-        let control = Control::new(clock.clone());
+        let control = Control::new(port, clock.clone());
         let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
         Session::with(device, clock, store, is_virtual)
     }
@@ -107,6 +107,7 @@ impl Device for Hiperdrive {
 
     fn run(&mut self, desk: &mut Desk, job: HiperdriveJob, tell: Told<'_>) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
+        self.let_go_of_lost(desk);
         let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
         let mut parameter = |done, total, number| step(done, total, Doing::Parameter(number));
         Ok(match job {
@@ -132,7 +133,10 @@ impl Device for Hiperdrive {
                 self.take(desk)?;
                 Out::Taken
             }
-            HiperdriveJob::Give => Out::Given,
+            HiperdriveJob::Give => {
+                self.give(desk)?;
+                Out::Given
+            }
             HiperdriveJob::Watch(drive) => {
                 self.watched = drive;
                 Out::Watched(drive)
@@ -141,6 +145,7 @@ impl Device for Hiperdrive {
     }
 
     fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+        self.let_go_of_lost(desk);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
             return Ok(Reading { at: desk.clock.now(), drive, actual });
@@ -165,6 +170,6 @@ impl Device for Hiperdrive {
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
+        self.wire.check().inspect_err(|_| self.control.lose_session())
     }
 }

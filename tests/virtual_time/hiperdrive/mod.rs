@@ -1,5 +1,8 @@
 //! Drives behind an adapter or a hub over EtherNet/IP: sessions and requests, what is read and written with them, and how
 //! everything ends.
 
+mod cuts;
+mod jobs;
 mod scripted;
 mod support;
+mod writing;

@@ -24,7 +24,8 @@ pub(crate) struct Stand {
     pub(crate) target: Target,
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
-    pub(crate) folder: tempfile::TempDir,
+    /// Backups and the logbook lie in it.
+    _folder: tempfile::TempDir,
     pub(crate) session: Session<Hiperdrive>,
 }
 
@@ -59,7 +60,7 @@ impl Stand {
         let station = Station::new(MARGIN);
         let way = Way { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
         let session = Session::to_target(way, clock.clone(), store);
-        Stand { target, clock, tap, folder, session }
+        Stand { target, clock, tap, _folder: folder, session }
     }
 
     pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {

@@ -1,0 +1,133 @@
+//! The wire is cut at every request: what is told, what was written, and that everything ends in time.
+
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::Error;
+use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::link::Cancel;
+use encoder_studio::worker::hiperdrive::{Change, HiperdriveJob, JobError};
+
+use super::support::{Stand, drive, image};
+use crate::support::Tap;
+
+/// So long a command may take to give a device up.
+const LIMIT: Duration = Duration::from_secs(10);
+
+/// What happens to the wire at a request.
+type Cut = fn(&mut Tap, usize);
+
+const LOST: Cut = |tap, at| tap.lost_from = Some(at);
+const MUTE: Cut = |tap, at| tap.mute_from = Some(at);
+const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
+const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
+const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
+
+/// Three parameters and a save.
+fn write() -> Change {
+    Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
+}
+
+/// Requests of a write that nothing happens to.
+fn requests() -> usize {
+    let mut stand = Stand::new("");
+    let prepared = stand.prepare(write()).unwrap();
+    let before = stand.tap().sent.len();
+    stand.commit(prepared).unwrap();
+    let after = stand.tap().sent.len();
+    after - before
+}
+
+#[test]
+fn a_single_loss_is_asked_again_and_nothing_is_set_twice() {
+    for (cut, most) in [(REQUEST, 2), (REPLY, 1)] {
+        for at in 0..requests() {
+            let mut stand = Stand::new("");
+            let prepared = stand.prepare(write()).unwrap();
+            let before = stand.tap().sent.len();
+            cut(&mut stand.tap(), before + at);
+            let ended = stand.commit(prepared);
+            let sets = stand.sets();
+            let times = |own: u16| sets.iter().filter(|(number, _)| *number == own).count();
+            match ended {
+                Ok(done) => {
+                    assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{at}");
+                    assert_eq!((stand.value(24), stand.value(166), stand.value(186)), (7, 200, 30), "{at}");
+                }
+                // What saves is never sent twice: whether it was done nobody knows.
+                Err(JobError::Interrupted { interrupted, backup, .. }) => {
+                    assert_eq!(interrupted.unclear.as_deref(), Some("47"), "{at}: {interrupted}");
+                    assert!(backup.exists() && interrupted.done.write_cycles == 1, "{at}");
+                    assert_eq!(times(47), 1, "{at}");
+                }
+                Err(error) => panic!("{at}: {error}"),
+            }
+            for own in [24, 166, 186] {
+                // Set again only where reading back has shown that it was not taken.
+                assert!(times(own) <= most, "{at}: {sets:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
+    for (label, cut) in [("lost", LOST), ("mute", MUTE), ("deaf", DEAF)] {
+        for at in 0..requests() {
+            let mut stand = Stand::new("");
+            let prepared = stand.prepare(write()).unwrap();
+            let (begun, before) = (stand.elapsed(), stand.tap().sent.len());
+            cut(&mut stand.tap(), before + at);
+            let ended = stand.commit(prepared);
+            assert!(stand.elapsed() - begun < LIMIT, "{label} {at}: {:?}", stand.elapsed() - begun);
+            let locks = stand.session.motion().permitted(drive(1)).locks;
+            assert_eq!(locks, [Lock::Unread], "{label} {at}: what a drive may do is not known any more");
+            match ended {
+                Ok(done) => assert_eq!(done.written.verified, 3, "{label} {at}"),
+                Err(JobError::Device(error)) => assert!(error.is_lost(), "{label} {at}: {error}"),
+                Err(JobError::Interrupted { interrupted, backup, planned, .. }) => {
+                    assert!(backup.exists() && interrupted.cause.is_lost(), "{label} {at}: {interrupted}");
+                    assert!(interrupted.unclear.is_some() && planned == 4, "{label} {at}");
+                    let taken = [(24, 7), (166, 200), (186, 30)].iter().filter(|(own, new)| stand.value(*own) == *new);
+                    let taken = taken.count();
+                    let known = interrupted.done.verified as usize;
+                    assert!((known..=known + 1).contains(&taken), "{label} {at}: {interrupted}");
+                }
+                Err(other) => panic!("{label} {at}: {other}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wish_to_end_is_heard_between_two_operations() {
+    let mut stand = Stand::new("");
+    let mut seen = Vec::new();
+    for transactions in (0..requests() as u64 + 4).step_by(3) {
+        let prepared = match stand.prepare(write()) {
+            Ok(prepared) if !prepared.plan.is_empty() => prepared,
+            _ => break,
+        };
+        stand.session.set_cancel(Cancel::after(transactions));
+        match stand.commit(prepared) {
+            Err(JobError::Device(Error::Cancelled)) => assert!(stand.sets().is_empty() || !seen.is_empty()),
+            Err(JobError::Interrupted { interrupted, .. }) => {
+                assert_eq!((&interrupted.cause, interrupted.unclear.as_ref()), (&Error::Cancelled, None));
+                seen.push(interrupted.done.ops);
+            }
+            Ok(_) => break,
+            Err(error) => panic!("{error}"),
+        }
+        stand.session.set_cancel(Cancel::default());
+    }
+    assert_eq!(stand.value(47), 0);
+}
+
+#[test]
+fn a_device_that_is_gone_is_given_up_in_time() {
+    let mut stand = Stand::new("");
+    stand.tap().deaf_from = Some(0);
+    let begun = stand.elapsed();
+    let error = stand.run(HiperdriveJob::Hello).unwrap_err();
+    assert!(stand.elapsed() - begun < LIMIT);
+    assert!(matches!(error, JobError::Device(Error::NoReply { tries: 5, .. })), "{error}");
+}

@@ -1,0 +1,136 @@
+//! What can be read of a device. Nothing is set for it, and no cyclic connection is opened.
+
+use encoder_studio::device::hiperdrive::Error;
+use encoder_studio::device::hiperdrive::check::{Finding, Step, Verdict};
+use encoder_studio::link::Clock;
+use encoder_studio::protocol::ethernet_ip::{AddressSource, Service};
+use encoder_studio::protocol::hiperdrive::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
+use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError};
+
+use super::support::{Stand, drive, number};
+
+#[test]
+fn reading_changes_nothing() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1&requested=1&serial=99");
+    let jobs = [
+        HiperdriveJob::Hello,
+        HiperdriveJob::Survey,
+        HiperdriveJob::Identify,
+        HiperdriveJob::Status,
+        HiperdriveJob::Check,
+        HiperdriveJob::Position(drive(3)),
+        HiperdriveJob::Read(number(158)),
+        HiperdriveJob::Network,
+        HiperdriveJob::Save,
+        HiperdriveJob::Watch(drive(3)),
+    ];
+    for job in jobs {
+        stand.run(job).unwrap();
+    }
+    stand.session.sample().unwrap();
+    let others: Vec<_> = stand.requests().into_iter().filter(|request| request.service != Service::GET).collect();
+    assert!(others.is_empty(), "{others:?}");
+    assert!(stand.requests().len() > 200);
+    let now = stand.clock.now();
+    assert!(!stand.target.with(|station| station.is_open(now)));
+}
+
+#[test]
+fn a_hub_is_surveyed_with_the_drives_that_are_plugged_in() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1&variant=13&serial=99&switch=17&name=LINE 3");
+    let survey = stand.survey();
+    let identity = &survey.identity;
+    assert_eq!((identity.topology, identity.category.as_str()), (Topology::Hub4, "HIPERDRIVE HUB-4"));
+    assert_eq!((identity.serial_number.as_str(), identity.name.as_str()), ("99", "LINE 3"));
+    let drives: Vec<_> = identity.drives.iter().map(|own| (own.number.get(), own.variant, own.requested)).collect();
+    assert_eq!(
+        drives,
+        [(1, Variant::new(13), false), (3, Variant::new(13), false)],
+        "152 of a hub is 0 from the factory"
+    );
+    let value = |own: u16| survey.values.get(&number(own));
+    // Parameters of the device, of drives 1 and 3, and none of an empty place.
+    assert_eq!((value(166), value(366)), (Some(&Value::Number(350)), Some(&Value::Number(350))));
+    // An HDA70 turns 16000 times each way, of 65536 steps.
+    assert_eq!(value(360), Some(&Value::Number(1_048_576_000)));
+    assert_eq!((value(258), value(199), value(299)), (None, None, None));
+    assert_eq!(survey.network.address_switch(), AddressSwitch::parse(17));
+    assert_eq!(survey.network.control.unwrap().source(), AddressSource::Dhcp);
+}
+
+#[test]
+fn texts_come_plain_or_counted() {
+    for query in ["text=plain", "text=counted"] {
+        let mut stand = Stand::new(query);
+        let HiperdriveOutput::Value(own, value) = stand.run(HiperdriveJob::Read(number(13))).unwrap() else { panic!() };
+        assert_eq!((own.get(), value), (13, Value::Text("HIPERDRIVE SINGLE".to_owned())), "{query}");
+    }
+}
+
+#[test]
+fn places_and_drives_that_are_not_there_are_named() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1");
+    stand.run(HiperdriveJob::Hello).unwrap();
+    let mut refused = |job| match stand.run(job) {
+        Err(JobError::Device(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(HiperdriveJob::Read(number(258))), Error::NoDrive { drive: drive(2) });
+    assert_eq!(refused(HiperdriveJob::Position(drive(2))), Error::NoDrive { drive: drive(2) });
+    let no_place = Error::NoPlace { drive: drive(5), topology: Topology::Hub4 };
+    assert_eq!(no_place.to_string(), "there is no drive 5: HIPERDRIVE HUB-4 has 4");
+    assert_eq!(refused(HiperdriveJob::Read(number(558))), no_place);
+}
+
+#[test]
+fn status_tells_states_errors_and_temperatures_of_all_drives() {
+    let mut stand = Stand::new("hub=4&drives=1,1&requested=1&supply=23.4");
+    let now = stand.clock.now();
+    stand.target.with(|station| station.drive(drive(2)).unwrap().fail(now, ErrorCode::OVER_CURRENT));
+    let HiperdriveOutput::Status(status) = stand.run(HiperdriveJob::Status).unwrap() else { panic!() };
+    assert_eq!(status.supply_tenths, 234);
+    let [first, second] = status.drives.as_slice() else { panic!("{status:?}") };
+    assert_eq!((first.number, first.status.state(), first.buffer.len()), (drive(1), State::NotReady, 0));
+    assert_eq!((second.number, second.buffer.as_slice()), (drive(2), &[ErrorCode::OVER_CURRENT][..]));
+    assert!(first.requested && second.faults == 1);
+}
+
+#[test]
+fn positions_are_read_of_the_watched_drive() {
+    let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
+    let reading = stand.session.sample().unwrap();
+    assert_eq!((reading.drive, reading.actual.position), (drive(1), 65536));
+    stand.run(HiperdriveJob::Watch(drive(2))).unwrap();
+    assert_eq!(stand.session.sample().unwrap().drive, drive(2));
+}
+
+#[test]
+fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
+    let mut stand = Stand::new("hub=4&drives=1&requested=0&supply=18&switch=98&position=65536");
+    stand.target.with(|station| {
+        for (own, value) in [(186, 255), (158, 0)] {
+            let now = encoder_studio::units::Moment::START;
+            station.write(now, number(own), &Value::Number(value)).unwrap();
+        }
+    });
+    let HiperdriveOutput::Check(lines) = stand.run(HiperdriveJob::Check).unwrap() else { panic!() };
+    let of = |step: Step| lines.iter().find(|line| line.step == step).unwrap();
+    let verdicts = [
+        (Step::Messages, Verdict::Good),
+        (Step::Device, Verdict::Good),
+        (Step::Supply, Verdict::Attention),
+        (Step::Address, Verdict::Good),
+        (Step::Memory, Verdict::Good),
+        (Step::Request(drive(1)), Verdict::Attention),
+        (Step::Line(drive(1)), Verdict::Good),
+        (Step::Timeout(drive(1)), Verdict::Bad),
+        (Step::Errors(drive(1)), Verdict::Good),
+        (Step::Range(drive(1)), Verdict::Good),
+    ];
+    for (step, verdict) in verdicts {
+        assert_eq!(of(step).verdict, verdict, "{step}: {:?}", of(step).findings);
+    }
+    assert_eq!(of(Step::Timeout(drive(1))).findings, [Finding::NoTimeout]);
+    assert_eq!(of(Step::Address).findings, [Finding::Switch(AddressSwitch::Bootp)]);
+    assert!(of(Step::Range(drive(1))).findings.contains(&Finding::Within(65536)));
+}

@@ -1,0 +1,173 @@
+//! What is written: exactly what was planned, each read back, then one save; and what is refused names why.
+
+use encoder_studio::device::hiperdrive::Error;
+use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::link::Clock;
+use encoder_studio::profile::Document;
+use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
+use encoder_studio::protocol::hiperdrive::{Range, Value};
+use encoder_studio::store::read_text;
+use encoder_studio::worker::hiperdrive::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
+
+use super::support::{Stand, drive, image, number};
+
+fn device_error<T: std::fmt::Debug>(ended: Result<T, JobError>) -> Error {
+    match ended {
+        Err(JobError::Device(error)) => error,
+        Err(JobError::Interrupted { interrupted, .. }) => interrupted.cause,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn what_differs_is_written_read_back_and_saved_once() {
+    let mut stand = Stand::new("serial=42");
+    let done = stand.change(Change::Write(image(&[(24, 7), (166, 200), (188, 1)]))).unwrap();
+    assert_eq!((done.written.ops, done.written.written, done.written.verified), (3, 2, 2));
+    assert_eq!(done.written.write_cycles, 1);
+    // 188 is 1 already.
+    let sets = stand.sets();
+    assert_eq!(sets, [(24, vec![7, 0, 0, 0]), (166, vec![200, 0]), (47, vec![1, 0])]);
+    assert_eq!((stand.value(24), stand.value(166), stand.value(47)), (7, 200, 0), "it waits until it is saved");
+    let now = stand.clock.now();
+    stand.target.with(|station| station.power_cycle(now));
+    assert_eq!(stand.value(166), 200);
+    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap()).unwrap();
+    assert_eq!(before.body.hiperdrive().unwrap().image.get(number(166)), Some(350));
+    let done = stand.change(Change::Write(image(&[(24, 7)]))).unwrap();
+    assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");
+    let prepared = stand.prepare(Change::Write(image(&[(24, 8)]))).unwrap();
+    assert_eq!((prepared.cycles_seen, prepared.wear()), (Some(1), None), "saves are counted by the device's number");
+}
+
+#[test]
+fn what_is_tried_is_not_saved() {
+    let mut stand = Stand::new("");
+    let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
+    assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
+    stand.change(Change::Do(Service::Recall)).unwrap();
+    assert_eq!(stand.value(166), 350);
+}
+
+#[test]
+fn limits_are_written_in_the_order_in_which_the_drive_takes_them() {
+    // From ±511 turns to a range far above, then back below: the other limit first.
+    let mut stand = Stand::new("position=655360");
+    stand.change(Change::Write(image(&[(158, 600_000), (160, 700_000)]))).unwrap();
+    assert_eq!((stand.value(158), stand.value(160)), (600_000, 700_000));
+    let outside = stand.prepare(Change::Write(image(&[(158, 0), (160, 100_000)]))).unwrap_err();
+    let JobError::Plan(PlanError::PositionOutside { position, lower, upper, .. }) = outside else {
+        panic!("{outside}")
+    };
+    assert_eq!((position, lower, upper), (655_360, 0, 100_000));
+    assert_eq!(stand.value(158), 600_000, "nothing is written");
+}
+
+#[test]
+fn a_profile_comes_back_after_everything_was_set_back() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1&requested=1&serial=42");
+    stand.change(Change::Write(image(&[(24, 99), (154, 400), (156, 256), (358, -131_072), (360, 131_072)]))).unwrap();
+    let profile: Box<HiperdriveProfile> = match stand.run(HiperdriveJob::Save).unwrap() {
+        HiperdriveOutput::Saved(profile) => profile,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(profile.image.get(number(258)), None, "an empty place keeps nothing");
+    stand.change(Change::Do(Service::Factory)).unwrap();
+    assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 256, -33_488_896));
+    // From the factory a hub asks for no drive: that it does has to come back, too.
+    let change = || Change::Restore { profile: profile.clone(), options: RestoreOptions::default() };
+    let done = stand.change(change()).unwrap();
+    assert_eq!(done.written.write_cycles, 1);
+    assert_eq!((stand.value(24), stand.value(154), stand.value(156), stand.value(358)), (99, 400, 256, -131_072));
+    let again = stand.prepare(change()).unwrap();
+    assert!(again.plan.is_empty() && again.unchanged > 20, "{:?}", again.plan);
+    assert!(!stand.sets().iter().any(|(own, _)| matches!(own % 100, 1..=4) && *own > 100), "nothing moves");
+}
+
+#[test]
+fn another_device_or_another_value_than_was_planned_for_is_not_written() {
+    let mut stand = Stand::new("serial=42");
+    let prepared = stand.prepare(Change::Write(image(&[(166, 100)]))).unwrap();
+    let now = stand.clock.now();
+    stand.target.with(|station| station.write(now, number(166), &Value::Number(300))).unwrap();
+    let error = device_error(stand.commit(prepared.clone()));
+    assert_eq!(error, Error::Changed { item: "166".to_owned() });
+    let mut other = Stand::new("serial=43");
+    let error = device_error(other.commit(prepared));
+    assert_eq!(error, Error::Changed { item: "the device itself".to_owned() });
+    assert!(stand.sets().is_empty() && other.sets().is_empty());
+}
+
+#[test]
+fn values_out_of_range_name_both_limits_whoever_refuses_them() {
+    let mut stand = Stand::new("position=65536");
+    let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
+    assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400: it may be 5 to 350");
+    // The drive turned on meanwhile: the plan does not know, and the device refuses.
+    let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
+    let now = stand.clock.now();
+    stand.target.with(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
+    let error = device_error(stand.commit(prepared));
+    let Error::Refuses(out) = &error else { panic!("{error}") };
+    assert_eq!(out.range, Range::Within(i64::from(i32::MIN), 640), "no lower limit above the position");
+    assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000: it may be -2147483648 to 640");
+}
+
+#[test]
+fn what_is_only_read_or_moves_a_drive_is_refused_without_a_word() {
+    let mut stand = Stand::new("");
+    for (own, why) in [
+        (107, "parameter 107 (actual position) can only be read"),
+        (101, "parameter 101 (control word) moves the drive and is never written as a parameter"),
+        (104, "parameter 104 (target position) moves the drive and is never written as a parameter"),
+    ] {
+        let error = stand.prepare(Change::Write(image(&[(own, 1)]))).unwrap_err();
+        assert_eq!(error.to_string(), why);
+    }
+    assert!(stand.sets().is_empty());
+}
+
+#[test]
+fn a_position_is_set_to_the_nearest_that_there_is() {
+    let mut stand = Stand::new("position=655360");
+    let done = stand.change(Change::SetPosition { drive: drive(1), position: 1000, save: true }).unwrap();
+    // 64 · 16 = 1024 is nearer than 64 · 15 = 960.
+    assert_eq!((done.written.verified, stand.value(198), stand.value(107)), (1, 1024, 1024));
+    assert_eq!(stand.sets(), [(198, vec![0, 4, 0, 0]), (47, vec![1, 0])]);
+}
+
+#[test]
+fn services_wait_until_they_are_done() {
+    let mut stand = Stand::new("hub=8");
+    let begun = stand.elapsed();
+    stand.change(Change::Do(Service::Reset)).unwrap();
+    let (took, set) = (stand.elapsed() - begun, stand.sets());
+    assert_eq!(set, [(47, vec![0xFC, 0xFF])]);
+    assert_eq!(stand.value(47), 0);
+    assert!(took < std::time::Duration::from_secs(9), "{took:?}");
+    let prepared = stand.prepare(Change::Do(Service::FactoryAll)).unwrap();
+    assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
+}
+
+#[test]
+fn what_rules_motion_is_known_after_every_write() {
+    let mut stand = Stand::new("requested=1");
+    stand.survey();
+    let motion = stand.session.motion();
+    let permit = motion.permitted(drive(1));
+    assert_eq!((permit.locks.as_slice(), permit.limits), (&[][..], Some((-33_488_896, 33_488_896))));
+    stand.change(Change::Write(image(&[(186, 255)]))).unwrap();
+    assert_eq!(motion.permitted(drive(1)).locks, [Lock::NoTimeout]);
+    stand.change(Change::Write(image(&[(186, 20), (154, 100)]))).unwrap();
+    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
+    stand.survey();
+    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "reading confirms nothing");
+    motion.confirm_limits(drive(1));
+    assert!(motion.permitted(drive(1)).locks.is_empty());
+    stand.change(Change::Do(Service::Recall)).unwrap();
+    assert!(motion.permitted(drive(1)).locks.is_empty(), "the scale is as it was saved");
+    stand.change(Change::Do(Service::Factory)).unwrap();
+    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "the scale is another one");
+    stand.change(Change::Write(image(&[(152, 0)]))).unwrap();
+    assert!(motion.permitted(drive(1)).locks.contains(&Lock::NotRequested));
+}
