@@ -85,6 +85,7 @@ impl Unit {
                 self.submit(HiperdriveJob::Give, services);
             }
             Action::Drive(motor) => self.drive_by(motor, services),
+            Action::Axis(action) => self.act_axis(action, services),
             Action::AskSave => {
                 let suggested = self.session.suggested_file();
                 services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::axis;
 use super::ruler::Measure;
 use super::staged::Edit;
 use crate::app::studio::SessionId;
@@ -48,6 +49,8 @@ pub enum Action {
     Give,
     /// Move the drive that is shown, or lead it to another state.
     Drive(Motor),
+    /// Set up the axis of the drive that is shown.
+    Axis(axis::Action),
     /// Ask where to save the profile.
     AskSave,
     /// Save the profile.

@@ -3,11 +3,14 @@
 
 mod act;
 mod action;
+pub mod axis;
 mod desk;
 mod drafts;
 pub mod forms;
 mod job;
+pub mod leds;
 mod moves;
+pub mod network;
 mod news;
 mod record;
 mod remembered;
@@ -15,6 +18,7 @@ mod review;
 mod rows;
 mod ruler;
 mod said;
+mod setup;
 mod staged;
 mod trace;
 mod unit;

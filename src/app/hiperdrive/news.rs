@@ -99,6 +99,7 @@ impl Unit {
         if self.session.line.as_ref().is_some_and(Line::is_dead) {
             self.lose(Text::new("session.ended"), services);
         }
+        self.follow_axes();
         self.ask_on(services);
     }
 

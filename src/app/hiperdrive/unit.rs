@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use super::axis::Axis;
 use super::drafts::Edits;
 use super::moves::Moves;
 use super::record::Record;
@@ -53,6 +54,8 @@ pub struct Unit {
     /// Which drive is shown.
     drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
+    /// Set-ups of axes that somebody has begun.
+    pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// What was remembered of it has been looked for.
     pub(super) is_remembered: bool,
     /// What was read last of each drive while nobody had control.
@@ -88,6 +91,7 @@ impl Unit {
             target: None,
             drive: DriveNumber::FIRST,
             pitches: BTreeMap::new(),
+            axes: BTreeMap::new(),
             is_remembered: false,
             readings: BTreeMap::new(),
             watched: DriveNumber::FIRST,
@@ -313,6 +317,7 @@ impl Unit {
             self.log_answer(services);
         }
         self.list_backups(services);
+        self.axes_surveyed();
     }
 
     /// Where a scale is another one than it was, nobody has looked at the limits since.
@@ -364,6 +369,7 @@ impl Unit {
         self.record.forget();
         self.readings.clear();
         self.pitches.clear();
+        self.axes.clear();
         (self.is_remembered, self.measure) = (false, Measure::default());
         (self.session.backups, self.session.writes) = (None, None);
     }

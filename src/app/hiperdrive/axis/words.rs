@@ -1,0 +1,166 @@
+//! What the steps of an axis set-up are called, what to do in them, and what was found.
+
+use super::{Axis, Change, Outcome, Place, Power, Reached, Seen, Step};
+use crate::app::Text;
+use crate::app::hiperdrive::ruler::{Measure, Ruler};
+use crate::protocol::hiperdrive::ScaleError;
+
+/// What a step is called.
+pub fn title(step: Step) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.step_request",
+        Step::Scale => "hd_axis.step_scale",
+        Step::Confirm => "hd_axis.step_confirm",
+        Step::Jog => "hd_axis.step_jog",
+        Step::Reference => "hd_axis.step_reference",
+        Step::Lower => "hd_axis.step_lower",
+        Step::Upper => "hd_axis.step_upper",
+        Step::Test => "hd_axis.step_test",
+        Step::Save => "hd_axis.step_save",
+        Step::PowerCycle => "hd_axis.step_power",
+    })
+}
+
+/// What to do in it.
+pub fn todo(step: Step, seen: &Seen) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.do_request",
+        Step::Scale => "hd_axis.do_scale",
+        Step::Confirm => "hd_axis.do_confirm",
+        Step::Jog => "hd_axis.do_jog",
+        Step::Reference => "hd_axis.do_reference",
+        Step::Lower => "hd_axis.do_lower",
+        Step::Upper => "hd_axis.do_upper",
+        Step::Test => "hd_axis.do_test",
+        Step::Save => "hd_axis.do_save",
+        Step::PowerCycle if seen.is_virtual => "hd_axis.do_power_virtual",
+        Step::PowerCycle => "hd_axis.do_power",
+    })
+}
+
+/// How far it is, in a word.
+pub fn reached(own: Reached) -> Text {
+    Text::new(match own {
+        Reached::Done => "guide.done",
+        Reached::Now => "guide.waits",
+        Reached::Skipped => "guide.left_out",
+        Reached::Failed => "guide.failed",
+        Reached::Ahead => "guide.ahead",
+    })
+}
+
+/// What its button does.
+pub fn button(step: Step) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.request",
+        Step::Reference => "hd_axis.set",
+        Step::Save => "hd_axis.save",
+        _ => "hd_axis.write",
+    })
+}
+
+/// What was found in it, as far as there is something.
+pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
+    let ruler = axis.ruler(seen);
+    let mm = |steps: i32| millimetres(ruler, steps.into());
+    match step {
+        Step::Request => match (seen.requested?, seen.actual.is_some_and(|own| own.status.is_present())) {
+            (true, true) => Some(Text::new("hd_axis.found_drive")),
+            (true, false) => Some(Text::new("hd_axis.found_no_drive")),
+            (false, _) => Some(Text::new("hd_axis.found_unrequested")),
+        },
+        Step::Scale => {
+            let ruler = ruler?;
+            let text = Text::new("hd_axis.found_scale").with("numerator", ruler.scale.numerator());
+            let text = text.with("denominator", ruler.scale.denominator());
+            let per_turn = ruler.scale.steps_per_turn();
+            let decimals = if per_turn.fract() == 0.0 { 0 } else { 3 };
+            Some(text.with_number("steps", per_turn, decimals))
+        }
+        Step::Confirm | Step::Upper => {
+            let (low, high) = seen.limits?;
+            Some(Text::new("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
+        }
+        Step::Jog => {
+            let travel = axis.travel();
+            let way = Text::new(match travel.clockwise_is_up {
+                Some(true) => "hd_axis.clockwise_up",
+                Some(false) => "hd_axis.clockwise_down",
+                None => return (travel.up + travel.down > 0).then(|| moved(ruler, travel.up, travel.down)),
+            });
+            let moved = moved(ruler, travel.up, travel.down);
+            Some(Text::new("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
+        }
+        Step::Reference => Some(Text::new("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
+        Step::Lower => {
+            Some(Text::new("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
+        }
+        Step::Test => {
+            let good = Place::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
+            let worst = good.clone().map(|own| own.missed().abs()).max()?;
+            let text = Text::new("hd_axis.found_test").with("count", good.count());
+            Some(text.with_text("missed", millimetres(ruler, worst)))
+        }
+        Step::Save => axis.is_saved().then(|| Text::new("hd_axis.found_saved")),
+        Step::PowerCycle => power(axis, ruler),
+    }
+}
+
+fn moved(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
+    let text = Text::new("hd_axis.found_moved").with_text("up", millimetres(ruler, up));
+    text.with_text("down", millimetres(ruler, down))
+}
+
+fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
+    let (kept, moved, allowed) = match axis.power()? {
+        Power::On(_) => return Some(Text::new("hd_axis.power_on")),
+        Power::Gone(_) => return Some(Text::new("hd_axis.power_gone")),
+        Power::Back { kept, moved, allowed } => (kept, moved, allowed),
+    };
+    let Some(moved) = moved else { return Some(Text::new("hd_axis.power_unknown")) };
+    let id = match (kept, moved.abs() <= allowed) {
+        (false, _) => "hd_axis.power_lost",
+        (true, false) => "hd_axis.power_moved",
+        (true, true) => "hd_axis.power_kept",
+    };
+    let text = Text::new(id).with_text("moved", millimetres(ruler, moved));
+    Some(text.with_text("allowed", millimetres(ruler, allowed)))
+}
+
+/// What a place of the test is called.
+pub fn place(place: Place) -> Text {
+    Text::new(match place {
+        Place::Middle => "hd_axis.middle",
+        Place::Lower => "hd_axis.to_lower",
+        Place::Upper => "hd_axis.to_upper",
+    })
+}
+
+/// What was changed.
+pub fn change(own: &Change, ruler: Option<Ruler>) -> Text {
+    match own {
+        Change::Parameter(number, value) => Text::new("hd_axis.changed").with("number", number).with("value", value),
+        Change::Position(steps) => {
+            Text::new("hd_axis.changed_position").with_text("position", millimetres(ruler, (*steps).into()))
+        }
+    }
+}
+
+/// Steps in millimetres, with as many decimals as tell one step from another; as steps where nobody knows the spindle.
+pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
+    match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
+        Some((value, ruler)) => {
+            let decimals = ruler.decimals(Measure::Millimetres).min(4);
+            Text::new("hd_axis.millimetres").with_number("value", value, decimals)
+        }
+        None => Text::new("hd_axis.steps").with("value", steps),
+    }
+}
+
+/// Why a pitch and a resolution make no scale.
+pub fn scale(error: &ScaleError) -> Text {
+    match error {
+        ScaleError::TooFine { steps, .. } => Text::new("hd_axis.too_fine").with("steps", steps),
+        ScaleError::Zero | ScaleError::NoLength => Text::new("hd_axis.no_length"),
+    }
+}

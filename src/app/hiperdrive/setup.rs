@@ -1,0 +1,221 @@
+//! The set-up of axes and the network at a device: what is known for them, and what they ask for.
+
+use core::net::Ipv4Addr;
+
+use super::axis::{Action, Ask, Axis, Button, Seen};
+use super::review::ReviewState;
+use super::unit::Unit;
+use crate::app::services::Services;
+use crate::app::session::{Phase, Source};
+use crate::app::{Severity, Text};
+use crate::device::hiperdrive::dead_man::{Effort, Motive, Phase as Doing, Wish};
+use crate::profile::hiperdrive::{Image, NetworkSettings, Service};
+use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber, Length, ParameterNumber};
+use crate::worker::hiperdrive::{Change, HiperdriveJob};
+
+impl Unit {
+    /// The set-up of the drive that is shown; `None` where nobody has begun one.
+    pub fn axis(&self) -> Option<&Axis> {
+        self.axes.get(&self.drive())
+    }
+
+    /// Whether the drive that is shown can be set up.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_set_up(&self) -> Result<(), Text> {
+        match self.session.why_not_ready() {
+            _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
+            Some(why) => Err(why),
+            None if self.survey.is_none() || self.number(self.drive(), 154).is_none() => {
+                Err(Text::new("hd_axis.unread"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a change can be planned now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_plan(&self) -> Result<(), Text> {
+        self.session.why_not_ready().map_or(Ok(()), Err)
+    }
+
+    /// What is known of a drive, for its set-up.
+    pub fn seen(&self, drive: DriveNumber) -> Seen {
+        let view = self.moves.drive(drive);
+        let phase = view.map_or(Doing::Idle, |own| own.phase);
+        let turns = match phase {
+            Doing::Moving(Motive::Run { direction, .. }) => Some(direction),
+            _ => None,
+        };
+        let image = self.staged.base();
+        let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
+        Seen {
+            connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
+            busy: self.session.is_busy() || self.review.is_some(),
+            is_virtual: self.target.is_some(),
+            controlled: self.moves.is_open(),
+            moves: self.is_moving() || self.moves.is_under_way(),
+            turns,
+            actual: self.actual(drive),
+            requested: self.number(drive, 152).map(|value| value == 1),
+            scale: image.and_then(|image| image.scale(drive)),
+            limits: self.limits(drive),
+            family,
+            locks: self.moves.locks(drive),
+            ended: view.and_then(|own| own.ended),
+        }
+    }
+
+    /// What its TCP/IP object says; `None` where it was not read, or does not say it.
+    pub fn network_settings(&self) -> Option<NetworkSettings> {
+        let own = self.network()?;
+        Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
+    }
+
+    /// Where its address switches stood at power-up.
+    pub fn address_switch(&self) -> Option<AddressSwitch> {
+        self.network()?.address_switch()
+    }
+
+    /// The address at which it answers, where its link has a number.
+    pub fn host(&self) -> Option<Ipv4Addr> {
+        let Source::Link(url) = &self.session.source else { return None };
+        let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
+        host.parse().ok()
+    }
+
+    /// Does what is asked in the set-up of the drive that is shown.
+    pub(super) fn act_axis(&mut self, action: Action, services: &mut Services) {
+        let drive = self.drive();
+        let seen = self.seen(drive);
+        if action == Action::Begin {
+            return self.begin_axis(drive, services);
+        }
+        let Some(axis) = self.axes.get_mut(&drive) else { return };
+        match action {
+            Action::Begin => {}
+            Action::Edit(entries) => {
+                axis.edit(*entries);
+                // Positions are measured on this spindle everywhere.
+                if let Ok(pitch) = axis.entries().pitch() {
+                    self.set_pitch(drive, pitch);
+                }
+            }
+            Action::Press(button) => match axis.ask(button, &seen) {
+                Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
+                Err(why) => services.tell(Severity::Warning, vec![why], Some(&self.session.name())),
+            },
+            Action::TakePlace => axis.take_limit(&seen),
+            Action::Next => axis.go_on(&seen),
+            Action::Skip => axis.skip(&seen),
+            Action::Back => axis.back(&seen),
+            Action::Cancel => {
+                axis.cancel();
+                self.moves.stop();
+            }
+        }
+    }
+
+    fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
+        if let Err(why) = self.may_set_up() {
+            return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+        }
+        let axis = Axis::new(drive, Some(self.ruler(drive)));
+        if let Ok(pitch) = axis.entries().pitch() {
+            self.set_pitch(drive, pitch);
+        }
+        self.axes.insert(drive, axis);
+        self.moves.set_jog_effort(Effort::JOG);
+    }
+
+    fn set_pitch(&mut self, drive: DriveNumber, pitch: Length) {
+        self.pitches.insert(drive, pitch);
+    }
+
+    /// Everything that lasts goes through a plan and its review.
+    fn carry_out(&mut self, drive: DriveNumber, button: Button, ask: Ask, seen: &Seen, services: &mut Services) {
+        match &ask {
+            Ask::Try(values) => {
+                let numbered =
+                    |(number, value): &(u16, i64)| Some((ParameterNumber::of_drive(*number, drive)?, *value));
+                let image = Image { values: values.iter().filter_map(numbered).collect() };
+                self.plan(Change::Try(Box::new(image)), services);
+            }
+            Ask::SetPosition(position) => {
+                self.plan(Change::SetPosition { drive, position: *position, save: false }, services);
+            }
+            Ask::Save => self.plan(Change::Do(Service::Save), services),
+            Ask::Recall => self.plan(Change::Do(Service::Recall), services),
+            Ask::ConfirmLimits => self.moves.confirm_limits(drive),
+            Ask::Take => {
+                self.moves.set_jog_effort(Effort::JOG);
+                self.act(super::Action::Take, services);
+            }
+            Ask::Give => self.act(super::Action::Give, services),
+            Ask::Move(target) => {
+                let act = self.moves.want(drive, Wish::Move { target: *target, effort: Effort::JOG });
+                if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
+                    axis.went(place, *target, act);
+                }
+                return;
+            }
+            Ask::PowerCycle => {
+                if let Some(target) = &self.target {
+                    target.power_cycle();
+                }
+                self.axes.values_mut().for_each(Axis::lose);
+                self.submit(HiperdriveJob::Survey, services);
+                return;
+            }
+        }
+        let begins = match ask {
+            Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Recall => self.review.is_some(),
+            _ => true,
+        };
+        if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
+            axis.begin(ask, seen);
+        }
+    }
+
+    /// How it stands with all set-ups: called with every look at what has come.
+    pub(super) fn follow_axes(&mut self) {
+        if self.axes.is_empty() {
+            return;
+        }
+        // `None` where there is no review any more; whether it was carried out, once it is over.
+        let write = self.review.as_ref().map(|review| match &review.state {
+            ReviewState::Done(..) => Some(Ok(())),
+            ReviewState::Failed { begun, .. } => Some(Err(*begun)),
+            _ => None,
+        });
+        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        for (drive, seen) in seen {
+            let Some(axis) = self.axes.get_mut(&drive) else { continue };
+            if !seen.connected {
+                axis.lose();
+            }
+            if axis.is_writing() {
+                match write {
+                    Some(Some(Ok(()))) => axis.written(),
+                    Some(Some(Err(begun))) => axis.not_written(begun),
+                    Some(None) => {}
+                    None => axis.not_written(false),
+                }
+            }
+            axis.look(&seen);
+        }
+    }
+
+    /// All parameters were read: what was saved has survived, or not.
+    pub(super) fn axes_surveyed(&mut self) {
+        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        for (drive, seen) in seen {
+            if let Some(axis) = self.axes.get_mut(&drive) {
+                axis.surveyed(&seen);
+            }
+        }
+    }
+}

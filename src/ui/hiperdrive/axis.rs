@@ -1,0 +1,272 @@
+//! The set-up of an axis as one run: its steps on the left, the one that counts on the right, with what is to be done, where
+//! the axis is, and what was found.
+
+mod content;
+
+use egui::{RichText, Ui};
+
+use crate::app::explain::hiperdrive as explain;
+use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, Change, End, Entries, Reached, Seen, Step, words};
+use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
+use crate::app::{Action, Severity, Text};
+use crate::ui::controls::{allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split};
+use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
+use crate::ui::{Skin, icons};
+
+/// What is typed: kept while it is typed, told with every change.
+#[derive(Default)]
+pub(super) struct View {
+    entries: Option<Entries>,
+}
+
+/// The run, as it is drawn.
+struct Shown<'a> {
+    unit: &'a Unit,
+    axis: &'a Axis,
+    seen: &'a Seen,
+}
+
+impl Shown<'_> {
+    fn push(&self, actions: &mut Vec<Action>, action: Run) {
+        actions.push(Action::Hiperdrive(self.unit.session.id, Hiperdrive::Axis(action)));
+    }
+
+    /// A button of the run, with why it cannot be pressed.
+    fn button(&self, ui: &mut Ui, skin: &Skin, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
+        let allowed = self.axis.ask(own, self.seen).map(|_| ());
+        if allowed_button(ui, skin, &allowed, icon, word).clicked() {
+            self.push(actions, Run::Press(own));
+        }
+    }
+}
+
+/// Below this width the list of steps does not stand beside the step.
+const BESIDE: f32 = 640.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    let Some(axis) = unit.axis() else {
+        intro(ui, skin, unit, actions);
+        ui.add_space(skin.space.groups);
+        notes(ui, skin);
+        return;
+    };
+    let seen = unit.seen(unit.drive());
+    let shown = Shown { unit, axis, seen: &seen };
+    let beside = ui.available_width() >= BESIDE;
+    if let Some(end) = axis.end() {
+        end_ui(ui, skin, &shown, end, actions);
+        ui.add_space(skin.space.groups);
+    }
+    split(
+        ui,
+        skin,
+        (0.36, BESIDE),
+        (view, actions),
+        |ui, _| {
+            if beside {
+                card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
+            }
+        },
+        |ui, (view, actions)| {
+            if axis.end().is_none() {
+                step_ui(ui, skin, &shown, view, actions);
+                ui.add_space(skin.space.groups);
+            }
+            notes(ui, skin);
+        },
+    );
+}
+
+fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    card(ui, skin, "hd_axis.title", |ui| {
+        paragraph(ui, skin.say("hd_axis.words"));
+        ui.add_space(skin.space.inside);
+        for (number, step) in (1..).zip(Step::ALL) {
+            ui.label(skin.label(format!("{number}  {}", skin.words(&words::title(step)))));
+        }
+        ui.add_space(skin.space.between);
+        let allowed = unit.may_set_up();
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin"));
+            if response.clicked() {
+                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Axis(Run::Begin)));
+            }
+            if let Err(why) = &allowed {
+                warning(ui, skin, why);
+            }
+        });
+    });
+}
+
+/// All steps, with what was found in those that are done.
+fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+    let line = |step: Step| {
+        let reached = shown.axis.reached(step);
+        let state = match reached {
+            Reached::Done => StepState::Done,
+            Reached::Now => StepState::Waiting,
+            Reached::Skipped => StepState::Skipped,
+            Reached::Failed => StepState::Failed,
+            Reached::Ahead => StepState::ToCome,
+        };
+        let told = matches!(reached, Reached::Done | Reached::Failed);
+        let found = words::found(shown.axis, step, shown.seen).filter(|_| told);
+        Line {
+            title: skin.words(&words::title(step)),
+            state,
+            word: skin.words(&words::reached(reached)),
+            note: found.map(|text| skin.words(&text)).unwrap_or_default(),
+            ..Line::default()
+        }
+    };
+    let lines: Vec<Line> = Step::ALL.into_iter().map(line).collect();
+    steps(ui, skin, &Steps { steps: &lines, ..Steps::default() });
+}
+
+/// The step that counts.
+fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions: &mut Vec<Action>) {
+    let (axis, seen) = (shown.axis, shown.seen);
+    let step = axis.step();
+    let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
+    let aside = |ui: &mut Ui| {
+        ui.label(skin.caption(format!("{place}/{}", Step::ALL.len())));
+        if shown.unit.drives().len() > 1 {
+            let drive = Text::new("hd_axis.of_drive").with("drive", axis.drive().get());
+            ui.label(skin.caption(skin.words(&drive)));
+        }
+    };
+    card_with(ui, skin, content::heading(step), aside, |ui| {
+        if axis.fell_back() {
+            warning(ui, skin, &Text::new("hd_axis.fell_back"));
+        }
+        paragraph(ui, skin.words(&words::todo(step, seen)));
+        ui.add_space(skin.space.between);
+        live(ui, skin, shown);
+        ui.add_space(skin.space.between);
+        let mut entries = view.entries.take().unwrap_or_else(|| axis.entries().clone());
+        content::content_ui(ui, skin, shown, &mut entries, actions);
+        if entries != *axis.entries() {
+            shown.push(actions, Run::Edit(Box::new(entries)));
+        }
+        if let Some(found) = words::found(axis, step, seen) {
+            ui.add_space(skin.space.inside);
+            row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
+        }
+        ui.add_space(skin.space.groups);
+        foot(ui, skin, shown, actions);
+    });
+}
+
+/// Where the axis is, and in which state its drive.
+fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+    let Some(actual) = shown.seen.actual else { return };
+    skin.sunken().show(ui, |ui| {
+        crate::ui::controls::fill(ui);
+        ui.horizontal_wrapped(|ui| {
+            ui.label(skin.label(skin.say("hd_axis.position")));
+            let position = words::millimetres(shown.axis.ruler(shown.seen), actual.position.into());
+            ui.label(skin.value(skin.words(&position)));
+            ui.add_space(skin.space.groups);
+            ui.label(skin.label(skin.say("hd_axis.state")));
+            ui.label(skin.words(&explain::state(actual.status.state())));
+        });
+    });
+}
+
+/// Back and cancel, what is missing, and on.
+fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let (axis, seen) = (shown.axis, shown.seen);
+    let step = axis.step();
+    let allowed = axis.may_go_on(seen);
+    if let Err(why) = &allowed {
+        warning(ui, skin, why);
+    }
+    ui.horizontal_wrapped(|ui| {
+        let may_back = step != Step::Request && !axis.is_writing() && !seen.moves;
+        if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &skin.say("hd_axis.back")).clicked() {
+            shown.push(actions, Run::Back);
+        }
+        if button(ui, icons::X, &skin.say("hd_axis.cancel")).clicked() {
+            shown.push(actions, Run::Cancel);
+        }
+        if step.may_be_skipped() {
+            let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
+            if enabled_button(ui, !axis.is_writing() && !seen.moves, "", &skin.say(id)).clicked() {
+                shown.push(actions, Run::Skip);
+            }
+        }
+        let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if primary(ui, skin, allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
+                shown.push(actions, Run::Next);
+            }
+        });
+    });
+}
+
+/// How it ended: what was written, and whether that lasts.
+fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut Vec<Action>) {
+    let axis = shown.axis;
+    let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
+    card(ui, skin, title, |ui| {
+        if end == End::Cancelled {
+            line(ui, skin, Severity::Note, &Text::new("hd_axis.stands"));
+        }
+        if axis.changes().is_empty() {
+            line(ui, skin, Severity::Note, &Text::new("hd_axis.nothing_written"));
+        } else {
+            let ruler = axis.ruler(shown.seen);
+            let changes = axis.changes().iter().map(|own: &Change| words::change(own, ruler));
+            line(ui, skin, Severity::Note, &Text::new("hd_axis.was_written").with_list("changes", changes));
+            if axis.is_partly_written() {
+                line(ui, skin, Severity::Warning, &Text::new("hd_axis.partly"));
+            }
+            let lasts = if axis.is_saved() {
+                (Severity::Good, "hd_axis.all_saved")
+            } else {
+                (Severity::Warning, "hd_axis.not_saved")
+            };
+            line(ui, skin, lasts.0, &Text::new(lasts.1));
+        }
+        ui.add_space(skin.space.inside);
+        ui.horizontal_wrapped(|ui| {
+            if !axis.changes().is_empty() && !axis.is_saved() {
+                let word = skin.say("hd_axis.recall");
+                shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
+            }
+            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &skin.say("hd_axis.again")).clicked() {
+                shown.push(actions, Run::Begin);
+            }
+        });
+    });
+}
+
+/// What else one should know.
+fn notes(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "hd_axis.notes", |ui| {
+        for id in [
+            "hd_axis.note_stop",
+            "hd_axis.note_controller",
+            "hd_axis.note_jog",
+            "hd_axis.note_factory",
+            "hd_axis.note_words",
+        ] {
+            line(ui, skin, Severity::Note, &Text::new(id));
+        }
+    });
+}
+
+fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
+    let (icon, ink) = severity(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, skin.words(text));
+    });
+}
+
+fn warning(ui: &mut Ui, skin: &Skin, why: &Text) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+    });
+}

@@ -1,0 +1,233 @@
+//! What the single steps of the set-up of an axis have of their own: entries, what comes of them, buttons that are held.
+
+use egui::{RichText, Ui, vec2};
+
+use super::Shown;
+use crate::app::hiperdrive::axis::{Action as Run, Button, Entries, Outcome, Place, Step, words};
+use crate::app::hiperdrive::{Action as Hiperdrive, Motor};
+use crate::app::{Action, Text, explain::hiperdrive as explain};
+use crate::protocol::hiperdrive::Direction;
+use crate::ui::controls::{button, entry, paragraph, problem, row, text_entry};
+use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
+use crate::ui::{Skin, icons};
+
+/// Width of a number, and height of the buttons that are held.
+const NUMBER: f32 = 112.0;
+const PAD: f32 = 64.0;
+
+/// The heading of a step.
+pub(super) const fn heading(step: Step) -> &'static str {
+    match step {
+        Step::Request => "hd_axis.step_request",
+        Step::Scale => "hd_axis.step_scale",
+        Step::Confirm => "hd_axis.step_confirm",
+        Step::Jog => "hd_axis.step_jog",
+        Step::Reference => "hd_axis.step_reference",
+        Step::Lower => "hd_axis.step_lower",
+        Step::Upper => "hd_axis.step_upper",
+        Step::Test => "hd_axis.step_test",
+        Step::Save => "hd_axis.step_save",
+        Step::PowerCycle => "hd_axis.step_power",
+    }
+}
+
+pub(super) fn content_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    shown: &Shown<'_>,
+    entries: &mut Entries,
+    actions: &mut Vec<Action>,
+) {
+    let step = shown.axis.step();
+    if step.moves() {
+        control(ui, skin, shown, actions);
+    }
+    if step.jogs() {
+        pads(ui, skin, shown, actions);
+    }
+    match step {
+        Step::Scale => scale(ui, skin, shown, entries),
+        Step::Confirm => limits(ui, skin, shown, actions),
+        Step::Reference => reference(ui, skin, shown, entries),
+        Step::Lower => place(ui, skin, shown, "hd_axis.lower", &mut entries.lower, actions),
+        Step::Upper => place(ui, skin, shown, "hd_axis.upper", &mut entries.upper, actions),
+        Step::Test => test(ui, skin, shown, actions),
+        Step::PowerCycle => power(ui, skin, shown, actions),
+        Step::Request | Step::Jog | Step::Save => {}
+    }
+    if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Upper | Step::Save) {
+        ui.add_space(skin.space.inside);
+        let word = skin.words(&words::button(step));
+        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+    }
+}
+
+/// Without the cyclic connection nothing moves.
+fn control(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    if !shown.seen.controlled {
+        let word = skin.say("hd_axis.take");
+        shown.button(ui, skin, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
+        ui.add_space(skin.space.inside);
+    }
+}
+
+/// The two buttons that are held, slow and weak.
+fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let allowed = shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_move(shown.axis.drive()));
+    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
+    let caption = skin.say("hd_axis.jog_hold");
+    ui.horizontal(|ui| {
+        for (direction, word, label) in
+            [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
+        {
+            let label = skin.say(label);
+            let button = HoldButton { word, caption: &caption, label: &label, enabled: allowed.is_ok() };
+            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
+                Some(HoldEvent::Press) => Motor::JogPress { direction, repeated: false },
+                Some(HoldEvent::Hold) => Motor::JogHold,
+                Some(HoldEvent::Release) => Motor::JogRelease,
+                None => continue,
+            };
+            actions.push(Action::Hiperdrive(shown.unit.session.id, Hiperdrive::Drive(motor)));
+        }
+    });
+    if let Err(why) = allowed
+        && shown.seen.controlled
+    {
+        super::warning(ui, skin, &why);
+    }
+    if let Some(said) = shown.unit.said(shown.axis.drive()) {
+        let ink = if said.is_well { skin.palette.muted } else { skin.palette.warn };
+        paragraph(ui, RichText::new(skin.words(&said.words)).color(ink));
+    }
+    ui.add_space(skin.space.inside);
+}
+
+fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String) {
+    let word = skin.say(id);
+    entry(ui, skin, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
+}
+
+/// Pitch and resolution, and what they come to before they are written.
+fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
+    number(ui, skin, "hd_axis.pitch", &mut entries.pitch);
+    number(ui, skin, "hd_axis.resolution", &mut entries.resolution);
+    ui.add_space(skin.space.inside);
+    let preview = match entries.preview(shown.seen) {
+        Ok(preview) => preview,
+        Err(why) => return problem(ui, skin, Some(&why)),
+    };
+    let ruler = Some(preview.ruler);
+    let range = |low: Text, high: Text| Text::new("hd_axis.range").with_text("low", low).with_text("high", high);
+    let mm = |steps: i32| words::millimetres(ruler, steps.into());
+    let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
+    row(ui, skin, &skin.say("hd_axis.preview_scale"), skin.mono(scale));
+    row(ui, skin, &skin.say("hd_axis.preview_steps"), skin.mono(skin.plain(preview.scale.steps_per_turn())));
+    row(ui, skin, &skin.say("hd_axis.preview_grain"), skin.mono(skin.words(&mm(64))));
+    let whole = skin.words(&range(mm(preview.lower), mm(preview.upper)));
+    row(ui, skin, &skin.say("hd_axis.preview_range"), skin.mono(whole));
+    if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
+        let value = |own: f64| Text::new("hd_axis.millimetres").with_number("value", own, 0);
+        let text = Text::new("hd_axis.preview_unchanged_value");
+        let text = text.with_text("low", value(low)).with_text("high", value(high));
+        row(ui, skin, &skin.say("hd_axis.preview_unchanged"), RichText::new(skin.words(&text)).color(skin.palette.warn));
+    }
+}
+
+/// The limits that somebody has to have looked at.
+fn limits(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    if let Some((low, high)) = shown.seen.limits {
+        let ruler = shown.axis.ruler(shown.seen);
+        let mm = |steps: i32| words::millimetres(ruler, steps.into());
+        let range = Text::new("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high));
+        ui.label(skin.value(skin.words(&range)));
+        ui.add_space(skin.space.inside);
+    }
+    ui.horizontal_wrapped(|ui| {
+        let word = skin.say("hd_axis.confirm");
+        shown.button(ui, skin, Button::Confirm, (icons::EYE, &word), actions);
+        let word = skin.say("hd_axis.widen");
+        shown.button(ui, skin, Button::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
+    });
+}
+
+fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
+    number(ui, skin, "hd_axis.reference", &mut entries.reference);
+    let ruler = shown.axis.ruler(shown.seen);
+    match entries.reference(ruler, shown.seen.limits) {
+        Ok(own) if own.asked != own.becomes => {
+            let text = Text::new("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
+            paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+        }
+        Ok(_) => {}
+        Err(why) => problem(ui, skin, Some(&why)),
+    }
+}
+
+/// A limit: the place where the axis is, or typed.
+fn place(
+    ui: &mut Ui,
+    skin: &Skin,
+    shown: &Shown<'_>,
+    id: &'static str,
+    text: &mut String,
+    actions: &mut Vec<Action>,
+) {
+    let word = skin.say(id);
+    entry(ui, skin, &word, |ui| {
+        text_entry(ui, text, NUMBER, &word, "");
+        if button(ui, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
+            shown.push(actions, Run::TakePlace);
+        }
+    });
+}
+
+/// Three places, and what came of going there.
+fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let ruler = shown.axis.ruler(shown.seen);
+    let mm = |steps: i32| skin.words(&words::millimetres(ruler, steps.into()));
+    for own in Place::ALL {
+        let word = skin.words(&words::place(own));
+        entry(ui, skin, &word, |ui| {
+            let go = format!("{} {}", skin.say("hd_axis.go"), own_target(shown, own).map(&mm).unwrap_or_default());
+            shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
+            if shown.axis.going() == Some(own) {
+                ui.label(skin.label(skin.say("hd_axis.goes")));
+            } else if let Some(outcome) = shown.axis.outcome(own) {
+                let ink = if outcome.is_good() { skin.palette.good } else { skin.palette.bad };
+                ui.label(RichText::new(if outcome.is_good() { icons::CHECK } else { icons::X }).color(ink));
+                let words = skin.words(&outcome_words(shown, &outcome));
+                ui.add(egui::Label::new(RichText::new(words).color(ink)).wrap());
+            }
+        });
+    }
+}
+
+fn own_target(shown: &Shown<'_>, own: Place) -> Option<i32> {
+    shown.axis.target(own, shown.seen).ok()
+}
+
+fn outcome_words(shown: &Shown<'_>, outcome: &Outcome) -> Text {
+    let ruler = shown.axis.ruler(shown.seen);
+    let mm = |steps: i64| words::millimetres(ruler, steps);
+    if outcome.ended == crate::device::hiperdrive::dead_man::Ended::Arrived {
+        let text = Text::new("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
+        return text.with_text("missed", mm(outcome.missed()));
+    }
+    let why = explain::ended(outcome.ended, |steps| mm(steps.into()));
+    Text::new("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
+}
+
+/// The supply: of a virtual device it is switched here.
+fn power(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        if shown.seen.controlled {
+            let word = skin.say("hd_axis.give");
+            shown.button(ui, skin, Button::Give, (icons::PLUGS, &word), actions);
+        }
+        if shown.seen.is_virtual {
+            let word = skin.say("hd_axis.power_cycle");
+            shown.button(ui, skin, Button::PowerCycle, (icons::POWER, &word), actions);
+        }
+    });
+}
