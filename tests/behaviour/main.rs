@@ -27,6 +27,7 @@ mod cli_status;
 mod foreign;
 mod hiperdrive_foreign;
 mod hiperdrive_offline;
+mod hiperdrive_simulate;
 mod interbus_bad_input;
 mod interbus_foreign;
 mod interbus_offline;

@@ -285,7 +285,11 @@ pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
 
 /// A foreign host: a line for each thing it was told to do.
 pub(crate) fn foreign_host(script: &str, path: &str, arguments: &[&str]) -> Vec<String> {
-    let mut command = python(script).unwrap();
+    foreign_host_with(python(script).unwrap(), path, arguments)
+}
+
+/// The same with a Python that has been chosen.
+pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&str]) -> Vec<String> {
     let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
     let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
     let Output { status, stdout, stderr } = command.args(options).arg(path).args(frames).output().unwrap();
@@ -360,6 +364,18 @@ pub(crate) fn python(script: &str) -> Option<Command> {
         return None;
     }
     let mut command = Command::new("python3");
+    command.arg("-B").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
+    Some(command)
+}
+
+/// Python with pycomm3 and one of the foreign programs; `None`, and a line that says so, where there is none. `.ci/run` makes
+/// an environment with it and names its interpreter in `ENCODER_STUDIO_PYCOMM3`.
+pub(crate) fn pycomm3(script: &str) -> Option<Command> {
+    let Some(interpreter) = std::env::var_os("ENCODER_STUDIO_PYCOMM3") else {
+        skip("ENCODER_STUDIO_PYCOMM3 names no Python with pycomm3 (.ci/run makes one)");
+        return None;
+    };
+    let mut command = Command::new(interpreter);
     command.arg("-B").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign").join(script));
     Some(command)
 }

@@ -1,0 +1,205 @@
+//! `simulate hiperdrive`, examined by clients that are not our program: one written from the reference, and pycomm3.
+
+use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
+
+fn told(place: &str, things: &[&str]) -> Vec<String> {
+    foreign_host("enip_client.py", place, things)
+}
+
+fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
+    Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat())
+}
+
+/// Things with what the client is to say of each.
+#[track_caller]
+fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
+    let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
+    let said = told(place, &[options, &things].concat());
+    let pairs: Vec<_> = things.iter().zip(&said).collect();
+    assert_eq!(said, expected, "{pairs:?}");
+}
+
+/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; what is refused, and how.
+#[test]
+fn parameters_are_read_and_written() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &["--set", "position=163840"]);
+    let steps = [
+        ("get:13", "HIPERDRIVE SINGLE"),
+        ("get:17", "4711"),
+        ("get:107", "163840"),
+        ("raw:0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 80 02 00"),
+        ("get:158", "-33488896"),
+        ("get:160", "33488896"),
+        ("set:166=200", "done"),
+        ("get:166", "200"),
+        ("set:166=351", "status 09"),
+        ("set:107=5", "status 0E"),
+        ("get:130", "status 14"),
+        ("raw:0E 03 20 66 24 01 30 6B", "8E 00 05 00"),
+        ("raw:10 03 20 65 24 01 30 A6 C8", "90 00 13 00"),
+        ("frame:72:", "01"),
+        ("frame:00:", "silence"),
+        ("identity", "1010 1 4711 HIPERDRIVE SINGLE"),
+        ("shout", "1010 1 4711 HIPERDRIVE SINGLE"),
+        ("end", "closed"),
+    ];
+    walk(&port.place, &[], &steps);
+    // The next client finds the drive as the first has left it.
+    walk(&port.place, &[], &[("get:166", "200")]);
+    port.end("INT");
+}
+
+/// Reference 3 and 9: words and their states; a move there and back; hold-to-run ends where it was let go.
+#[test]
+fn a_drive_is_led_moved_and_jogged() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &[]);
+    let steps = [
+        ("open", "00020001"),
+        ("word:0000", "2A30"),
+        ("word:0400", "2A31"),
+        ("word:0401", "2A33"),
+        ("word:0409", "2A37"),
+        ("move:163840", "163840"),
+        ("get:107", "163840"),
+        ("move:100000", "100000"),
+        ("jog:300", "moved stands rests"),
+        ("move:-65536", "-65536"),
+        ("leave", "done"),
+        ("word:0400", "2A31"),
+        ("close", "done"),
+        ("close", "status 01 0107"),
+    ];
+    walk(&port.place, &[], &steps);
+    port.end("TERM");
+}
+
+/// The eighth drive of a hub that is requested by parameter 852, and without parameter words.
+#[test]
+fn a_drive_of_a_hub_moves_alone() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &["--hub", "8"]);
+    let last = [("get:13", "HIPERDRIVE HUB-8"), ("set:152=1", "done"), ("open", "00020001"), ("move:30000", "30000")];
+    walk(&port.place, &["--hub=8", "--drive=8"], &last);
+    walk(&port.place, &["--hub=8"], &[("get:107", "0"), ("get:152", "0")]);
+    port.end("INT");
+    let port = drives(&bench, &["--hub", "4", "--set", "requested=1", "--set", "drives=0,1"]);
+    let steps = [("open", "00020001"), ("move:20000", "20000"), ("get:120", "7"), ("close", "done")];
+    walk(&port.place, &["--hub=4", "--drive=2", "--without-words"], &steps);
+    walk(&port.place, &["--hub=4"], &[("get:107", "status 0C"), ("get:120", "0")]);
+    port.end("INT");
+}
+
+/// Reference 7: a lost master ends the motion within its time-out; fault 8601 = 34305 tells it.
+#[test]
+fn a_drive_stands_when_its_master_falls_silent() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &[]);
+    let steps =
+        [("open", "00020001"), ("begin:33000000", "done"), ("hush", "moved stands silent"), ("get:108", "34305")];
+    walk(&port.place, &[], &steps);
+    // Another master takes it over, and finds the fault: 2AB8, with the set-point acknowledged (bit 12).
+    walk(&port.place, &[], &[("open", "00020002"), ("until:8:8", "3AB8"), ("close", "done")]);
+    port.end("INT");
+}
+
+/// Garbage over both ways disturbs neither what moves nor who asks.
+#[test]
+fn garbage_is_let_pass() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &[]);
+    let steps = [
+        ("flood:300", "done"),
+        ("get:17", "4711"),
+        ("open", "00020001"),
+        ("begin:131072", "done"),
+        ("flood:200", "done"),
+        ("until:2400:2400", "3E37"),
+        ("get:107", "131072"),
+        ("close", "done"),
+    ];
+    walk(&port.place, &[], &steps);
+    port.end("INT");
+}
+
+/// What was saved is there with the next client behind a loss of power; half of what was being saved is.
+#[test]
+fn a_save_is_cut_where_it_was_asked_for() {
+    let bench = Bench::new();
+    if python("enip_client.py").is_none() {
+        return;
+    }
+    let port = drives(&bench, &["--fault", "die-in-store:2", "--set", "serial=7"]);
+    walk(&port.place, &[], &[("set:166=200", "done"), ("set:47=1", "done"), ("get:47", "1")]);
+    let second = [("set:152=0", "done"), ("set:186=10", "done"), ("get:47", "0"), ("set:47=1", "done")];
+    walk(&port.place, &[], &second);
+    // It is gone before the next one connects, and comes back with that.
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let after = [("get:17", "7"), ("get:166", "200"), ("get:152", "0"), ("get:186", "20"), ("set:47=-3", "done")];
+    walk(&port.place, &[], &after);
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    walk(&port.place, &[], &[("get:47", "0"), ("get:166", "350"), ("get:152", "1")]);
+    port.end("INT");
+}
+
+/// A client that others have written reads and writes plainly, wrapped, and over an explicit connection, for which it tries
+/// the long ForwardOpen first.
+#[test]
+fn pycomm3_reads_and_writes() {
+    let bench = Bench::new();
+    let Some(client) = pycomm3("enip_pycomm3.py") else { return };
+    let port = drives(&bench, &["--set", "position=163840"]);
+    let refused = "Error in data segment or invalid attribute value";
+    let mut things = vec!["identity", "all"];
+    let mut expected = vec!["halstrup-walcher GmbH 4711 HIPERDRIVE SINGLE"; 2];
+    for steps in [
+        ["get:plain:107", "set:plain:166:C8 00", "get:plain:166", "set:plain:166:5F 01"],
+        ["get:wrapped:107", "set:wrapped:166:C9 00", "get:wrapped:166", "set:wrapped:166:5F 01"],
+        ["get:connected:107", "set:connected:166:CA 00", "get:connected:166", "set:connected:166:5F 01"],
+    ] {
+        things.extend(steps);
+    }
+    for value in ["C8 00", "C9 00", "CA 00"] {
+        expected.extend(["00 80 02 00", "done", value, refused]);
+    }
+    assert_eq!(foreign_host_with(client, &port.place, &things), expected);
+    port.end("INT");
+}
+
+#[test]
+fn what_cannot_be_served_is_said() {
+    let bench = Bench::new();
+    bench.run(&["simulate", "hiperdrive", "--pty", &bench.file("drive")]).fails(2, &["--listen", "EtherNet/IP"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--bridge"]).fails(2, &["--bridge", "biss"]);
+    bench.run(&["simulate", "hiperdrive"]).fails(2, &["--listen"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--hub", "5"]).fails(2, &["--hub", "4, 8"]);
+    bench.run(&["simulate", "interbus", "--listen", "127.0.0.1:0", "--hub", "4"]).fails(2, &["hub", "encoders"]);
+    let wrong = ["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--set", "drives=1,1"];
+    bench.run(&wrong).fails(2, &["drives=1,1", "1 places"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", "nowhere"]).fails(2, &["nowhere", "HOST:PORT"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
+    let taken = drives(&bench, &[]);
+    bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["another program listens"]);
+    // The port is free for TCP alone.
+    let datagrams = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let place = datagrams.local_addr().unwrap().to_string();
+    bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["another program listens"]);
+    taken.end("INT");
+    assert!(!bench.path("drive").exists());
+}
