@@ -221,3 +221,136 @@ fn within<T: TryFrom<u64> + PartialOrd>(
     let number = Some(setting.number(allowed)?).filter(|number| (low..=high).contains(number));
     number.ok_or_else(|| setting.refused(allowed))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::hiperdrive::{ErrorCode, OutData, OutImage, ParameterNumber, StatusBit, Value};
+    use crate::sim::hiperdrive::{Station, Target};
+    use crate::units::Moment;
+    use proptest::prelude::*;
+    use std::time::Duration;
+
+    fn read(query: &str) -> Result<Config, ConfigError> {
+        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
+        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
+        Config::from_pairs(&pairs)
+    }
+
+    #[test]
+    fn every_key_is_read() {
+        let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&\
+                     temperature=-12.5&s3=2&switch=17&supply=23.5&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
+                     fault=drop:0.25";
+        assert_eq!(query.split('&').count(), Config::KEYS.len());
+        let expected = Config {
+            topology: Topology::Hub4,
+            plugged: Some(vec![true, false, true]),
+            variant: Variant::new(13),
+            requested: Some(true),
+            position: -100,
+            speed: Some(200),
+            load: 60,
+            blocked: true,
+            temperature: -12.5,
+            s3: 2,
+            switch: 17,
+            supply_tenths: 235,
+            serial_number: 16,
+            name: "Feeder".to_owned(),
+            order: ByteOrder::Big,
+            counted_texts: true,
+            seed: 9,
+            faults: "drop:0.25".parse().unwrap(),
+        };
+        assert_eq!(read(query), Ok(expected));
+        assert_eq!(Config::from_pairs(&[]), Ok(Config::default()));
+        assert_eq!(read("variant=13").unwrap().variant, Variant::new(13));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_in_a_sentence() {
+        let keys = Config::KEYS.join(", ");
+        let cases = [
+            ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; allowed are {keys}")),
+            (
+                "drives=1,1",
+                "`drives=1,1` cannot be used: allowed is 0 or 1 for each of 1 places, separated by commas, as 1,0"
+                    .to_owned(),
+            ),
+            (
+                "hub=2",
+                "`hub=2` cannot be used: allowed is 4 or 8; without it there is an adapter with one drive".to_owned(),
+            ),
+            ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1".to_owned()),
+        ];
+        for (query, sentence) in cases {
+            assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
+        }
+        let wrong = "drives=2 drives= variant=0 variant=14 variant=HDA requested=2 position=2147483648 position=1.5 speed=4 speed=351 \
+                     load=201 blocked=1 temperature=NaN temperature=121 s3=10 switch=100 supply=-1 serial=65536 name=Ü order=le \
+                     text=raw seed=-1";
+        for query in wrong.split_whitespace() {
+            assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
+        }
+    }
+
+    /// What a drive says of a setting: read from it, not from the settings.
+    #[test]
+    fn a_station_is_as_it_was_asked_for() {
+        let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
+        let mut station = Station::of(&read(query).unwrap());
+        let mut value = |number| station.read(Moment::START, ParameterNumber::new(number).unwrap()).ok();
+        for (number, expected) in [(9, 235), (12, 17), (17, 16), (120, 0), (220, 13), (252, 1), (207, -100), (266, 200)]
+        {
+            assert_eq!(value(number), Some(Value::Number(expected)), "{number}");
+        }
+        assert_eq!((value(15), value(307)), (Some(Value::Text("Feeder".to_owned())), None));
+        // 16000 turns of 65536 steps.
+        assert_eq!(value(260), Some(Value::Number(1_048_576_000)));
+    }
+
+    /// Leads the first drive to a move, as far as it comes; what it says then, and its newest error.
+    fn driven(query: &str) -> (u16, Option<ErrorCode>) {
+        let mut station = Station::of(&read(query).unwrap());
+        let mut now = Moment::START;
+        station.open(now, Duration::from_secs(60));
+        for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
+            let out = OutData { control, speed: 100, torque: 100, target: 65536 };
+            station.cyclic(now, &OutImage { drives: vec![out], pkw: None }, true);
+            now = now + Duration::from_secs(4);
+        }
+        let drive = station.drive(DriveNumber::FIRST).unwrap();
+        let status = drive.actual(now).status;
+        let error = match drive.read(now, 108) {
+            Some(Value::Number(0)) | None => None,
+            Some(Value::Number(code)) => Some(ErrorCode::new(u16::try_from(code).unwrap())),
+            Some(Value::Text(text)) => panic!("{text}"),
+        };
+        (status.with(StatusBit::SetpointAcknowledged, false).word(), error)
+    }
+
+    /// Reference 3 and 9: done is 3E37, of which bit 12 is left out; a fault 2AB8.
+    #[test]
+    fn drives_do_what_one_wants_to_see() {
+        for (query, status, error) in [
+            ("", 0x2E37, None),
+            ("load=90", 0x2E37, None),
+            ("load=101", 0x2AB8, Some(ErrorCode::FOLLOWING)),
+            ("blocked=on", 0x2AB8, Some(ErrorCode::BLOCK_FORWARD)),
+            ("blocked=on&position=70000", 0x2AB8, Some(ErrorCode::BLOCK_REVERSE)),
+            ("temperature=85", 0x2AB8, Some(ErrorCode::OVER_TEMPERATURE)),
+            ("requested=0", 0x2A30, None),
+            ("s3=1", 0x2A30, None),
+        ] {
+            assert_eq!(driven(query), (status, error), "{query}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*|[0-9]{1,9}|0x[0-9A-F]{1,7}|[01](,[01]){0,9}") {
+            let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| Target::new(&config));
+        }
+    }
+}
