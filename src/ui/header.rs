@@ -5,8 +5,12 @@ use egui::{RichText, Stroke, Ui};
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::{Skin, Views, icons};
 use crate::app::connect;
+use crate::app::hiperdrive::Unit;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Language, Notice, Studio, Theme, Wish};
+
+/// Width of STOP while nothing moves.
+const STOP: f32 = 72.0;
 
 /// Draws the header.
 pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -146,7 +150,7 @@ fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     dot(ui, filled, colour);
 }
 
-/// *virtual*, *offline*, *connected*, *lost*: each with a word.
+/// *virtual*, *offline*, *connected*, *moving*, *lost*: each with a word.
 fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     let palette = skin.palette;
     if device.is_virtual() {
@@ -154,6 +158,7 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     }
     phase_dot(ui, skin, device);
     let (id, colour) = match device.phase() {
+        Phase::Connected if device.hiperdrive().is_some_and(Unit::is_moving) => ("shell.moving", palette.bad),
         Phase::Connected if device.is_writing() => ("shell.writing", palette.accent),
         Phase::Connected => ("shell.connected", palette.good),
         Phase::Opening => ("shell.opening", palette.accent),
@@ -174,10 +179,16 @@ fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     }
 }
 
-/// STOP ends everything that runs, in all sessions.
+/// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide, and counts when
+/// it is pressed, not when it is let go.
 fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let active = studio.can_stop();
-    let word = skin.say("shell.stop");
+    let moves = studio.moves();
+    let active = moves || studio.can_stop() || studio.is_in_control();
+    let (word, hint) = if studio.has_drives() {
+        (skin.say("hd_bar.stop"), skin.say("hd_bar.stop_hint"))
+    } else {
+        (skin.say("shell.stop"), skin.say("shell.stop_hint"))
+    };
     let text = format!("{}  {word}", icons::STOP);
     let palette = skin.palette;
     let stop = if active {
@@ -185,8 +196,10 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     } else {
         egui::Button::new(RichText::new(text).color(palette.muted))
     };
-    let response = ui.add_enabled(active, stop).on_hover_text(skin.say("shell.stop_hint"));
-    if name(response, active, &word).clicked() {
+    let width = if moves { STOP * 2.0 } else { STOP };
+    let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
+    let pressed = moves && response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if name(response, active, &word).clicked() || pressed {
         actions.push(Action::Stop);
     }
 }

@@ -151,6 +151,7 @@ impl Window {
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
         writing_bar(ui, skin, studio);
+        moving_edge(ui, skin, studio);
         self.notice(ui, skin, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
@@ -251,6 +252,10 @@ impl Window {
         if pressed(Modifiers::NONE, Key::F1) {
             self.views.help = !self.views.help;
         }
+        if self.is_covered() || self.views.help || !ctx.input(|input| input.focused) {
+            // Nobody sees what is held, or the key that holds it will not be heard when it is lifted.
+            actions.push(Action::LetGo);
+        }
         if self.is_covered() {
             return;
         }
@@ -292,11 +297,14 @@ impl Window {
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half
     /// typed byte, an open menu, a field that is being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
-        if !ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || in_use {
+        // Whoever presses it while a drive moves means the machine, whatever else is open or dragged.
+        let moves = self.studio.moves();
+        if !ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || in_use && !moves {
             return;
         }
         let views = &mut self.views;
-        if !self.studio.can_stop()
+        if !moves
+            && !self.studio.can_stop()
             && (views.file.take().is_some()
                 || std::mem::take(&mut views.about)
                 || std::mem::take(&mut views.help)
@@ -328,6 +336,15 @@ impl Window {
             // Fast enough for the eye, and little enough for drawing in software.
             ctx.request_repaint_after(Duration::from_millis(50));
         }
+    }
+}
+
+/// While a drive moves, the header has a red edge.
+fn moving_edge(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+    if studio.moves() {
+        let screen = ui.ctx().content_rect();
+        let edge = egui::Rect::from_min_size(screen.min + egui::vec2(0.0, 45.0), egui::vec2(screen.width(), 3.0));
+        ui.ctx().debug_painter().rect_filled(edge, 0.0, skin.palette.bad);
     }
 }
 

@@ -1,8 +1,16 @@
-//! The HIPERDRIVE tab: its parameters as they were read, profiles and backups.
+//! The HIPERDRIVE tab: its pages, each about one thing that a person wants of a drive, and above them what is never out of
+//! reach.
+
+mod bar;
+mod device;
+mod errors;
+mod figures;
+mod jog;
+mod motion;
+mod parameters;
 
 use egui::{ScrollArea, Ui};
 
-use super::controls::row;
 use super::{Skin, backups, foot, icons};
 use crate::app::hiperdrive::Unit;
 use crate::app::{Action, AnyDevice, Studio};
@@ -10,45 +18,78 @@ use crate::app::{Action, AnyDevice, Studio};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) enum Page {
-    /// Every parameter.
+    /// The drive's states, and what moves it.
     #[default]
+    Motion,
+    /// Every parameter.
     Parameters,
+    /// Errors, lamps, the cyclic connection.
+    Diagnosis,
+    /// Who it is, where it is in the network.
+    Device,
     /// Profiles, backups and what was written.
     Backups,
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 2] = [Page::Parameters, Page::Backups];
+    pub(super) const ALL: [Page; 5] = [Page::Motion, Page::Parameters, Page::Diagnosis, Page::Device, Page::Backups];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
+            Page::Motion => icons::GAUGE,
             Page::Parameters => icons::SLIDERS,
+            Page::Diagnosis => icons::MAGNIFYING_GLASS,
+            Page::Device => icons::CPU,
             Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
         }
     }
 
     pub(super) fn word(self) -> &'static str {
         match self {
+            Page::Motion => "page.motion",
             Page::Parameters => "page.parameters",
+            Page::Diagnosis => "page.diagnosis",
+            Page::Device => "page.device",
             Page::Backups => "page.backups",
         }
     }
 
     pub(super) fn help(self) -> &'static str {
-        "help.backups"
+        match self {
+            Page::Motion => "help.hd_motion",
+            Page::Parameters => "help.hd_parameters",
+            Page::Diagnosis => "help.hd_diagnosis",
+            Page::Device => "help.hd_device",
+            Page::Backups => "help.backups",
+        }
+    }
+
+    /// What is edited here is written from here.
+    fn has_foot(self) -> bool {
+        self == Page::Parameters
     }
 }
 
-/// What the tab remembers of one session while the window is open.
+/// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(in crate::ui) struct View {
     /// The open page.
     pub page: Page,
+    /// The device that the rest is about.
+    serial_number: Option<String>,
+    motion: motion::View,
+    parameters: parameters::View,
 }
 
 impl View {
-    /// There is nothing that is about one device alone.
-    pub(super) fn follow(&mut self, _unit: &Unit) {}
+    /// What was typed for another device is not for this one.
+    pub(super) fn follow(&mut self, unit: &Unit) {
+        let Some(own) = unit.serial_number() else { return };
+        if self.serial_number.as_deref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.to_owned());
+    }
 }
 
 /// Draws the open page.
@@ -60,15 +101,30 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
+    let id = egui::Id::unique(unit.session.id);
+    if unit.profile().is_none() {
+        // Stays where it is while the rest scrolls: STOP, and what it is not.
+        egui::Panel::top(id.with("hiperdrive_bar"))
+            .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
+            .show(ui, |ui| bar::bar_ui(ui, skin, unit, actions));
+    }
+    if view.page.has_foot() {
+        egui::Panel::bottom(id.with("hiperdrive_foot"))
+            .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
+            .show_separator_line(false)
+            .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+    }
+    let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
     ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        match view.page {
-            Page::Parameters => {
-                for own in unit.rows(None).into_iter().chain(unit.rows(Some(unit.drive()))) {
-                    row(ui, skin, &skin.words(&own.name), skin.mono(own.shown));
-                }
-                foot::foot_ui(ui, skin, studio, device, actions);
-            }
+        frame.show(ui, |ui| match view.page {
+            Page::Motion => motion::page_ui(ui, skin, unit, &mut view.motion, actions),
+            Page::Parameters => parameters::page_ui(ui, skin, unit, &mut view.parameters, actions),
+            Page::Diagnosis => errors::cards_ui(ui, skin, unit, actions),
+            Page::Device => device::cards_ui(ui, skin, unit, actions),
             Page::Backups => backups::page_ui(ui, skin, device, actions),
-        }
+        });
     });
 }

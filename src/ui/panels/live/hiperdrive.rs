@@ -1,13 +1,58 @@
-//! Where the drive that is shown is, large.
+//! Where a drive is, large, with its state, its speed and where it is going.
 
 use egui::{RichText, Ui};
 
+use super::LOW;
 use crate::app::Rgb;
-use crate::app::hiperdrive::Unit;
+use crate::app::explain::hiperdrive as explain;
+use crate::app::hiperdrive::{Measure, Unit};
+use crate::protocol::hiperdrive::{State, turns};
 use crate::ui::Skin;
+use crate::ui::controls::row;
 
 pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
-    let place = unit.actual(unit.drive()).map(|own| unit.place(unit.drive(), own.position));
-    let words = place.map_or_else(|| "–".to_owned(), |place| skin.words(&place));
-    ui.label(RichText::new(words).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
+    let drive = unit.drive();
+    let actual = unit.actual(drive);
+    let ruler = unit.ruler(drive);
+    let in_measure = |steps: i32, measure: Measure| {
+        // Beyond a thousandth nobody measures.
+        let decimals = ruler.decimals(measure).min(3);
+        ruler.of(steps.into(), measure).map(|value| skin.number(value, decimals))
+    };
+    let main = actual.map(|own| in_measure(own.position, unit.measure).unwrap_or_else(|| own.position.to_string()));
+    let palette = skin.palette;
+    ui.horizontal(|ui| {
+        let shown = main.unwrap_or_else(|| "–".to_owned());
+        ui.label(RichText::new(shown).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
+        ui.label(skin.label(skin.say(unit.measure.unit())));
+    });
+    let Some(actual) = actual else { return };
+    let state = actual.status.state();
+    let colour = match state {
+        State::Fault => palette.bad,
+        State::Locked => palette.warn,
+        State::Moving | State::Enabled => palette.good,
+        State::NotReady | State::Ready | State::Operational => palette.muted,
+    };
+    let rpm = skin.number(unit.speed_scale(drive).rpm(actual.speed), 1);
+    let speed = format!("{rpm} {}", skin.say("unit.revolutions_per_minute"));
+    if ui.available_height() < LOW {
+        // In a low window the plot needs the room.
+        let words = format!("{} · {speed}", skin.words(&explain::state(state)));
+        ui.add(egui::Label::new(RichText::new(words).size(skin.sizes.caption).color(colour)).truncate());
+        return;
+    }
+    row(ui, skin, &skin.say("hd_live.state"), RichText::new(skin.words(&explain::state(state))).color(colour));
+    row(ui, skin, &skin.say("hd_effort.speed"), skin.mono(speed));
+    let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
+    if let Some(target) = target {
+        row(ui, skin, &skin.say("hd_live.target"), skin.mono(format!("{target} {}", skin.say(unit.measure.unit()))));
+    }
+    let whole = if ruler.scale == crate::protocol::hiperdrive::PositionScale::FACTORY {
+        let (turn, step) = turns(actual.position);
+        format!("{}  {} {turn} · {} {step}", actual.position, skin.say("live.turns"), skin.say("live.step"))
+    } else {
+        actual.position.to_string()
+    };
+    row(ui, skin, &skin.say("live.raw"), skin.mono(whole));
 }

@@ -1,0 +1,69 @@
+//! What stands above every page: the drives of a hub, who has the control, STOP and what it is not.
+
+use egui::{RichText, Stroke, Ui, vec2};
+
+use crate::app::Action;
+use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
+use crate::ui::controls::{allowed_button, name, options, paragraph};
+use crate::ui::{Skin, icons};
+
+/// STOP: wide enough for a flat hand.
+const STOP: egui::Vec2 = vec2(112.0, 44.0);
+
+/// Draws it.
+pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let id = unit.session.id;
+    ui.horizontal_top(|ui| {
+        stop(ui, skin, unit, actions);
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = skin.space.inside;
+            ui.horizontal_wrapped(|ui| {
+                drives(ui, skin, unit, actions);
+                if unit.moves.is_open() {
+                    let word = skin.say("hd_bar.give");
+                    if allowed_button(ui, skin, &unit.can_give(), icons::PLUGS, &word).clicked() {
+                        actions.push(Action::Hiperdrive(id, Hiperdrive::Give));
+                    }
+                    ui.label(RichText::new(skin.say("hd_bar.in_control")).color(skin.palette.good));
+                } else {
+                    let word = skin.say("hd_bar.take");
+                    if allowed_button(ui, skin, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
+                        actions.push(Action::Hiperdrive(id, Hiperdrive::Take));
+                    }
+                    ui.label(skin.label(skin.say("hd_bar.watching")));
+                }
+            });
+            paragraph(ui, skin.caption(format!("{}  {}", icons::WARNING, skin.say("hd_bar.stop_is_not"))));
+        });
+    });
+}
+
+/// STOP of all drives; also while nothing is known to move.
+fn stop(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let palette = skin.palette;
+    let open = unit.moves.is_open();
+    let word = skin.say("hd_bar.stop");
+    let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
+    let text = RichText::new(format!("{}  {word}", icons::STOP)).font(skin.strong(skin.sizes.section)).color(ink);
+    let edge = if open { Stroke::NONE } else { Stroke::new(1.0, palette.bad) };
+    let button = egui::Button::new(text).fill(fill).stroke(edge).min_size(STOP);
+    // Also down counts: a stop does not wait for a finger to be lifted.
+    let response = ui.add(button).on_hover_text(skin.say("hd_bar.stop_hint"));
+    let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if name(response, true, &word).clicked() || pressed {
+        actions.push(Action::StopMotion);
+    }
+}
+
+/// The drives of a hub; of an adapter nothing, it has one.
+fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let drives = unit.drives();
+    if drives.len() < 2 {
+        return;
+    }
+    let mut shown = unit.drive();
+    let named = drives.into_iter().map(|drive| (drive, drive.get().to_string()));
+    if options(ui, &skin.say("hd_bar.drive"), &mut shown, named) {
+        actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SelectDrive(shown)));
+    }
+}

@@ -1,0 +1,68 @@
+//! Motion by hand: hold to run, and steps that run to their end.
+
+use egui::{Ui, vec2};
+
+use super::motion::{View, effort_ui, length_ui};
+use crate::app::Action;
+use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::protocol::hiperdrive::Direction;
+use crate::ui::controls::{allowed_button, card, paragraph, problem};
+use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
+use crate::ui::{Skin, icons};
+
+/// Height of the buttons that are held.
+const PAD: f32 = 72.0;
+
+/// The card.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    card(ui, skin, "hd_jog.title", |ui| {
+        let allowed = unit.may_move(unit.drive());
+        let set = |effort| Motor::JogEffort(effort);
+        effort_ui(ui, skin, unit, (unit.moves.jog_effort(), &mut view.jog_effort), set, actions);
+        pads_ui(ui, skin, unit, allowed.is_ok(), actions);
+        paragraph(ui, skin.caption(skin.say("hd_jog.words")));
+        if let Err(why) = &allowed {
+            paragraph(ui, egui::RichText::new(skin.words(why)).color(skin.palette.warn));
+        }
+        ui.add_space(skin.space.between);
+        ui.separator();
+        ui.label(skin.heading(skin.say("hd_step.title")));
+        length_ui(ui, skin, unit, "hd_step.by", &mut view.step, actions);
+        ui.horizontal_wrapped(|ui| {
+            for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
+                if allowed_button(ui, skin, &allowed, icons::CARET_RIGHT, &skin.say(id)).clicked() {
+                    match forms::step(unit, &view.step, unit.measure, sign) {
+                        Ok(by) => {
+                            view.step_problem = None;
+                            let step = Hiperdrive::Drive(Motor::Step { by });
+                            actions.push(Action::Hiperdrive(unit.session.id, step));
+                        }
+                        Err(why) => view.step_problem = Some(why),
+                    }
+                }
+            }
+        });
+        problem(ui, skin, view.step_problem.as_ref());
+        paragraph(ui, skin.caption(skin.say("hd_step.words")));
+    });
+}
+
+/// The two buttons that are held.
+pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
+    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
+    ui.horizontal(|ui| {
+        for (direction, word, label) in
+            [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
+        {
+            let (caption, label) = (skin.say("hd_jog.hold"), skin.say(label));
+            let button = HoldButton { word, caption: &caption, label: &label, enabled };
+            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
+                Some(HoldEvent::Press) => Motor::JogPress { direction, repeated: false },
+                Some(HoldEvent::Hold) => Motor::JogHold,
+                Some(HoldEvent::Release) => Motor::JogRelease,
+                None => continue,
+            };
+            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(motor)));
+        }
+    });
+}
