@@ -6,7 +6,7 @@ mod content;
 use egui::{RichText, Ui};
 
 use crate::app::explain::hiperdrive as explain;
-use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, Change, End, Entries, Reached, Seen, Step, words};
+use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, words};
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Severity, Text};
 use crate::ui::controls::{allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split};
@@ -215,9 +215,7 @@ fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut V
         if axis.changes().is_empty() {
             line(ui, skin, Severity::Note, &Text::new("hd_axis.nothing_written"));
         } else {
-            let ruler = axis.ruler(shown.seen);
-            let changes = axis.changes().iter().map(|own: &Change| words::change(own, ruler));
-            line(ui, skin, Severity::Note, &Text::new("hd_axis.was_written").with_list("changes", changes));
+            line(ui, skin, Severity::Note, &words::changes(axis, shown.seen));
             if axis.is_partly_written() {
                 line(ui, skin, Severity::Warning, &Text::new("hd_axis.partly"));
             }

@@ -136,8 +136,14 @@ pub fn place(place: Place) -> Text {
     })
 }
 
-/// What was changed.
-pub fn change(own: &Change, ruler: Option<Ruler>) -> Text {
+/// All that was changed.
+pub fn changes(axis: &Axis, seen: &Seen) -> Text {
+    let ruler = axis.ruler(seen);
+    let changes = axis.changes().iter().map(|own| change(own, ruler));
+    Text::new("hd_axis.was_written").with_list("changes", changes)
+}
+
+fn change(own: &Change, ruler: Option<Ruler>) -> Text {
     match own {
         Change::Parameter(number, value) => Text::new("hd_axis.changed").with("number", number).with("value", value),
         Change::Position(steps) => {
