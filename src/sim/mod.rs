@@ -50,8 +50,7 @@ pub trait DatagramDevice: Send {
     /// A packet has come at `now`, from there.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
 
-    /// Packets that have left by `now` and were not fetched yet, with where they go; 0.0.0.0 is whoever asked over a link in
-    /// this process.
+    /// Packets that have left by `now` and were not fetched yet, with where they go.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
     /// When [`poll_datagrams`](Self::poll_datagrams) should be called next; `None`: nothing will happen by itself.

@@ -76,7 +76,7 @@ impl Config {
     /// | `serial`, `name` | parameters 17 and 15 |
     /// | `order` | `little` or `big`: of the numbers in process data (`U`) |
     /// | `text` | `plain`, or `counted` by a byte in front: texts of parameters (`U`) |
-    /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes |
+    /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets |
     pub const KEYS: [&str; 18] = [
         "hub",
         "drives",
