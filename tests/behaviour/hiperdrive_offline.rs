@@ -185,23 +185,3 @@ fn what_must_not_be_sent_and_what_is_nothing_is_refused() {
         bench.run(&[&["decode"], arguments].concat()).fails(2, words);
     }
 }
-
-/// There is nothing yet that reaches one.
-#[test]
-fn other_commands_say_what_there_is() {
-    let bench = Bench::new();
-    let file = bench.file("drive.ron");
-    for arguments in [
-        &["identify", "hiperdrive", "--link", "sim:"][..],
-        &["status", "hiperdrive", "--link", "sim:"],
-        &["position", "hiperdrive", "--link", "sim:"],
-        &["read", "hiperdrive", "158", "--link", "sim:"],
-        &["write", "hiperdrive", "158", "-1000000", "--link", "sim:"],
-        &["save", "hiperdrive", "--link", "sim:", "-o", &file],
-        &["do", "hiperdrive", "check", "--link", "sim:"],
-        &["simulate", "hiperdrive", "--listen", "127.0.0.1:0"],
-    ] {
-        bench.run(arguments).fails(2, &["hiperdrive", "decode hiperdrive"]);
-    }
-    assert!(!bench.path("drive.ron").exists());
-}

@@ -1,13 +1,22 @@
-//! The commands for HIPERDRIVE: captured words and packets in words of a person, offline. The drive itself is not reached.
+//! The commands for HIPERDRIVE drives behind an adapter or a hub; words and packets are explained offline as well.
 
+mod act;
 mod decode;
+mod find;
 mod image;
+mod inspect;
 mod meaning;
+mod plan;
+mod position;
+mod profiles;
+mod run;
 mod simulate;
+mod write;
 
+use super::args::OfDrive;
 use super::kind::Kind;
 use super::{Failure, Result};
-use crate::profile::hiperdrive;
+use crate::profile::hiperdrive::{Item, ItemError};
 use crate::protocol::hiperdrive::KIND;
 
 pub(super) use meaning::parameter_words;
@@ -15,25 +24,30 @@ pub(super) use meaning::parameter_words;
 /// What can be done with drives.
 pub(super) const COMMANDS: Kind = Kind {
     name: KIND,
-    find: |_, _, _| lacking("find"),
-    identify: |_, _| lacking("identify"),
-    status: |_, _, _| lacking("status"),
-    position: |_, _, _| lacking("position"),
-    read: |_, _, _| lacking("read"),
-    save: |_, _, _| lacking("save"),
-    write: |_, _, _| lacking("write"),
-    act: |_, _, _| lacking("do"),
+    find: find::find,
+    identify: inspect::identify,
+    status: |common, output, _| inspect::status(common, output),
+    position: position::position,
+    read: inspect::read,
+    save: profiles::save,
+    write: write::write,
+    act: act::act,
     decode: decode::decode,
-    restore: |_, _, _, _| lacking("restore"),
+    restore: profiles::restore,
     simulated: simulate::simulated,
-    present: |_, _, _| lacking("reading from a link"),
-    compare: |left, right| Ok(hiperdrive::compare(&left.clone().into_hiperdrive()?, &right.clone().into_hiperdrive()?)),
-    other_device: |_, _| None,
+    present: profiles::present,
+    compare: profiles::compare,
+    other_device: profiles::other_device,
 };
 
-/// A command that needs the drive, and what there is.
-fn lacking<T>(command: &str) -> Result<T> {
-    Err(Failure::Usage(format!(
-        "{command} is not for {KIND} devices, which are not reached over a link: decode {KIND} explains their words and packets"
-    )))
+/// The parameter that a user names, of the drive that is named beside it.
+fn item(text: &str, of: &OfDrive) -> Result<Item> {
+    let item = text.parse::<Item>().and_then(|item| match (of.drive, text.parse::<u16>()) {
+        (Some(drive), Ok(number)) => Item::of(number, Some(drive)),
+        (Some(drive), Err(_)) if item.0.drive().map(|own| own.get()) != Some(drive) => {
+            Err(ItemError::NoDrive { number: item.0.base(), drive })
+        }
+        _ => Ok(item),
+    });
+    item.map_err(|error| Failure::Usage(error.to_string()))
 }

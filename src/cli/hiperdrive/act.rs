@@ -1,0 +1,88 @@
+//! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
+
+use super::plan::{commit, operations, prepare};
+use super::run::{Runner, drive};
+use crate::app::{Text, explain};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::check;
+use crate::cli::consent::require_consent;
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::Output;
+use crate::cli::profiles::show_done;
+use crate::cli::runner::unexpected;
+use crate::cli::{Failure, Result};
+use crate::profile::hiperdrive::{Op, Service};
+use crate::protocol::hiperdrive::KIND;
+use crate::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput};
+
+const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    let of_drive = matches!(act.action, Action::Acknowledge | Action::SetPosition);
+    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
+    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let mine = [(act.of.drive.is_some() && !of_drive, "--drive"), (act.all && act.action != Action::Factory, "--all")];
+    if let Some((_, option)) = mine.into_iter().find(|(given, _)| *given) {
+        return Err(Failure::Usage(format!("{option} is not for {}", action_name(act.action))));
+    }
+    let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    let change = match (act.action, words.as_slice()) {
+        (Action::Check, []) => return check_device(common, output),
+        (Action::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&act.of))),
+        (Action::Save, []) => Change::Do(Service::Save),
+        (Action::Recall, []) => Change::Do(Service::Recall),
+        (Action::Factory, []) => Change::Do(if act.all { Service::FactoryAll } else { Service::Factory }),
+        (Action::PresenceTest, []) => Change::Do(Service::Reset),
+        (Action::SetPosition, [position]) => set_position(act, position)?,
+        (Action::SetPosition, _) => return Err(takes("one position")),
+        (
+            Action::Check
+            | Action::Acknowledge
+            | Action::Save
+            | Action::Recall
+            | Action::Factory
+            | Action::PresenceTest,
+            _,
+        ) => return Err(takes("no argument")),
+        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
+    };
+    require_consent(&act.consent)?;
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, output, change)?;
+    let operations = operations(&prepared.plan);
+    let said: String = prepared.plan.ops.iter().flat_map(lines_of).map(|line| line + "\n").collect();
+    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    if let (Action::Factory, false) = (act.action, act.all) {
+        output.remark(&Text::new("hd_cli.not_saved").terminal());
+    }
+    show_done(output, &action_name(act.action), &operations, &spent, &[], &said)
+}
+
+/// What an operation has made of what.
+fn lines_of(op: &Op) -> Vec<String> {
+    let words = explain::hiperdrive::op(op);
+    let item = words.item.terminal();
+    words
+        .changes
+        .iter()
+        .map(|change| format!("{item}: {} → {}", change.old.terminal(), change.new.terminal()))
+        .collect()
+}
+
+fn set_position(act: &Do, text: &str) -> Result<Change> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
+    let beyond = || out_of_range("position", text, i32::MIN.into(), i32::MAX.into());
+    let position = i32::try_from(number).map_err(|_| beyond())?;
+    Ok(Change::SetPosition { drive: drive(&act.of), position, save: true })
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    match runner.run(HiperdriveJob::Check)? {
+        HiperdriveOutput::Check(lines) => check::show(output, &explain::hiperdrive::check(&lines)),
+        other => Err(unexpected(&other)),
+    }
+}

@@ -1,0 +1,100 @@
+//! A plan for an adapter or a hub: shown, agreed to, carried out.
+
+use serde_json::{Value as Json, json};
+
+use super::run::Runner;
+use crate::app::{Text, explain};
+use crate::cli::Result;
+use crate::cli::args::Consenting;
+use crate::cli::consent::agree;
+use crate::cli::output::{Lines, Output};
+use crate::cli::profiles::{Shown, Spent};
+use crate::cli::runner::unexpected;
+use crate::device::hiperdrive::write::Written;
+use crate::profile::hiperdrive::{HiperdrivePlan, Op, warnings};
+use crate::profile::{Consent, Operation as _};
+use crate::worker::hiperdrive::{Change, Commit, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
+
+/// Makes a plan for a change; nothing is written. What it brings along is told.
+pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+    let asked = match &change {
+        Change::SetPosition { position, .. } => Some(i64::from(*position)),
+        _ => None,
+    };
+    let prepared = match runner.run(HiperdriveJob::Prepare(change))? {
+        HiperdriveOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
+        && asked != *new
+    {
+        output.remark(&Text::new("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal());
+    }
+    for warning in warnings(&prepared.plan) {
+        output.remark(&explain::hiperdrive::warning(&warning).terminal());
+    }
+    Ok(prepared)
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+    if prepared.plan.is_empty() {
+        return Ok(Spent::default());
+    }
+    if let Some(saves) = prepared.wear() {
+        output.remark(&format!(
+            "{saves} saves have been counted here with this one: the manual names no limit, and from {WEAR_WARNING} on an \
+             EEPROM may wear out."
+        ));
+    }
+    agree(output, consent, &shown(&prepared).text)?;
+    let granted = Consent::to(prepared.plan.id());
+    let commit = Commit { prepared, consent: granted };
+    let committed = match runner.run(HiperdriveJob::Commit(Box::new(commit)))? {
+        HiperdriveOutput::Committed(committed) => *committed,
+        other => return Err(unexpected(&other)),
+    };
+    if let Some(why) = &committed.logbook_warning {
+        output.remark(&explain::logbook(why).terminal());
+    }
+    let Written { written, verified, write_cycles, .. } = committed.written;
+    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
+}
+
+/// The plan for a person and for a script: each parameter old → new, and what it costs.
+pub(super) fn shown(prepared: &Prepared) -> Shown {
+    let plan = &prepared.plan;
+    let write_cycles = plan.write_cycles();
+    if plan.is_empty() {
+        let text = "nothing to write: it is so already\n".to_owned();
+        return Shown { operations: Vec::new(), text, write_cycles };
+    }
+    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
+    let mut lines = Lines::default();
+    for op in &plan.ops {
+        let words = explain::hiperdrive::op(op);
+        for change in &words.changes {
+            lines.add(words.item.terminal(), format!("{}  →  {}", change.old.terminal(), change.new.terminal()));
+        }
+    }
+    lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen})"));
+    Shown { operations: operations(plan), text: lines.text(), write_cycles }
+}
+
+/// The operations as JSON.
+pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
+    plan.ops
+        .iter()
+        .map(|op| {
+            let (old, new) = match op {
+                Op::Write { old, new, .. } => (json!(old), json!(new)),
+                Op::Service(service) => match service.code() {
+                    Some(code) => (Json::Null, json!(code)),
+                    None => (Json::Null, json!(0)),
+                },
+                Op::Network { .. } => (Json::Null, json!(op.note())),
+            };
+            json!({"item": op.item(), "old": old, "new": new, "write_cycles": op.write_cycles()})
+        })
+        .collect()
+}

@@ -1,0 +1,54 @@
+//! `write`: one parameter.
+
+use super::item;
+use super::plan::{commit, operations, prepare};
+use super::run::Runner;
+use crate::app::{Text, explain};
+use crate::cli::args::{Common, Write};
+use crate::cli::consent::require_consent;
+use crate::cli::number::parse_number;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_changed;
+use crate::cli::runner::failed;
+use crate::cli::{Failure, Result};
+use crate::profile::hiperdrive::{Image, Item, PlanError, Service};
+use crate::protocol::hiperdrive::Access;
+use crate::worker::hiperdrive::Change;
+
+pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+    let item = item(&write.item, &write.of)?;
+    let change = change(item, &write.value)?;
+    require_consent(&write.consent)?;
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, output, change)?;
+    let operations = operations(&prepared.plan);
+    let spent = commit(&mut runner, output, prepared, &write.consent)?;
+    show_changed(output, &item.to_string(), &operations, &spent)
+}
+
+/// What writing a value comes to. What no device takes is refused before anything is opened.
+fn change(item: Item, text: &str) -> Result<Change> {
+    let number = item.0;
+    let refused = |error: PlanError| failed(&explain::hiperdrive::plan(&error));
+    let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
+    match (row.number, row.access) {
+        (101..=104, ..) => return Err(refused(PlanError::Moves { item })),
+        (199, ..) => return Err(refused(PlanError::Acts { item })),
+        (_, Access::Read) => return Err(refused(PlanError::ReadOnly { item })),
+        _ => {}
+    }
+    let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
+    let value = row.check(number, value).map_err(|error| refused(error.into()))?;
+    match (row.number, number.drive()) {
+        (47, _) => match Service::of_code(value) {
+            Some(service) => Ok(Change::Do(service)),
+            None => Err(failed(&Text::new("hd_cli.no_service"))),
+        },
+        (198, Some(drive)) => {
+            // Of 32 bits.
+            let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;
+            Ok(Change::SetPosition { drive, position, save: true })
+        }
+        _ => Ok(Change::Write(Box::new(Image { values: [(number, value)].into() }))),
+    }
+}

@@ -1,0 +1,126 @@
+//! Everything about HIPERDRIVE that can be typed wrongly or stands in the way: one clear sentence, and nothing is set.
+
+use super::hiperdrive_tap::Tapped;
+use super::support::Bench;
+
+#[test]
+fn what_cannot_be_written_is_refused_with_its_reason() {
+    let bench = Bench::new();
+    let cases: [(&[&str], i32, &[&str]); 25] = [
+        // Both limits, whoever refuses.
+        (&["166", "351"], 1, &["166", "351", "5 to 350"]),
+        (&["166", "4"], 1, &["5 to 350"]),
+        (&["158", "2147483648"], 1, &["-2147483648 to 2147483647"]),
+        (&["186", "200"], 1, &["1 to 100 or 255"]),
+        (&["190", "115200"], 1, &["9600, 19200, 38400"]),
+        (&["154", "0"], 1, &["1 to 65535"]),
+        (&["47", "2"], 1, &["-4 to 1"]),
+        (&["47", "0"], 1, &["47", "save"]),
+        // 158 above 160.
+        (&["158", "33488896"], 1, &["33488896"]),
+        // What can only be read.
+        (&["107", "0"], 1, &["107", "Actual position", "only be read"]),
+        (&["17", "1"], 1, &["17", "only be read"]),
+        (&["13", "1"], 1, &["13", "only be read"]),
+        // What moves.
+        (&["101", "1"], 1, &["101", "move hiperdrive"]),
+        (&["102", "50"], 1, &["102", "move hiperdrive"]),
+        (&["104", "1000"], 1, &["104", "move hiperdrive"]),
+        (&["199", "1"], 1, &["199"]),
+        // What is not understood.
+        (&["155", "1"], 2, &["155"]),
+        (&["limit", "1"], 2, &["limit", "158 drive 2"]),
+        (&["158", "low"], 2, &["158", "low"]),
+        (&["258", "1", "--drive", "3"], 2, &["258", "3"]),
+        (&["47", "1", "--drive", "2"], 2, &["47"]),
+        (&["158", "1", "--drive", "9"], 2, &["9"]),
+        // What is not there.
+        (&["266", "100"], 1, &["2"]),
+        (&["900", "1"], 2, &["900"]),
+        (&["158 drive 2", "1"], 1, &["2"]),
+    ];
+    let device = Tapped::start(&bench, &[]);
+    for (words, status, said) in cases {
+        let ran = device.ask(&bench, &[&["write", "hiperdrive"], words, &["--yes"]].concat());
+        ran.fails(status, said);
+        assert!(device.sets().is_empty(), "{words:?}");
+    }
+}
+
+#[test]
+fn places_without_a_drive_are_named() {
+    let bench = Bench::new();
+    let hub = "sim:?hub=4&drives=1,0,1";
+    for words in [
+        &["read", "hiperdrive", "158", "--drive", "2"][..],
+        &["position", "hiperdrive", "--drive", "2"],
+        &["do", "hiperdrive", "set-position", "0", "--drive", "2", "--yes"],
+        &["write", "hiperdrive", "258", "0", "--yes"],
+    ] {
+        bench.run(&[words, &["--link", hub, "--json"]].concat()).fails(1, &["2"]);
+    }
+    bench.run(&["position", "hiperdrive", "--drive", "5", "--link", hub]).fails(1, &["5", "4"]);
+    bench.run(&["position", "hiperdrive", "--drive", "2", "--link", "sim:"]).fails(1, &["2"]);
+}
+
+#[test]
+fn options_and_actions_of_others_are_refused() {
+    let bench = Bench::new();
+    for (words, said) in [
+        (&["read", "interbus", "steps", "--drive", "1"][..], "--drive is not for interbus"),
+        (&["write", "biss", "0x40", "1", "--drive", "1"], "--drive is not for biss"),
+        (&["do", "hiperface", "check", "--all"], "--all is not for hiperface"),
+        (&["do", "hiperdrive", "calibrate"], "calibrate is not an action of hiperdrive"),
+        (&["do", "biss", "acknowledge"], "acknowledge is not an action of biss"),
+        (&["do", "hiperdrive", "save", "--all"], "--all is not for save"),
+        (&["do", "hiperdrive", "save", "--drive", "1"], "--drive is not for save"),
+        (&["do", "hiperdrive", "save", "now"], "no argument"),
+        (&["do", "hiperdrive", "set-position"], "one position"),
+        (&["do", "hiperdrive", "set-position", "here", "--yes"], "not a number"),
+        (&["do", "hiperdrive", "acknowledge", "--kit"], "--kit is not for hiperdrive"),
+        (&["find", "hiperdrive", "--one-encoder"], "--one-encoder is not for hiperdrive"),
+        (&["identify", "hiperdrive", "--code", "0=55"], "--code"),
+    ] {
+        bench.run(&[words, &["--link", "sim:"]].concat()).fails(2, &[said]);
+    }
+    bench
+        .run(&["do", "hiperdrive", "set-position", "2147483648", "--link", "sim:"])
+        .fails(1, &["-2147483648", "2147483647"]);
+    bench.run(&["identify", "hiperdrive"]).fails(2, &["--link"]);
+    bench.run(&["identify", "hiperdrive", "--link", "serial:/dev/null"]).fails(2, &["enip:"]);
+    bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1?rpi=1"]).fails(2, &["5 to 100"]);
+    bench.run(&["identify", "hiperdrive", "--link", "sim:?hub=3"]).fails(2, &["hub"]);
+}
+
+#[test]
+fn without_consent_nothing_is_touched() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &[]);
+    for words in
+        [&["write", "hiperdrive", "170", "1"][..], &["do", "hiperdrive", "save"], &["do", "hiperdrive", "acknowledge"]]
+    {
+        device.ask(&bench, words).fails(2, &["--yes"]);
+        assert!(device.heard().is_empty(), "{words:?}");
+    }
+}
+
+#[test]
+fn nobody_there_is_told_within_ten_seconds() {
+    let bench = Bench::new();
+    // Port 1 takes no connections here.
+    let ran = bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:1"]);
+    ran.fails(1, &["127.0.0.1:1"]);
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("enip:{}", silent.local_addr().unwrap());
+    let ran = bench.run(&["identify", "hiperdrive", "--link", &url]);
+    ran.fails(1, &["session"]);
+    assert!(ran.took < std::time::Duration::from_secs(10), "{ran:?}");
+}
+
+#[test]
+fn a_save_that_fails_leaves_no_file() {
+    let bench = Bench::new();
+    let file = bench.file("none.ron");
+    bench.run(&["save", "hiperdrive", "-o", &file, "--link", "enip:127.0.0.1:1"]).fails(1, &["127.0.0.1:1"]);
+    assert!(!bench.path("none.ron").exists());
+}

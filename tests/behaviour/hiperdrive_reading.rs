@@ -1,0 +1,180 @@
+//! What is read of virtual HIPERDRIVE drives, in the process and over TCP, and that nothing is set for it.
+
+use serde_json::{Value, json};
+
+use super::hiperdrive_tap::Tapped;
+use super::support::{Bench, Ran};
+
+fn ask(bench: &Bench, link: &str, words: &[&str]) -> Ran {
+    bench.run(&[words, &["--link", link, "--json"]].concat())
+}
+
+const HUB: &str = "sim:?hub=4&drives=1,0,1&serial=1234&requested=1";
+
+#[test]
+fn who_is_there_is_told_with_its_drives() {
+    let bench = Bench::new();
+    let told = ask(&bench, HUB, &["identify", "hiperdrive"]).json();
+    for (key, value) in [
+        ("device", json!("hiperdrive")),
+        ("category", json!("HIPERDRIVE HUB-4")),
+        ("name", json!("HIPERDRIVE")),
+        ("serial_number", json!("1234")),
+    ] {
+        assert_eq!(told[key], value, "{told}");
+    }
+    assert!(told["article_number"].is_string() && told["version"].is_string(), "{told}");
+    let drives: Vec<(&Value, &Value, &Value)> = told["drives"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|drive| (&drive["number"], &drive["variant"], &drive["name"]))
+        .collect();
+    // Variant 7 of the manual's table is HDA30A.
+    let expected = [(&json!(1), &json!(7), &json!("HDA30A")), (&json!(3), &json!(7), &json!("HDA30A"))];
+    assert_eq!(drives, expected);
+    assert!(told["drives"][0]["serial_number"].is_string(), "{told}");
+    let single = ask(&bench, "sim:?variant=13", &["identify", "hiperdrive"]).json();
+    assert_eq!((&single["category"], &single["drives"][0]["variant"]), (&json!("HIPERDRIVE SINGLE"), &json!(13)));
+}
+
+#[test]
+fn a_healthy_device_has_nothing_to_tell() {
+    let bench = Bench::new();
+    let told = ask(&bench, "sim:", &["status", "hiperdrive"]).json();
+    assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])), "{told}");
+    // 2A30: what a drive says that nobody leads (reference 3).
+    let drive = &told["drives"][0];
+    assert_eq!((&drive["status_word"], &drive["state"]), (&json!(0x2A30), &json!("not-ready")));
+    let text = bench.run(&["status", "hiperdrive", "--link", "sim:"]);
+    assert!(text.out.contains("errors") && text.out.contains("Not ready (0x2A30)"), "{text:?}");
+}
+
+/// 65536 steps a turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
+#[test]
+fn a_position_has_turns_with_a_sign() {
+    let bench = Bench::new();
+    for (link, drive, raw, turns, steps, degrees) in [
+        ("sim:?position=163840", "1", 163_840, 2, 32_768, 180.0),
+        ("sim:?position=-1", "1", -1, -1, 65_535, 360.0 * 65_535.0 / 65_536.0),
+        ("sim:?hub=4&drives=0,0,1&position=65536", "3", 65_536, 1, 0, 0.0),
+    ] {
+        let told = ask(&bench, link, &["position", "hiperdrive", "--drive", drive]).json();
+        assert_eq!(
+            (&told["raw"], &told["turns"], &told["steps"]),
+            (&json!(raw), &json!(turns), &json!(steps)),
+            "{told}"
+        );
+        assert_eq!((&told["degrees"], &told["valid"]), (&json!(degrees), &json!(true)), "{told}");
+        assert!(told["t_s"].is_f64(), "{told}");
+    }
+    let several = ask(&bench, "sim:", &["position", "hiperdrive", "--count", "3", "--interval", "0"]);
+    assert_eq!((several.status, several.out.lines().count()), (Some(0), 3), "{several:?}");
+    let table = bench.run(&["position", "hiperdrive", "--csv", "--count", "2", "--link", "sim:?position=-1"]);
+    let lines: Vec<&str> = table.out.lines().collect();
+    assert_eq!((lines.len(), lines[0]), (3, "t_s,raw,turns,steps,degrees,valid"), "{table:?}");
+    assert!(lines[1].contains(",-1,-1,65535,359.99"), "{table:?}");
+}
+
+#[test]
+fn parameters_are_read_by_their_numbers() {
+    let bench = Bench::new();
+    let cases: [(&[&str], &str, Value, Value); 7] = [
+        (&["13"], "13", json!("HIPERDRIVE HUB-4"), Value::Null),
+        (&["17"], "17", json!(1234), Value::Null),
+        (&["47"], "47", json!(0), Value::Null),
+        // −511 turns of 65536 steps.
+        (&["158"], "158", json!(-33_488_896), json!("steps")),
+        (&["158", "--drive", "3"], "158 drive 3", json!(-33_488_896), json!("steps")),
+        (&["366"], "166 drive 3", json!(350), json!("0.1 rpm")),
+        (&["321"], "121 drive 3", json!("HDA30A"), Value::Null),
+    ];
+    for (words, item, value, unit) in cases {
+        let told = ask(&bench, HUB, &[&["read", "hiperdrive"], words].concat()).json();
+        assert_eq!((&told["item"], &told["value"], &told["unit"]), (&json!(item), &value, &unit), "{told}");
+    }
+    assert_eq!(bench.run(&["read", "hiperdrive", "166", "--link", "sim:"]).out, "350 × 0.1 rpm\n");
+}
+
+#[test]
+fn what_is_saved_is_a_profile_that_people_read() {
+    let bench = Bench::new();
+    let file = bench.file("hub.ron");
+    let told = ask(&bench, HUB, &["save", "hiperdrive", "-o", &file]).json();
+    // 10 registers, and 13 of each drive: 152 to 166, 186 to 192, 198.
+    assert_eq!((&told["parameters"], &told["drives"]), (&json!(36), &json!(2)), "{told}");
+    let text = bench.read("hub.ron");
+    for line in [
+        "    device: \"hiperdrive\",\n",
+        "        category: \"HIPERDRIVE HUB-4\",\n",
+        "        serial_number: \"1234\",\n",
+        "            number: 3,\n            variant: 7, // HDA30A\n",
+        "                158: -33488896, // lower limit [steps], -511.000 turns\n",
+        "        (item: \"198 drive 3\", ",
+    ] {
+        assert!(text.contains(line), "{line} is not in\n{text}");
+    }
+    assert!(!text.contains("107:"), "a position is no part of it:\n{text}");
+    assert_eq!(
+        ask(&bench, HUB, &["verify", &file]).json(),
+        json!({"equal": true, "differences": [], "compared": 36, "missing": []})
+    );
+    // The position is another one, and no difference.
+    let moved = HUB.replace("requested=1", "requested=1&position=5000&supply=22");
+    assert_eq!(ask(&bench, &moved, &["diff", &file]).json()["equal"], json!(true));
+    let slower = HUB.replace("requested=1", "requested=1&speed=200");
+    let told = ask(&bench, &slower, &["diff", &file]).json_with(3);
+    let expected = json!([
+        {"item": "166", "left": "350", "right": "200"},
+        {"item": "166 drive 3", "left": "350", "right": "200"},
+    ]);
+    assert_eq!(told["differences"], expected);
+    // A place that has become empty.
+    let fewer = HUB.replace("1,0,1", "1,0,0");
+    let told = ask(&bench, &fewer, &["verify", &file]).json_with(3);
+    assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
+}
+
+/// No set request, no cyclic connection: get attribute, single (0E) or all (01), is all that is ever sent.
+#[test]
+fn reading_sets_nothing() {
+    let bench = Bench::new();
+    let file = bench.file("drive.ron");
+    let changed =
+        bench.write("changed.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 158: -1000000})"#);
+    let device = Tapped::start(&bench, &["--set", "position=100"]);
+    for words in [
+        &["identify", "hiperdrive"][..],
+        &["status", "hiperdrive"],
+        &["position", "hiperdrive", "--count", "3", "--interval", "1"],
+        &["read", "hiperdrive", "158"],
+        &["save", "hiperdrive", "-o", &file],
+        &["diff", &file],
+        &["verify", &file],
+        &["do", "hiperdrive", "check"],
+        &["restore", &changed, "--dry-run"],
+        &["restore", &changed],
+        &["write", "hiperdrive", "166", "200"],
+    ] {
+        let ran = device.ask(&bench, words);
+        let heard = device.heard();
+        let foreign: Vec<&String> =
+            heard.iter().filter(|own| !own.starts_with("0E ") && !own.starts_with("01 ")).collect();
+        assert!(foreign.is_empty(), "{words:?}: {foreign:?}");
+        // Without consent nothing is opened at all.
+        let asks = !matches!(words, ["restore", _] | ["write", ..]);
+        assert_eq!((ran.status, heard.is_empty()), (Some(if asks { 0 } else { 2 }), !asks), "{words:?}: {ran:?}");
+    }
+}
+
+#[test]
+fn devices_are_found_by_asking_an_address() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--set", "hub=8", "--set", "serial=77"]);
+    let url = device.url();
+    let told = bench.run(&["find", "hiperdrive", "--link", &url, "--json"]).json();
+    let found = &told["devices"][0];
+    assert_eq!((&found["link"], &found["product_name"]), (&json!(url), &json!("HIPERDRIVE HUB-8")), "{told}");
+    let wrong = bench.run(&["find", "hiperdrive", "--link", "sim:"]);
+    wrong.fails(2, &["enip:ADDRESS"]);
+}

@@ -1,0 +1,93 @@
+//! What goes to a device over TCP, seen from between: every CIP request in hex, as it was sent.
+
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use super::support::{Bench, Ran, Simulated};
+
+/// One of our virtual devices with somebody who listens in front of it.
+pub(crate) struct Tapped {
+    device: Simulated,
+    url: String,
+    heard: Arc<Mutex<Vec<String>>>,
+}
+
+/// Length of the header of a frame (reference 7), and of what stands before a request in SendRRData.
+const HEADER: usize = 24;
+const BEFORE_REQUEST: usize = 16;
+
+impl Tapped {
+    /// Arguments behind `simulate hiperdrive --listen …`.
+    pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
+        let device = Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat());
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("enip:{}", listener.local_addr().unwrap());
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let (behind, log) = (device.place.clone(), heard.clone());
+        thread::spawn(move || {
+            for host in listener.incoming().map_while(Result::ok) {
+                let Ok(device) = TcpStream::connect(&behind) else { return };
+                let (answers, asks) = (device.try_clone().unwrap(), host.try_clone().unwrap());
+                let log = log.clone();
+                thread::spawn(move || forward(answers, host, |_| {}));
+                thread::spawn(move || listen(asks, device, &log));
+            }
+        });
+        Tapped { device, url, heard }
+    }
+
+    /// Requests since the last time.
+    pub(crate) fn heard(&self) -> Vec<String> {
+        std::mem::take(&mut self.heard.lock().unwrap())
+    }
+
+    /// Those of them that set something (service 10h).
+    pub(crate) fn sets(&self) -> Vec<String> {
+        self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
+    }
+
+    /// The program with the link to it, and JSON.
+    pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
+        bench.run(&[words, &["--link", &self.url, "--json"]].concat())
+    }
+
+    /// Past the one who listens.
+    pub(crate) fn url(&self) -> String {
+        format!("enip:{}", self.device.place)
+    }
+}
+
+fn listen(asks: TcpStream, device: TcpStream, log: &Mutex<Vec<String>>) {
+    let mut pending = Vec::new();
+    forward(asks, device, |bytes| {
+        pending.extend_from_slice(bytes);
+        while pending.len() >= HEADER {
+            let length = HEADER + usize::from(u16::from_le_bytes([pending[2], pending[3]]));
+            if pending.len() < length {
+                break;
+            }
+            let frame: Vec<u8> = pending.drain(..length).collect();
+            if frame[0] == 0x6F {
+                let request = &frame[HEADER + BEFORE_REQUEST..];
+                let hex: Vec<String> = request.iter().map(|byte| format!("{byte:02X}")).collect();
+                log.lock().unwrap().push(hex.join(" "));
+            }
+        }
+    });
+}
+
+fn forward(mut from: TcpStream, mut to: TcpStream, mut heard: impl FnMut(&[u8])) {
+    let mut bytes = [0; 4096];
+    while let Ok(count) = from.read(&mut bytes) {
+        if count == 0 {
+            break;
+        }
+        heard(&bytes[..count]);
+        if to.write_all(&bytes[..count]).is_err() {
+            break;
+        }
+    }
+    let _ = to.shutdown(Shutdown::Both);
+}

@@ -1,0 +1,188 @@
+//! What is written into virtual HIPERDRIVE drives: request by request, as somebody between sees it, save by save.
+
+use serde_json::{Value, json};
+
+use super::hiperdrive_tap::Tapped;
+use super::support::Bench;
+
+/// 47 = 1 (reference 9).
+const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
+
+#[test]
+fn a_parameter_is_written_and_saved_once() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &[]);
+    let told = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
+    let operations = json!([
+        {"item": "158", "old": -33_488_896, "new": -1_000_000, "write_cycles": 0},
+        {"item": "47", "old": null, "new": 1, "write_cycles": 1},
+    ]);
+    assert_eq!((&told["item"], &told["operations"], &told["write_cycles"]), (&json!("158"), &operations, &json!(1)));
+    assert_eq!((&told["written"], &told["verified"]), (&json!(1), &json!(1)), "{told}");
+    // −1000000 is FFF0BDC0h, its low byte first.
+    assert_eq!(device.sets(), ["10 03 20 65 24 01 30 9E C0 BD F0 FF", SAVE]);
+    assert_eq!(device.ask(&bench, &["read", "hiperdrive", "158"]).json()["value"], json!(-1_000_000));
+    device.heard();
+    // Once more: it is so already.
+    let again = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
+    assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
+    assert_eq!(device.sets(), Vec::<String>::new());
+    // The before-image brings it back.
+    let backup = told["backup"].as_str().unwrap();
+    let undone = device.ask(&bench, &["restore", backup, "--yes"]).json();
+    assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(1), &json!(1)), "{undone}");
+    // −33488896 is FE010000h.
+    assert_eq!(device.sets(), ["10 03 20 65 24 01 30 9E 00 00 01 FE", SAVE]);
+}
+
+#[test]
+fn what_is_not_kept_is_not_saved() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
+    let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
+    assert_eq!((&told["item"], &told["write_cycles"]), (&json!("170 drive 2"), &json!(0)), "{told}");
+    // 270: class 66h.
+    assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
+}
+
+/// A spindle of 4 mm in steps of 0.01 mm: 400 steps a turn are 400/256 (reference 5); at 2.5 turns the drive stands at 1000.
+#[test]
+fn a_restore_writes_scale_then_limits_and_saves_once() {
+    let bench = Bench::new();
+    let parameters = "24: 5, 154: 400, 156: 256, 158: 500, 160: 2000, 166: 200, 198: 640, 186: 20";
+    let profile = format!("(schema: 1, device: \"hiperdrive\", parameters: {{{parameters}}})");
+    let file = bench.write("spindle.ron", profile);
+    let device = Tapped::start(&bench, &["--set", "position=163840"]);
+    let dry = device.ask(&bench, &["restore", &file, "--dry-run"]).json();
+    let items: Vec<&str> =
+        dry["operations"].as_array().unwrap().iter().map(|op| op["item"].as_str().unwrap()).collect();
+    assert_eq!(items, ["24", "156", "154", "166", "158", "160", "47"]);
+    assert_eq!((&dry["unchanged"], &dry["write_cycles"]), (&json!(1), &json!(1)), "{dry}");
+    assert_eq!(device.sets(), Vec::<String>::new());
+    let ran = device.ask(&bench, &["restore", &file, "--yes"]);
+    let told = ran.json();
+    assert_eq!(
+        (&told["written"], &told["verified"], &told["write_cycles"]),
+        (&json!(6), &json!(6), &json!(1)),
+        "{told}"
+    );
+    assert!(ran.err.contains("198 belongs to the mounting"), "{ran:?}");
+    let expected = [
+        "10 03 20 64 24 01 30 18 05 00 00 00",
+        "10 03 20 65 24 01 30 9C 00 01",
+        "10 03 20 65 24 01 30 9A 90 01",
+        "10 03 20 65 24 01 30 A6 C8 00",
+        "10 03 20 65 24 01 30 9E F4 01 00 00",
+        "10 03 20 65 24 01 30 A0 D0 07 00 00",
+        SAVE,
+    ];
+    assert_eq!(device.sets(), expected);
+    let place = device.ask(&bench, &["position", "hiperdrive"]).json();
+    assert_eq!((&place["raw"], &place["turns"], &place["steps"]), (&json!(1000), &json!(2), &json!(200)), "{place}");
+    // Nothing differs but the reference, which is never restored: nothing is written, nothing is saved.
+    device.heard();
+    let again = device.ask(&bench, &["restore", &file, "--yes", "--with-mounting"]).json();
+    assert_eq!((&again["written"], &again["unchanged"], &again["write_cycles"]), (&json!(0), &json!(7), &json!(0)));
+    assert_eq!(device.sets(), Vec::<String>::new());
+    // Upwards past both: the upper limit goes first (1000 lies between 500 and 2000, and between 600 and 5000).
+    let up = bench.write("up.ron", r#"(schema: 1, device: "hiperdrive", parameters: {158: 1000, 160: 1001})"#);
+    device.ask(&bench, &["restore", &up, "--yes"]).json();
+    device.sets();
+    let higher = bench.write("higher.ron", r#"(schema: 1, device: "hiperdrive", parameters: {158: -5, 160: 1000})"#);
+    device.ask(&bench, &["restore", &higher, "--yes"]).json();
+    assert_eq!(
+        device.sets(),
+        ["10 03 20 65 24 01 30 9E FB FF FF FF", "10 03 20 65 24 01 30 A0 E8 03 00 00", SAVE],
+        "160 = 1000 would not be above 158 = 1000"
+    );
+}
+
+#[test]
+fn a_drive_outside_its_new_limits_stays_as_it_is() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--set", "position=100"]);
+    let file =
+        bench.write("limits.ron", r#"(schema: 1, device: "hiperdrive", parameters: {24: 1, 158: 200, 160: 300})"#);
+    for words in [
+        &["restore", &file, "--yes"][..],
+        &["restore", &file, "--dry-run"],
+        &["write", "hiperdrive", "158", "200", "--yes"],
+    ] {
+        device.ask(&bench, words).fails(1, &["100", "200", "198", "reference"]);
+        assert_eq!(device.sets(), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_position_is_set_in_steps_of_64_and_saved() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--set", "position=5000"]);
+    let ran = device.ask(&bench, &["do", "hiperdrive", "set-position", "100", "--yes"]);
+    assert_eq!(ran.json()["write_cycles"], json!(1));
+    ran.says(&["100 becomes 128"]);
+    assert_eq!(device.sets(), ["10 03 20 65 24 01 30 C6 80 00 00 00", SAVE]);
+    assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(128));
+    // −33 becomes −64.
+    device.ask(&bench, &["write", "hiperdrive", "198", "-33", "--yes"]).says(&["-33 becomes -64"]);
+    assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(-64));
+    device.sets();
+    let beyond = device.ask(&bench, &["do", "hiperdrive", "set-position", "33488897", "--yes"]);
+    beyond.fails(1, &["-33488896", "33488896"]);
+    assert_eq!(device.sets(), Vec::<String>::new());
+}
+
+#[test]
+fn services_are_what_parameter_47_takes() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &[]);
+    device.ask(&bench, &["write", "hiperdrive", "166", "200", "--yes"]).json();
+    device.sets();
+    for (words, sent, cost) in [
+        (&["save"][..], "01 00", 1),
+        (&["factory"], "FF FF", 0),
+        (&["recall"], "FE FF", 0),
+        (&["presence-test"], "FC FF", 0),
+        (&["factory", "--all"], "FD FF", 1),
+    ] {
+        let told = device.ask(&bench, &[&["do", "hiperdrive"], words, &["--yes"]].concat()).json();
+        assert_eq!(told["write_cycles"], json!(cost), "{words:?}: {told}");
+        assert_eq!(device.sets(), [format!("10 03 20 64 24 01 30 2F {sent}")], "{words:?}");
+        let speed = device.ask(&bench, &["read", "hiperdrive", "166"]).json();
+        let expected = if words[0] == "factory" { 350 } else { 200 };
+        assert_eq!(speed["value"], json!(expected), "{words:?}");
+    }
+    device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--yes"]).json();
+    device.ask(&bench, &["do", "hiperdrive", "factory", "--yes"]).says(&["saved"]);
+}
+
+#[test]
+fn a_profile_goes_onto_its_own_device_and_skips_empty_places() {
+    let bench = Bench::new();
+    let file = bench.file("hub.ron");
+    let hub = |serial: &str, drives: &str| {
+        let (serial, drives) = (format!("serial={serial}"), format!("drives={drives}"));
+        let own = ["--set", "hub=4", "--set", "requested=1", "--set", "speed=100", "--set", &serial, "--set", &drives];
+        Tapped::start(&bench, &own)
+    };
+    let mine = hub("10", "1,0,1");
+    mine.ask(&bench, &["save", "hiperdrive", "-o", &file]).json();
+    bench.write("hub.ron", bench.read("hub.ron").replace("166: 100", "166: 200"));
+    let other = hub("11", "1,1");
+    other.ask(&bench, &["restore", &file, "--yes"]).fails(1, &["10", "11", "--allow-other-device"]);
+    assert_eq!(other.sets(), Vec::<String>::new());
+    let ran = other.ask(&bench, &["restore", &file, "--yes", "--allow-other-device"]);
+    let told = ran.json();
+    assert_eq!((&told["written"], &told["missing"].as_array().unwrap().len()), (&json!(1), &13), "{told}");
+    ran.says(&["place 3"]);
+    assert_eq!(other.sets(), ["10 03 20 65 24 01 30 A6 C8 00", SAVE]);
+}
+
+#[test]
+fn what_a_change_of_scale_does_to_limits_is_said() {
+    let bench = Bench::new();
+    let file = bench.write("scale.ron", r#"(schema: 1, device: "hiperdrive", parameters: {154: 400, 156: 256})"#);
+    let ran = bench.run(&["restore", &file, "--dry-run", "--link", "sim:"]);
+    // 511 turns become 33488896 / 400.
+    assert_eq!(ran.status, Some(0), "{ran:?}");
+    ran.says(&["511", "83722.24"]);
+}
