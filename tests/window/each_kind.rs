@@ -3,14 +3,16 @@
 
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, ReviewAction, Severity, Studio, Tab, Wish};
 use encoder_studio::profile::PlanId;
+use encoder_studio::protocol::hiperdrive::ParameterNumber;
 
-use crate::support::{ADAPTER, Desk, GATE, KIT, PORT};
+use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
 
 /// A kind of device at a cable.
@@ -26,11 +28,13 @@ struct Case {
     other: &'static str,
 }
 
-const CASES: [Case; 3] = [
+const CASES: [Case; 4] = [
     Case { tab: Tab::Hiperface, scheme: "serial", port: PORT, writes: 0x4B, reads: 0x52, other: "serial=OTHER0001" },
     Case { tab: Tab::Biss, scheme: "serial", port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
     // The preset is a parameter of code 4, in bits 28 to 25 of its word; function 4 reads a word.
     Case { tab: Tab::Interbus, scheme: "modbus", port: GATE, writes: 0x08, reads: 4, other: "serial=42" },
+    // Services that set and get an attribute.
+    Case { tab: Tab::Hiperdrive, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
 ];
 
 impl Case {
@@ -104,6 +108,14 @@ impl Case {
                 let edits = [Edit::Preset, Edit::ZeroShift].into_iter().zip(bytes);
                 for (edit, byte) in edits {
                     desk.act(Action::Interbus(id, Interbus::Edit(Box::new(edit(u32::from(*byte))))));
+                }
+            }
+            Tab::Hiperdrive => {
+                // Free registers.
+                let edits = [24, 26].into_iter().filter_map(ParameterNumber::new).zip(bytes);
+                for (number, byte) in edits {
+                    let edit = Box::new(Set::Set(number, i64::from(*byte)));
+                    desk.act(Action::Hiperdrive(id, Hiperdrive::Edit(edit)));
                 }
             }
             _ => desk.act(Action::Hiperface(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
@@ -337,6 +349,10 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
         (Tab::Interbus, "sim:?rpm=6&cams=demo".to_owned()),
         (Tab::Interbus, format!("modbus:{GATE}")),
         (Tab::Interbus, format!("modbus:{GATE}?unit=1&handshake=500")),
+        (Tab::Hiperdrive, "sim:".to_owned()),
+        (Tab::Hiperdrive, "sim:?hub=4&drives=1,0,1".to_owned()),
+        (Tab::Hiperdrive, format!("enip:{DRIVE}")),
+        (Tab::Hiperdrive, format!("enip:{DRIVE}?rpi=20&order=big")),
     ];
     let mut desk = Desk::fresh("");
     for (tab, link) in links {
@@ -350,6 +366,7 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
                     Tab::Biss => Connect::EditBiss(Box::new(dialog.biss.clone())),
                     Tab::Ssi => Connect::EditSsi(Box::new(dialog.ssi.clone())),
                     Tab::Interbus => Connect::EditInterbus(Box::new(dialog.interbus.clone())),
+                    Tab::Hiperdrive => Connect::EditHiperdrive(Box::new(dialog.hiperdrive.clone())),
                     _ => Connect::Edit(Box::new(dialog.form.clone())),
                 };
                 desk.connect(form);

@@ -13,6 +13,8 @@ mod commutation;
 mod connecting;
 mod drafts;
 mod each_kind;
+mod hiperdrive;
+mod hiperdrive_motion;
 mod interbus;
 mod leaving;
 mod losing;

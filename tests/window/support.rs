@@ -15,7 +15,7 @@ use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Session, biss, interbus};
+use encoder_studio::worker::{Session, biss, hiperdrive, interbus};
 
 use crate::texts;
 use crate::wire::{TestLink, Wire};
@@ -50,6 +50,8 @@ pub(crate) const KIT: &str = "/dev/kit0";
 pub(crate) const ADAPTER: &str = "/dev/adapter0";
 /// The gateway before an INTERBUS encoder.
 pub(crate) const GATE: &str = "gate:502";
+/// An adapter with a HIPERDRIVE.
+pub(crate) const DRIVE: &str = "drive:44818";
 /// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as links name them.
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
 
@@ -62,6 +64,7 @@ impl Outside {
             Wire::new(OTHER_PORT, "model=sks36"),
             Wire::to_pin(KIT, ""),
             Wire::to_adapter(ADAPTER, ""),
+            Wire::to_target(DRIVE, ""),
             Wire::to_gateway(GATE, "steps=3600&revolutions=1&cams=demo"),
         ];
         let mut wires: BTreeMap<String, Arc<Wire>> =
@@ -87,7 +90,7 @@ impl Outside {
 
     pub(crate) fn world(&self) -> World {
         let (wires, opens) = (self.wires.clone(), self.opens.clone());
-        let (kits, gates) = (self.wires.clone(), self.wires.clone());
+        let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         World {
             open_biss: Arc::new(move |url, store| {
                 let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
@@ -100,6 +103,13 @@ impl Outside {
                 let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
                 let station = encoder_studio::device::interbus::Station::from_query(&url.query, MARGIN)?;
                 Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
+            }),
+            open_hiperdrive: Arc::new(move |url, store| {
+                let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
+                let station = encoder_studio::device::hiperdrive::Station::from_query(&url.query, None, MARGIN)?;
+                let link = Box::new(TestLink::plug_into(wire)?);
+                let way = hiperdrive::Way { wire: link, port: None, station, target: None };
+                Ok(Session::to_target(way, wire.clock(), store))
             }),
             open_hiperface: Arc::new(move |url, store| {
                 if url.to_string() == HANGING {

@@ -5,9 +5,10 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
 use encoder_studio::sim::biss::Port;
 use encoder_studio::sim::bridge::Adapter;
+use encoder_studio::sim::hiperdrive::Target;
 use encoder_studio::sim::hiperface::Bus;
 use encoder_studio::sim::interbus::Gateway;
-use encoder_studio::sim::{ByteDevice, biss, bridge, hiperface, interbus};
+use encoder_studio::sim::{ByteDevice, biss, bridge, hiperdrive, hiperface, interbus};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;
@@ -31,6 +32,8 @@ enum End {
     Adapter(Arc<Mutex<Adapter>>),
     /// A gateway before an INTERBUS encoder.
     Gateway(Arc<Mutex<Gateway>>),
+    /// An adapter with its drive.
+    Target(Arc<Mutex<Target>>),
 }
 
 impl End {
@@ -40,6 +43,7 @@ impl End {
             End::Pin(port) => port.clone(),
             End::Adapter(adapter) => adapter.clone(),
             End::Gateway(gateway) => gateway.clone(),
+            End::Target(target) => target.clone(),
         }
     }
 
@@ -49,6 +53,8 @@ impl End {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
+            // Behind the header of the frame and those of its items the service.
+            End::Target(_) => frame.get(40).copied(),
             // Behind number, protocol, length and unit the function; of one that writes the first byte of its OUT word.
             End::Gateway(_) => frame.get(if frame.get(7) == Some(&16) { 13 } else { 7 }).copied(),
         }
@@ -81,6 +87,11 @@ impl Wire {
     /// To a gateway before an INTERBUS encoder.
     pub(crate) fn to_gateway(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Gateway(Arc::new(Mutex::new(gateway(query)))))
+    }
+
+    /// To an adapter with its drive.
+    pub(crate) fn to_target(target: &str, query: &str) -> Arc<Self> {
+        Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
     }
 
     /// To an adapter on the bus of a BiSS encoder.
@@ -123,6 +134,7 @@ impl Wire {
             End::Hiperface(own) => *own.lock().unwrap() = bus(query),
             End::Pin(own) => *own.lock().unwrap() = port(query),
             End::Gateway(own) => *own.lock().unwrap() = gateway(query),
+            End::Target(own) => *own.lock().unwrap() = drive(query),
             End::Adapter(_) => panic!("the encoder is behind it"),
         }
     }
@@ -264,6 +276,10 @@ fn bus(query: &str) -> Bus {
 
 fn gateway(query: &str) -> Gateway {
     Gateway::new(&interbus::Config::from_pairs(&pairs(query)).unwrap())
+}
+
+fn drive(query: &str) -> Target {
+    Target::new(&hiperdrive::Config::from_pairs(&pairs(query)).unwrap())
 }
 
 fn port(query: &str) -> Port {

@@ -1,0 +1,210 @@
+//! The HIPERDRIVE tab by actions: what is read and when, parameters beside what is wanted, a write with its review, and what is
+//! locked after it.
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, LimitsStay, Mark, Measure, Motor, Unit};
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::device::hiperdrive::dead_man::{Goal, Lock};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, Length, ParameterNumber, PositionScale};
+
+use crate::support::Desk;
+
+pub(crate) const ONE: DriveNumber = DriveNumber::FIRST;
+
+pub(crate) fn number(number: u16) -> ParameterNumber {
+    ParameterNumber::new(number).unwrap()
+}
+
+pub(crate) fn read(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open(link);
+    until_read(&mut desk);
+    desk
+}
+
+#[track_caller]
+pub(crate) fn until_read(desk: &mut Desk) {
+    desk.until("everything is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.status.is_some() && own.session.is_ready() && own.key_is_listed())
+    });
+    desk.settle();
+}
+
+trait Listed {
+    fn key_is_listed(&self) -> bool;
+}
+
+impl Listed for Unit {
+    fn key_is_listed(&self) -> bool {
+        self.session.backups.is_some()
+    }
+}
+
+pub(crate) fn unit(desk: &Desk) -> &Unit {
+    desk.studio.hiperdrive().unwrap()
+}
+
+pub(crate) fn act(desk: &mut Desk, action: Hiperdrive) {
+    let id = unit(desk).session.id;
+    desk.act(Action::Hiperdrive(id, action));
+}
+
+pub(crate) fn drive(desk: &mut Desk, motor: Motor) {
+    act(desk, Hiperdrive::Drive(motor));
+}
+
+pub(crate) fn edit(desk: &mut Desk, edit: Edit) {
+    act(desk, Hiperdrive::Edit(Box::new(edit)));
+}
+
+/// Requests that set something.
+fn sets(desk: &Desk) -> usize {
+    let lines = unit(desk).session.trace.lines();
+    lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
+}
+
+/// Reviews what is edited and writes it.
+#[track_caller]
+pub(crate) fn write(desk: &mut Desk) {
+    let action = desk.studio.shown().unwrap().wish(Wish::Review);
+    desk.act(action);
+    write_as_shown(desk);
+}
+
+#[track_caller]
+fn write_as_shown(desk: &mut Desk) {
+    let stage = |studio: &Studio| studio.shown().unwrap().sheet().map(|sheet| sheet.stage);
+    desk.until("there is a plan", |studio| {
+        matches!(stage(studio), Some(Stage::Ready(_))) && studio.shown().unwrap().is_ready()
+    });
+    let Some(Stage::Ready(plan)) = stage(&desk.studio) else { panic!() };
+    let id = unit(desk).session.id;
+    desk.act(Action::Review(id, ReviewAction::Write(plan)));
+    desk.until("it is written", |studio| {
+        matches!(stage(studio), Some(Stage::Done { .. })) && studio.shown().unwrap().is_ready()
+    });
+    desk.act(Action::Review(id, ReviewAction::Close));
+}
+
+#[test]
+fn connecting_reads_everything_and_changes_nothing() {
+    let desk = read("sim:?hub=4&drives=1,0,1");
+    let unit = unit(&desk);
+    assert_eq!(unit.session.phase, Phase::Connected);
+    assert_eq!(unit.drives().iter().map(|own| own.get()).collect::<Vec<_>>(), [1, 3]);
+    assert!(!unit.session.trace.lines().is_empty());
+    assert_eq!(sets(&desk), 0);
+    assert!(!unit.moves.is_open() && !desk.studio.moves() && desk.studio.has_drives());
+    // 16 numbers and texts of drive 1 at least, and none of the place without a drive.
+    assert!(unit.rows(Some(ONE)).len() > 40 && unit.rows(DriveNumber::new(2)).is_empty());
+    let requested = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(152)).unwrap();
+    assert_eq!((requested.factory.as_str(), requested.is_editable), ("0", true), "of a hub");
+    let speed = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(166)).unwrap();
+    assert_eq!((speed.shown.as_str(), speed.factory.as_str()), ("350", "350"));
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn the_drive_that_is_shown_is_polled_and_recorded() {
+    let mut desk = read("sim:?hub=4&drives=1,0,1");
+    desk.until("it is recorded", |studio| studio.hiperdrive().unwrap().record.last().is_some());
+    let three = DriveNumber::new(3).unwrap();
+    act(&mut desk, Hiperdrive::SelectDrive(DriveNumber::new(2).unwrap()));
+    assert_eq!(unit(&desk).drive(), ONE, "there is none");
+    act(&mut desk, Hiperdrive::SelectDrive(three));
+    assert!(unit(&desk).record.last().is_none(), "that was another drive");
+    desk.until("the other one is recorded", |studio| {
+        studio.hiperdrive().unwrap().record.last().is_some_and(|own| own.drive == three)
+    });
+}
+
+#[test]
+fn an_edit_is_reviewed_written_and_read_again() {
+    let mut desk = read("sim:");
+    edit(&mut desk, Edit::Set(number(166), 351));
+    assert_eq!(unit(&desk).refusal.as_ref().unwrap().id(), "hd_said.out_of_range");
+    edit(&mut desk, Edit::Set(number(166), 200));
+    edit(&mut desk, Edit::Set(number(24), 7));
+    assert!(unit(&desk).refusal.is_none() && unit(&desk).is_dirty());
+    write(&mut desk);
+    assert!(!unit(&desk).is_dirty());
+    assert_eq!(unit(&desk).number(ONE, 166), Some(200));
+    assert_eq!(unit(&desk).staged.changed_from(number(166)), Some(350));
+    let target = unit(&desk).target.clone().unwrap();
+    assert_eq!(target.with(|station| station.stores()), 1, "saved once");
+}
+
+#[test]
+fn limits_that_exclude_the_position_are_marked_and_not_written() {
+    let mut desk = read("sim:");
+    edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
+    assert!(matches!(unit(&desk).marks()[..], [Mark::Outside { position: 0, .. }]), "{:?}", unit(&desk).marks());
+    let action = desk.studio.shown().unwrap().wish(Wish::Review);
+    desk.act(action);
+    desk.until("it is refused", |studio| {
+        let sheet = studio.shown().unwrap().sheet();
+        sheet.is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { begun: false, .. }))
+    });
+    let Some(Stage::Failed { texts, .. }) = desk.studio.shown().unwrap().sheet().map(|sheet| sheet.stage) else {
+        panic!()
+    };
+    assert_eq!(texts[0].id(), "hd_plan.outside");
+    assert_eq!(sets(&desk), 0);
+}
+
+#[test]
+fn a_pitch_and_what_is_measured_in_come_back() {
+    let mut desk = read("sim:");
+    assert_eq!(unit(&desk).ruler(ONE).measures().count(), 3, "no millimetres without a spindle");
+    let pitch = Length { nanometres: 4_000_000 };
+    act(&mut desk, Hiperdrive::SetPitch(ONE, Some(pitch)));
+    act(&mut desk, Hiperdrive::SetMeasure(Measure::Millimetres));
+    // 2.5 turns of 65536 steps on 4 mm.
+    let place = unit(&desk).place(ONE, 163_840).words(encoder_studio::app::Language::English);
+    assert_eq!(place, "10.00000 mm");
+    desk.settle();
+    let mut desk = desk.crash();
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open("sim:");
+    until_read(&mut desk);
+    assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), Measure::Millimetres));
+    assert!(desk.told(Severity::Warning).is_empty(), "that is no edit");
+}
+
+#[test]
+fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
+    let mut desk = read("sim:");
+    let hundredths = PositionScale::new(400, 256).unwrap();
+    edit(&mut desk, Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace });
+    write(&mut desk);
+    // 511 turns of 400 steps.
+    assert_eq!(unit(&desk).limits_to_confirm(ONE), Some((-204_400, 204_400)));
+    act(&mut desk, Hiperdrive::Reconnect);
+    desk.until("it is read again", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.session.phase == Phase::Connected && own.moves.motion().is_some()
+    });
+    until_read(&mut desk);
+    assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "also over a connection");
+    desk.settle();
+    let mut desk = desk.crash();
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open("sim:");
+    until_read(&mut desk);
+    assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "and over a crash");
+    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    assert!(unit(&desk).limits_to_confirm(ONE).is_none() && unit(&desk).moves.locks(ONE).is_empty());
+}
+
+#[test]
+fn without_control_nothing_is_asked_of_a_drive() {
+    let mut desk = read("sim:");
+    for motor in [Motor::Lead(Goal::Enabled), Motor::Move { target: 64 }, Motor::Step { by: 64 }] {
+        drive(&mut desk, motor);
+        assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
+    }
+    drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
+    assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable(ONE).is_empty());
+}

@@ -1,0 +1,245 @@
+//! HIPERDRIVE drives as a person moves them from the window: what begins a motion, what keeps it alive, and everything that
+//! ends it. The drive itself is asked whether it stands.
+
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Mark, Motor};
+use encoder_studio::app::{Action, Severity, Tab, connect};
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock};
+use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord};
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
+use crate::support::{Desk, LONG};
+
+/// What the drive itself says, whatever the window believes.
+fn status(desk: &Desk) -> StatusWord {
+    let target = unit(desk).target.clone().unwrap();
+    // Time goes on with what is sent to it.
+    target.with(|station| station.drive(ONE).unwrap().actual(Moment::default()).status)
+}
+
+fn stands(desk: &Desk) -> bool {
+    status(desk).has(StatusBit::StandingStill)
+}
+
+/// In control of the drives of a virtual device.
+fn in_control(link: &str) -> Desk {
+    let mut desk = read(link);
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("the connection is open", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.moves.is_open()
+            && own.session.is_ready()
+            && own.moves.drive(ONE).is_some_and(|own| own.actual.status.is_present())
+    });
+    desk
+}
+
+/// Says with every look that the jog is held, until it is so.
+#[track_caller]
+fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) -> bool) {
+    let began = Instant::now();
+    while !condition(desk) {
+        assert!(began.elapsed() < LONG, "never: {what}\n{}", crate::support::log(&desk.studio));
+        drive(desk, Motor::JogHold);
+        desk.studio.poll();
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn moves(desk: &Desk) -> bool {
+    unit(desk).state(ONE) == Some(State::Moving)
+}
+
+/// A jog that is held, and turns the drive.
+#[track_caller]
+fn jog(desk: &mut Desk) {
+    // A machine that is busy may let a quarter of a second pass without a look.
+    for _ in 0..20 {
+        drive(desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
+        hold_until(desk, "it moves", |desk| moves(desk) || !unit(desk).moves.is_held());
+        if unit(desk).moves.is_held() {
+            return;
+        }
+        until_standing(desk);
+    }
+    panic!("it was never held for long enough");
+}
+
+/// Without another look of the window at it: what stops a drive has been said already.
+#[track_caller]
+fn until_standing(desk: &Desk) {
+    let began = Instant::now();
+    while !stands(desk) {
+        assert!(began.elapsed() < LONG, "it still moves");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
+    let mut desk = in_control("sim:");
+    assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
+    assert_eq!(unit(&desk).moves.jog_effort(), Effort::JOG);
+    jog(&mut desk);
+    assert!(desk.studio.moves() && !stands(&desk));
+    let sent = unit(&desk).moves.sent(ONE).unwrap();
+    assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
+    drive(&mut desk, Motor::JogRelease);
+    assert!(!unit(&desk).moves.is_held(), "at once");
+    until_standing(&desk);
+    desk.until("the window knows it", |studio| !studio.moves());
+    let where_it_stands = unit(&desk).actual(ONE).unwrap().position;
+    assert!(where_it_stands != 0);
+    // A hold that comes late, and a key that repeats itself, begin nothing.
+    drive(&mut desk, Motor::JogHold);
+    drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: true });
+    desk.settle();
+    assert!(stands(&desk) && !unit(&desk).moves.is_held());
+    assert!(desk.told(Severity::Warning).is_empty());
+}
+
+#[test]
+fn a_jog_that_nobody_says_is_held_ends_by_itself() {
+    let mut desk = in_control("sim:");
+    jog(&mut desk);
+    // Pictures are drawn, and the button is in none of them.
+    desk.until("it stands", |studio| !studio.moves());
+    assert!(stands(&desk) && !unit(&desk).moves.is_held());
+    assert_eq!(desk.times_told("hd_end.stale"), 1);
+    drive(&mut desk, Motor::JogHold);
+    desk.settle();
+    assert!(stands(&desk), "an act that has ended does not begin again");
+}
+
+#[test]
+fn a_window_that_stands_still_stops_what_moves() {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    until_standing(&desk);
+    assert!(status(&desk).has(StatusBit::StandingStill) && !status(&desk).has(StatusBit::TargetReached));
+}
+
+#[test]
+fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
+    type Cover = fn(&mut Desk);
+    let covers: [(&str, Cover); 12] = [
+        ("focus", |desk| desk.act(Action::LetGo)),
+        ("tab", |desk| desk.act(Action::ShowTab(Tab::Biss))),
+        ("dialog", |desk| desk.connect(connect::Action::Open)),
+        ("question", |desk| {
+            edit(desk, Edit::Set(number(24), 7));
+            let id = unit(desk).session.id;
+            desk.act(Action::CloseSession(id));
+        }),
+        ("window", |desk| desk.act(Action::Close)),
+        ("review", |desk| {
+            edit(desk, Edit::Set(number(24), 7));
+            act(desk, Hiperdrive::Review);
+        }),
+        ("stop", |desk| desk.act(Action::StopMotion)),
+        ("stop all", |desk| desk.act(Action::Stop)),
+        ("escape", |desk| desk.act(Action::Escape)),
+        ("its own stop", |desk| drive(desk, Motor::Stop)),
+        ("give", |desk| act(desk, Hiperdrive::Give)),
+        ("disconnect", |desk| act(desk, Hiperdrive::Reconnect)),
+    ];
+    for (what, cover) in covers {
+        let mut desk = in_control("sim:");
+        let target = unit(&desk).target.clone().unwrap();
+        jog(&mut desk);
+        cover(&mut desk);
+        let held = desk.studio.devices().iter().filter_map(|own| own.hiperdrive()).any(|own| own.moves.is_held());
+        assert!(!held, "{what}");
+        let began = Instant::now();
+        while !target
+            .with(|station| station.drive(ONE).unwrap().actual(Moment::default()))
+            .status
+            .has(StatusBit::StandingStill)
+        {
+            assert!(began.elapsed() < LONG, "{what}: it still moves");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+#[test]
+fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.moves() && studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    desk.act(Action::ShowTab(Tab::Biss));
+    desk.act(Action::LetGo);
+    for _ in 0..400 {
+        desk.studio.poll();
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(desk.studio.moves() && desk.studio.has_drives(), "{}", crate::support::log(&desk.studio));
+    desk.act(Action::Escape);
+    until_standing(&desk);
+    desk.until("the window knows it", |studio| !studio.moves());
+    assert!(desk.studio.shown().is_none() || desk.studio.settings.tab == Tab::Biss);
+}
+
+#[test]
+fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
+    let mut desk = in_control("sim:");
+    let effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+    drive(&mut desk, Motor::MoveEffort(effort));
+    drive(&mut desk, Motor::Move { target: 4096 });
+    desk.until("it arrives", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.said(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
+    });
+    assert_eq!(unit(&desk).actual(ONE).unwrap().position, 4096);
+    drive(&mut desk, Motor::Step { by: -4096 });
+    desk.until("it is back", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position == 0);
+    desk.until("it stands", |studio| !studio.moves());
+    // 511 turns are 33 488 896 steps.
+    drive(&mut desk, Motor::Move { target: 33_488_897 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.endless"));
+    drive(&mut desk, Motor::Expert(true));
+    assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
+    desk.settle();
+    assert!(stands(&desk));
+}
+
+#[test]
+fn states_are_led_to_and_a_fault_is_acknowledged() {
+    let mut desk = in_control("sim:");
+    assert_eq!(unit(&desk).reachable(ONE), [State::Ready]);
+    drive(&mut desk, Motor::Lead(Goal::Enabled));
+    desk.until("it is enabled", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled));
+    assert!(unit(&desk).reachable(ONE).contains(&State::Operational));
+    jog(&mut desk);
+    let target = unit(&desk).target.clone().unwrap();
+    let blocked = ErrorCode::BLOCK_FORWARD;
+    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), blocked));
+    hold_until(&mut desk, "the fault is seen", |desk| unit(desk).state(ONE) == Some(State::Fault));
+    desk.until("its error is read", |studio| {
+        let own = studio.hiperdrive().unwrap().drive_status(ONE);
+        own.is_some_and(|own| own.buffer.first() == Some(&blocked))
+    });
+    assert!(!unit(&desk).moves.is_held());
+    assert_eq!(unit(&desk).may_move(ONE).unwrap_err().id(), "hd_refused.fault");
+    assert_eq!(unit(&desk).reachable(ONE), [State::Locked]);
+    drive(&mut desk, Motor::Acknowledge);
+    desk.until("it is ready", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Ready));
+}
+
+#[test]
+fn locks_say_what_to_do() {
+    let mut desk = in_control("sim:?hub=4&drives=1");
+    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NotRequested], "as a hub comes from the factory");
+    drive(&mut desk, Motor::Step { by: 64 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.not_requested"]);
+    let mut desk = read("sim:");
+    edit(&mut desk, Edit::Set(number(186), 255));
+    assert!(matches!(unit(&desk).marks()[..], [Mark::NoTimeout { .. }]));
+    write(&mut desk);
+    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NoTimeout]);
+}
