@@ -166,3 +166,77 @@ fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
         assert!(is_expected, "{options:?}: {error}");
     }
 }
+
+/// Waits for something that comes within seconds.
+fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
+    let begun = std::time::Instant::now();
+    while !has_come() {
+        assert!(begun.elapsed() < Duration::from_secs(10), "{what} does not come");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn the_cyclic_connection_is_opened_as_the_target_takes_it_and_closed_again() {
+    let bench = Bench::new();
+    let cases: [(&[&str], &str); 4] = [
+        (&[], "OPEN 16"),
+        (&["--no-words"], "OPEN 8"),
+        (&["--multicast-only"], "OPEN 16"),
+        (&["--topology=hub4", "--drives=2,3"], "OPEN 40"),
+    ];
+    for (options, opened) in cases {
+        let Some(foreign) = bench.target(&[&["--position=4711"], options].concat()) else { return };
+        let mut session = session(&bench, &foreign, "");
+        let motion = session.motion();
+        session.run_inline(HiperdriveJob::Take).unwrap_or_else(|why| panic!("{options:?}: {why}"));
+        comes("what the drives say", || motion.view().link.received > 3);
+        let view = motion.view();
+        assert!(view.open && view.lost.is_none(), "{options:?}: {view:?}");
+        assert!(view.drives.iter().all(|own| own.actual.position == 4711), "{options:?}: {view:?}");
+        let drives: Vec<u8> = view.drives.iter().map(|own| own.number.get()).collect();
+        assert_eq!(drives, if options.contains(&"--drives=2,3") { vec![2, 3] } else { vec![1] }, "{options:?}");
+        session.run_inline(HiperdriveJob::Watch(view.drives[0].number)).unwrap();
+        assert_eq!(session.sample().map(|reading| reading.actual.position).unwrap(), 4711, "{options:?}");
+        assert!(matches!(session.run_inline(HiperdriveJob::Take), Err(JobError::Device(Error::InControl))));
+        session.run_inline(HiperdriveJob::Give).unwrap();
+        assert!(!motion.is_open(), "{options:?}");
+        // Nothing is wanted, so that no word but 0 is sent, and 0 stands already.
+        assert_eq!(foreign.requests(), [opened, "CLOSE"], "{options:?}");
+    }
+}
+
+#[test]
+fn another_master_is_told_and_a_lost_target_ends_the_connection() {
+    let bench = Bench::new();
+    let Some(owned) = bench.target(&["--owned"]) else { return };
+    let error = session(&bench, &owned, "").run_inline(HiperdriveJob::Take).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::OtherMaster { extended: 0x0106 })), "{error}");
+    let mut foreign = bench.target(&[]).unwrap();
+    let mut first = session(&bench, &foreign, "");
+    first.run_inline(HiperdriveJob::Take).unwrap();
+    let error = session(&bench, &foreign, "").run_inline(HiperdriveJob::Take).unwrap_err();
+    assert!(matches!(error, JobError::Device(Error::OtherMaster { extended: 0x0100 })), "{error}");
+    let motion = first.motion();
+    comes("what the drive says", || motion.view().link.received > 3);
+    foreign.kill();
+    comes("the loss", || motion.view().lost.is_some());
+    assert!(first.sample().is_err() && !motion.is_open());
+}
+
+#[test]
+fn a_session_that_goes_stops_what_it_has_opened() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&[]) else { return };
+    let mut session = session(&bench, &foreign, "");
+    session.run_inline(HiperdriveJob::Take).unwrap();
+    let motion = session.motion();
+    comes("what the drive says", || motion.view().link.received > 3);
+    drop(session);
+    assert!(!motion.is_open());
+    let mut log = foreign.requests();
+    comes("the end at the target", || {
+        log.extend(foreign.requests());
+        log.last().is_some_and(|line| line == "LOST")
+    });
+}

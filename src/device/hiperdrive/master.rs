@@ -20,7 +20,7 @@ use crate::protocol::ethernet_ip::{
     Request,
 };
 use crate::protocol::hiperdrive::{
-    Access, Kind, OutOfRange, ParameterNumber, ParameterRow, Range, Topology, Value, ValueError, Variant,
+    Access, DriveNumber, Kind, OutOfRange, ParameterNumber, ParameterRow, Range, Topology, Value, ValueError,
 };
 use crate::units::Moment;
 
@@ -216,14 +216,25 @@ impl<'a> Master<'a> {
         {
             return Ok(Error::NoPlace { drive, topology });
         }
-        let variant = ParameterNumber::of_drive(120, drive).filter(|variant| *variant != number);
-        let Some(variant) = variant else { return Ok(Error::Refused { asked, refusal }) };
-        let request = Request::get(variant.class(), 1, variant.attribute());
-        match self.request(Asked::Parameter(variant), &request, Repeats::Always) {
-            Ok(reply) if Kind::U16.parse(&reply.data) == Ok(Value::Number(Variant::NONE.number().into())) => {
-                Ok(Error::NoDrive { drive })
-            }
-            Ok(_) | Err(Error::Refused { .. }) => Ok(Error::Refused { asked, refusal }),
+        if self.is_zero(number, 120, drive)? {
+            return Ok(Error::NoDrive { drive });
+        }
+        // What is asked of it is refused in this state: because nobody wants anything of it?
+        if refusal.status == GeneralStatus::STATE && self.is_zero(number, 152, drive)? {
+            return Ok(Error::NotRequested { drive });
+        }
+        Ok(Error::Refused { asked, refusal })
+    }
+
+    /// Another parameter of a drive is known to be 0.
+    fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
+        let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
+            return Ok(false);
+        };
+        let request = Request::get(number.class(), 1, number.attribute());
+        match self.request(Asked::Parameter(number), &request, Repeats::Always) {
+            Ok(reply) => Ok(!reply.data.is_empty() && reply.data.iter().all(|byte| *byte == 0)),
+            Err(Error::Refused { .. }) => Ok(false),
             Err(error) => Err(error),
         }
     }

@@ -98,7 +98,8 @@ mod tests {
             Rules::by(read).permit(Topology::Adapter, hda30a)
         };
         let whole = Some((-33_488_896, 33_488_896));
-        let cases: [(&str, &[(u16, Option<i64>)], Permit); 7] = [
+        type Case<'c> = (&'c str, &'c [(u16, Option<i64>)], Permit);
+        let cases: [Case<'_>; 7] = [
             ("factory", &[], Permit { limits: whole, locks: vec![], endless: true }),
             ("given up", &[(152, Some(0))], Permit { limits: whole, locks: vec![Lock::NotRequested], endless: true }),
             ("no time-out", &[(186, Some(255))], Permit { limits: whole, locks: vec![Lock::NoTimeout], endless: true }),

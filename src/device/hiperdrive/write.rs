@@ -220,8 +220,9 @@ fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
 /// Ends the fault of a drive: 197 = 0 where it is of RS-485 alone, otherwise the drives are reset before it (reference 4).
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let status = drive_status(master, drive)?;
-    let recent = status.buffer.iter().take(usize::from(status.faults.max(1)));
-    let only_line = recent.into_iter().all(|code| *code == ErrorCode::RS485);
+    // Older ones are acknowledged already.
+    let mut recent = status.buffer.iter().take(usize::from(status.faults));
+    let only_line = recent.all(|code| *code == ErrorCode::RS485);
     if !only_line {
         master.set(ParameterNumber::SAVE, -4)?;
         await_idle(master, Service::Reset)?;

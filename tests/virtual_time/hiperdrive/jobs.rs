@@ -2,10 +2,13 @@
 
 use encoder_studio::device::hiperdrive::Error;
 use encoder_studio::device::hiperdrive::check::{Finding, Step, Verdict};
-use encoder_studio::link::Clock;
+use std::sync::{Arc, Mutex};
+
+use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
 use encoder_studio::protocol::ethernet_ip::{AddressSource, Service};
 use encoder_studio::protocol::hiperdrive::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
-use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError};
+use encoder_studio::store::Store;
+use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError, open};
 
 use super::support::{Stand, drive, number};
 
@@ -93,6 +96,34 @@ fn status_tells_states_errors_and_temperatures_of_all_drives() {
     assert_eq!((first.number, first.status.state(), first.buffer.len()), (drive(1), State::NotReady, 0));
     assert_eq!((second.number, second.buffer.as_slice()), (drive(2), &[ErrorCode::OVER_CURRENT][..]));
     assert!(first.requested && second.faults == 1);
+}
+
+/// A recording is played back by the same jobs, whatever the numbers of sessions and requests are.
+#[test]
+fn a_recorded_trace_answers_as_the_device_did() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
+    let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
+    let told = entries.clone();
+    stand.session.watch(move |entry| told.lock().unwrap().push(entry.clone()));
+    stand.run(HiperdriveJob::Identify).unwrap();
+    let mut file = Vec::new();
+    write_header(&mut file).unwrap();
+    for entry in entries.lock().unwrap().iter() {
+        write_entry(&mut file, entry).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drives.trace");
+    std::fs::write(&path, file).unwrap();
+    let url = format!("replay:{}", path.display()).parse().unwrap();
+    let mut session = open(&url, Store::at(folder.path())).unwrap();
+    for _ in 0..2 {
+        match session.run_inline(HiperdriveJob::Identify).unwrap() {
+            HiperdriveOutput::Identity(identity) => {
+                assert_eq!((identity.drives.len(), identity.serial_number.as_str()), (2, "4711"))
+            }
+            other => panic!("{other:?}"),
+        }
+    }
 }
 
 #[test]

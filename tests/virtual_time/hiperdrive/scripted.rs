@@ -219,8 +219,13 @@ fn a_refusal_is_told_with_the_words_of_its_row() {
     // Of a drive it is asked whether it is there at all: 0 of parameter 120 says that it is not.
     let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 00 00")]);
     assert_eq!(desk.read(258), Err(Error::NoDrive { drive: drive(2) }));
-    let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 07 00")]);
-    assert!(matches!(desk.read(258), Err(Error::Refused { .. })));
+    // Or whether anybody wants anything of it: parameter 152.
+    for (requested, is_refused) in [("8E 00 00 00 00", false), ("8E 00 00 00 01", true)] {
+        let replies = ["8E 00 0C 00", "8E 00 00 00 07 00", requested];
+        let error = Desk::with(replies.map(Act::Reply)).read(258).unwrap_err();
+        assert_eq!(matches!(error, Error::Refused { .. }), is_refused, "{error}");
+        assert_eq!(error == Error::NotRequested { drive: drive(2) }, !is_refused, "{error}");
+    }
 }
 
 #[test]
@@ -297,7 +302,8 @@ fn what_a_device_does_not_take_of_a_connection_is_asked_for_otherwise() {
     };
     let kind = || Act::Reply("D4 00 01 01 08 01");
     let size = || Act::Reply("D4 00 01 01 27 01");
-    let cases: [(&str, Vec<Act>, Vec<(u16, u16)>); 3] = [
+    type Case = (&'static str, Vec<Act>, Vec<(u16, u16)>);
+    let cases: [Case; 3] = [
         ("to all who listen", vec![kind(), Act::Reply(OPENED)], vec![(0x4816, 0x4812), (0x4816, 0x2812)]),
         ("without parameter words", vec![size(), Act::Reply(OPENED)], vec![(0x4816, 0x4812), (0x480E, 0x480A)]),
         (

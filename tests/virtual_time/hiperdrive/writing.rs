@@ -5,7 +5,7 @@ use encoder_studio::device::hiperdrive::dead_man::Lock;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
-use encoder_studio::protocol::hiperdrive::{Range, Value};
+use encoder_studio::protocol::hiperdrive::{ErrorCode, Range, Value};
 use encoder_studio::store::read_text;
 use encoder_studio::worker::hiperdrive::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 
@@ -147,6 +147,26 @@ fn services_wait_until_they_are_done() {
     assert!(took < std::time::Duration::from_secs(9), "{took:?}");
     let prepared = stand.prepare(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
+}
+
+#[test]
+fn a_fault_is_acknowledged_with_a_reset_only_where_one_is_needed() {
+    for (codes, reset) in [
+        (&[ErrorCode::RS485][..], false),
+        (&[ErrorCode::OVER_CURRENT, ErrorCode::RS485], true),
+        (&[ErrorCode::RS485, ErrorCode::FOLLOWING], true),
+    ] {
+        let mut stand = Stand::new("hub=4&drives=0,1&requested=1");
+        for code in codes {
+            let now = stand.clock.now();
+            stand.target.with(|station| station.drive(drive(2)).unwrap().fail(now, *code));
+        }
+        assert_eq!(stand.value(297), codes.len() as i64);
+        let done = stand.change(Change::Do(Service::Acknowledge(drive(2)))).unwrap();
+        let sets: Vec<u16> = stand.sets().into_iter().map(|(own, _)| own).collect();
+        assert_eq!(sets, if reset { vec![47, 297] } else { vec![297] }, "{codes:?}");
+        assert_eq!((stand.value(297), done.written.write_cycles), (0, 0), "{codes:?}");
+    }
 }
 
 #[test]
