@@ -61,10 +61,12 @@ impl Plant {
             Ok(Body::Register { .. }) => Some(EncapsulationStatus::VERSION),
             _ => Some(EncapsulationStatus::MALFORMED),
         };
-        // A TCP connection has one session.
-        let has_one = self.sessions.values().any(|whose| *whose == from);
-        if let Some(status) = status.or(has_one.then_some(EncapsulationStatus::UNSUPPORTED)) {
+        if let Some(status) = status {
             return frame.refusal(status);
+        }
+        // A TCP connection has one session. Whoever asks for another is told which (`U`).
+        if let Some((session, _)) = self.sessions.iter().find(|(_, whose)| **whose == from) {
+            return Frame { session: *session, ..frame.refusal(EncapsulationStatus::UNSUPPORTED) };
         }
         let session = loop {
             let session = self.rng.u32(1..);

@@ -138,7 +138,8 @@ fn other_commands_have_a_status_or_no_reply() {
     assert_eq!(host.frame(0x6F, &bytes("00 00 00 00")), Some((0x03, vec![])));
     assert_eq!(host.frame(0x6F, &unconnected(&[])), Some((0x03, vec![])));
     // A second session of one connection, and another version of the protocol.
-    assert_eq!(host.frame(0x65, &bytes("01 00 00 00")), Some((0x01, vec![])));
+    let again = host.bytes(&bytes(REGISTER));
+    assert_eq!(again[4..12], [&host.session.to_le_bytes()[..], &[1, 0, 0, 0]].concat());
     let mut other = Host { target: host.target.clone(), now: host.now, session: 0 };
     assert_eq!(other.frame(0x65, &bytes("02 00 00 00")), Some((0x69, vec![])));
     // A session is of its connection.
