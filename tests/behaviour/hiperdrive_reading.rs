@@ -50,6 +50,23 @@ fn a_healthy_device_has_nothing_to_tell() {
     assert!(text.out.contains("errors") && text.out.contains("Not ready (0x2A30)"), "{text:?}");
 }
 
+/// A limit above the other is refused by the device, which keeps 8501 for it (reference 4) and answers 09.
+#[test]
+fn errors_of_now_are_errors_and_those_of_before_are_warnings() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
+    // 258 = 7FFFFFFFh.
+    let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
+    assert_eq!(refused[..3], [0x90, 0, 9]);
+    let told = device.ask(&bench, &["status", "hiperdrive"]).json();
+    let error = &told["errors"][0];
+    assert_eq!((&told["ok"], &error["code"], &error["drive"]), (&json!(false), &json!(0x8501), &json!(2)), "{told}");
+    assert!(error["text"].as_str().unwrap().len() > 20 && told["warnings"] == json!([]), "{told}");
+    device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"]).json();
+    let told = device.ask(&bench, &["status", "hiperdrive"]).json();
+    assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])), "{told}");
+}
+
 /// 65536 steps a turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
 #[test]
 fn a_position_has_turns_with_a_sign() {

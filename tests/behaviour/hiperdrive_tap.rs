@@ -53,6 +53,30 @@ impl Tapped {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }
 
+    /// Sends a request as another host would, past the one who listens; its reply.
+    pub(crate) fn request(&self, request: &[u8]) -> Vec<u8> {
+        let mut device = TcpStream::connect(&self.device.place).unwrap();
+        let mut send = |command: u16, session: [u8; 4], data: &[u8]| {
+            let mut frame = command.to_le_bytes().to_vec();
+            frame.extend(u16::try_from(data.len()).unwrap().to_le_bytes());
+            frame.extend(session);
+            frame.resize(HEADER, 0);
+            frame.extend(data);
+            device.write_all(&frame).unwrap();
+            let mut header = [0; HEADER];
+            device.read_exact(&mut header).unwrap();
+            let mut data = vec![0; usize::from(u16::from_le_bytes([header[2], header[3]]))];
+            device.read_exact(&mut data).unwrap();
+            ([header[4], header[5], header[6], header[7]], data)
+        };
+        // RegisterSession, version 1.
+        let (session, _) = send(0x65, [0; 4], &[1, 0, 0, 0]);
+        let mut data = vec![0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0xB2, 0];
+        data.extend(u16::try_from(request.len()).unwrap().to_le_bytes());
+        data.extend(request);
+        send(0x6F, session, &data).1.split_off(BEFORE_REQUEST)
+    }
+
     /// Past the one who listens.
     pub(crate) fn url(&self) -> String {
         format!("enip:{}", self.device.place)

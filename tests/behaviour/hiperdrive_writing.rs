@@ -126,7 +126,7 @@ fn a_position_is_set_in_steps_of_64_and_saved() {
     device.ask(&bench, &["write", "hiperdrive", "198", "-33", "--yes"]).says(&["-33 becomes -64"]);
     assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(-64));
     device.sets();
-    let beyond = device.ask(&bench, &["do", "hiperdrive", "set-position", "33488897", "--yes"]);
+    let beyond = device.ask(&bench, &["do", "hiperdrive", "set-position", "33488930", "--yes"]);
     beyond.fails(1, &["-33488896", "33488896"]);
     assert_eq!(device.sets(), Vec::<String>::new());
 }

@@ -97,6 +97,32 @@ fn limits_are_written_in_the_order_that_the_drive_takes() {
     }
 }
 
+proptest::proptest! {
+    /// Whatever the limits are, and wherever the drive stands: each write leaves it between limits that are in order.
+    #[test]
+    fn limits_are_always_written_as_the_drive_takes_them(
+        old in (-100i64..100, 1i64..100),
+        new in (-100i64..100, 1i64..100),
+        position in -110i32..110,
+    ) {
+        let (old, new) = ((old.0, old.0 + old.1), (new.0, new.0 + new.1));
+        let device = image(&[1]).with(&image_of(&[(158, old.0), (160, old.1)]));
+        let plan = plan_edits(&device, &image_of(&[(158, new.0), (160, new.1)]), &at(1, position));
+        let is_inside = (new.0..=new.1).contains(&i64::from(position));
+        // Where nothing differs, nothing is looked at.
+        proptest::prop_assert_eq!(plan.is_ok(), is_inside || old == new);
+        let mut limits = old;
+        for (own, value) in plan.iter().flat_map(steps) {
+            match own {
+                158 => limits.0 = value,
+                160 => limits.1 = value,
+                _ => continue,
+            }
+            proptest::prop_assert!(limits.0 < limits.1 && (limits.0..=limits.1).contains(&i64::from(position)));
+        }
+    }
+}
+
 #[test]
 fn a_drive_outside_its_new_limits_is_not_touched() {
     let refused = |wanted: &[(u16, i64)], position| plan(wanted, position).unwrap_err();
