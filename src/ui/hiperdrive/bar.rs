@@ -46,9 +46,9 @@ fn stop(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(skin.strong(skin.sizes.section)).color(ink);
     let edge = if open { Stroke::NONE } else { Stroke::new(1.0, palette.bad) };
-    let button = egui::Button::new(text).fill(fill).stroke(edge).min_size(STOP);
+    let button = egui::Button::new(text).fill(fill).stroke(edge);
     // Also down counts: a stop does not wait for a finger to be lifted.
-    let response = ui.add(button).on_hover_text(skin.say("hd_bar.stop_hint"));
+    let response = ui.add_sized(STOP, button).on_hover_text(skin.say("hd_bar.stop_hint"));
     let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if name(response, true, &word).clicked() || pressed {
         actions.push(Action::StopMotion);

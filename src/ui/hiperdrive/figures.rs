@@ -13,17 +13,22 @@ use crate::ui::controls::{card, empty, paragraph, row};
 use crate::ui::widgets::series;
 
 /// Status and control word with the names of their bits.
-pub(super) fn words_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, drive: DriveNumber) {
-    let Some(actual) = unit.actual(drive) else { return };
-    let bits: Vec<String> = actual.status.set().map(|bit: StatusBit| skin.words(&explain::status_bit(bit))).collect();
-    let status = format!("0x{:04X}  {}", actual.status.word(), bits.join(" · "));
-    row(ui, skin, &skin.say("hd_states.status"), RichText::new(status));
-    let Some(sent) = unit.moves.sent(drive) else { return };
-    let speed_mode = sent.control.has(ControlBit::SpeedMode);
-    let bits = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
-    let bits: Vec<String> = bits.map(|bit| skin.words(&explain::control_bit(bit, speed_mode))).collect();
-    let control = format!("0x{:04X}  {}", sent.control.word(), bits.join(" · "));
-    row(ui, skin, &skin.say("hd_states.control"), RichText::new(control));
+pub(super) fn words_card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, drive: DriveNumber) {
+    card(ui, skin, "hd_words.title", |ui| {
+        let Some(actual) = unit.actual(drive) else {
+            empty(ui, skin, &skin.say("hd_words.nothing"), None);
+            return;
+        };
+        let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
+        let set = actual.status.set().map(|bit: StatusBit| skin.words(&explain::status_bit(bit))).collect();
+        row(ui, skin, &skin.say("hd_words.status"), bits(set, actual.status.word()));
+        if let Some(sent) = unit.moves.sent(drive) {
+            let speed_mode = sent.control.has(ControlBit::SpeedMode);
+            let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
+            let set = set.map(|bit| skin.words(&explain::control_bit(bit, speed_mode))).collect();
+            row(ui, skin, &skin.say("hd_words.control"), bits(set, sent.control.word()));
+        }
+    });
 }
 
 /// Height of the histogram, and of the words below it.

@@ -29,8 +29,11 @@ pub(super) struct View {
 }
 
 /// Width of the entry of a position, and of a percentage.
-const NUMBER: f32 = 112.0;
+const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
+const MEASURE: f32 = 64.0;
+/// Height of the line that says what is done with the drive.
+const SAID: f32 = 24.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     locks(ui, skin, unit, actions);
@@ -47,6 +50,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
             at_speed(ui, skin, unit, actions);
         },
     );
+    ui.add_space(skin.space.groups);
+    figures::words_card_ui(ui, skin, unit, unit.drive());
 }
 
 /// Why nothing moves, and what to do.
@@ -94,12 +99,14 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             };
             actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(motor)));
         }
-        ui.add_space(skin.space.between);
-        figures::words_ui(ui, skin, unit, drive);
-        if let Some(ended) = unit.said(drive) {
-            let ink = if ended.is_well { skin.palette.good } else { skin.palette.warn };
-            paragraph(ui, RichText::new(skin.words(&ended.words)).color(ink));
+        // Always as high: nothing may move away under the finger that holds a drive.
+        let top = ui.cursor().top();
+        if let Some(said) = unit.said(drive) {
+            let ink = if said.is_well { skin.palette.good } else { skin.palette.warn };
+            let words = skin.words(&said.words);
+            ui.add(egui::Label::new(RichText::new(&words).color(ink)).truncate()).on_hover_text(words);
         }
+        ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
     });
 }
 
@@ -150,9 +157,6 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
                         motor(actions, id, Motor::Pause);
                     }
                 }
-            }
-            if allowed_button(ui, skin, &Ok(()), icons::STOP, &skin.say("hd_move.stop")).clicked() {
-                motor(actions, id, Motor::Stop);
             }
         });
         ui.add_space(skin.space.inside);
@@ -240,8 +244,11 @@ pub(super) fn length_ui(
     entry(ui, skin, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
         let measures = ruler.measures().map(|own| (own, skin.say(own.unit())));
-        if choice(ui, &skin.say("hd_move.measure"), &mut measure, measures) {
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SetMeasure(measure)));
-        }
+        ui.push_id(id, |ui| {
+            ui.spacing_mut().combo_width = MEASURE;
+            if choice(ui, &skin.say("hd_move.measure"), &mut measure, measures) {
+                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SetMeasure(measure)));
+            }
+        });
     });
 }
