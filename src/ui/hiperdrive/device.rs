@@ -94,7 +94,7 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit) {
             row(ui, skin, &skin.say("hd_device.version"), skin.mono(&drive.version));
             row(ui, skin, &skin.say("hd_device.article"), skin.mono(&drive.article_number));
         }
-        let places = u8::from(identity.topology.drives());
+        let places = identity.topology.drives();
         let taken = identity.drives.len();
         if taken < usize::from(places) {
             let text = crate::app::Text::new("hd_drives.empty").with("count", usize::from(places) - taken);
