@@ -14,6 +14,7 @@ mod connecting;
 mod drafts;
 mod each_kind;
 mod hiperdrive;
+mod hiperdrive_axis;
 mod hiperdrive_motion;
 mod interbus;
 mod leaving;

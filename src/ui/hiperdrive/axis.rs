@@ -9,7 +9,9 @@ use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, words};
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Severity, Text};
-use crate::ui::controls::{allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split};
+use crate::ui::controls::{
+    allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
+};
 use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
 use crate::ui::{Skin, icons};
 

@@ -79,7 +79,9 @@ fn lamp_ui(ui: &mut Ui, skin: &Skin, leds: &mut Leds, lamp: Lamp) {
     paint(painter, skin, middle, look(skin, leds, lamp));
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
-        Lamp::Drives if leds.hub && leds.s3 != 0 => skin.words(&Text::new("hd_led.switch_drive").with("drive", leds.s3)),
+        Lamp::Drives if leds.hub && leds.s3 != 0 => {
+            skin.words(&Text::new("hd_led.switch_drive").with("drive", leds.s3))
+        }
         Lamp::Drives => skin.say("hd_led.what_drives"),
         Lamp::Bus(BusLamp::Module) => skin.say("hd_led.what_module"),
         Lamp::Bus(BusLamp::Network) => skin.say("hd_led.what_network"),

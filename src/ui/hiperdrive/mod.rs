@@ -1,12 +1,15 @@
 //! The HIPERDRIVE tab: its pages, each about one thing that a person wants of a drive, and above them what is never out of
 //! reach.
 
+mod axis;
 mod bar;
 mod device;
 mod errors;
 mod figures;
 mod jog;
+mod leds;
 mod motion;
+mod network;
 mod parameters;
 
 use egui::{ScrollArea, Ui};
@@ -23,6 +26,8 @@ pub(in crate::ui) enum Page {
     Motion,
     /// Every parameter.
     Parameters,
+    /// From a new drive to an axis that is saved.
+    Axis,
     /// Errors, lamps, the cyclic connection.
     Diagnosis,
     /// Who it is, where it is in the network.
@@ -32,12 +37,14 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Motion, Page::Parameters, Page::Diagnosis, Page::Device, Page::Backups];
+    pub(super) const ALL: [Page; 6] =
+        [Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
 
     pub(super) fn icon(self) -> &'static str {
         match self {
             Page::Motion => icons::GAUGE,
             Page::Parameters => icons::SLIDERS,
+            Page::Axis => icons::RULER,
             Page::Diagnosis => icons::MAGNIFYING_GLASS,
             Page::Device => icons::CPU,
             Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
@@ -48,6 +55,7 @@ impl Page {
         match self {
             Page::Motion => "page.motion",
             Page::Parameters => "page.parameters",
+            Page::Axis => "page.axis",
             Page::Diagnosis => "page.diagnosis",
             Page::Device => "page.device",
             Page::Backups => "page.backups",
@@ -58,6 +66,7 @@ impl Page {
         match self {
             Page::Motion => "help.hd_motion",
             Page::Parameters => "help.hd_parameters",
+            Page::Axis => "help.hd_axis",
             Page::Diagnosis => "help.hd_diagnosis",
             Page::Device => "help.hd_device",
             Page::Backups => "help.backups",
@@ -79,6 +88,9 @@ pub(in crate::ui) struct View {
     serial_number: Option<String>,
     motion: motion::View,
     parameters: parameters::View,
+    axis: axis::View,
+    leds: leds::View,
+    network: network::View,
 }
 
 impl View {
@@ -122,8 +134,17 @@ pub(super) fn page_ui(
         frame.show(ui, |ui| match view.page {
             Page::Motion => motion::page_ui(ui, skin, unit, &mut view.motion, actions),
             Page::Parameters => parameters::page_ui(ui, skin, unit, &mut view.parameters, actions),
-            Page::Diagnosis => errors::cards_ui(ui, skin, unit, actions),
-            Page::Device => device::cards_ui(ui, skin, unit, actions),
+            Page::Axis => axis::page_ui(ui, skin, unit, &mut view.axis, actions),
+            Page::Diagnosis => {
+                errors::cards_ui(ui, skin, unit, actions);
+                ui.add_space(skin.space.groups);
+                leds::cards_ui(ui, skin, &mut view.leds);
+            }
+            Page::Device => {
+                device::cards_ui(ui, skin, unit, actions);
+                ui.add_space(skin.space.groups);
+                network::card_ui(ui, skin, unit, &mut view.network, actions);
+            }
             Page::Backups => backups::page_ui(ui, skin, device, actions),
         });
     });

@@ -9,8 +9,8 @@ use crate::app::{Action, Severity, Text};
 use crate::profile::hiperdrive::NetworkSettings;
 use crate::protocol::ethernet_ip::AddressSource;
 use crate::ui::controls::{
-    allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row, severity,
-    split,
+    allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
+    severity, split,
 };
 use crate::ui::{Skin, icons};
 use crate::worker::hiperdrive::Change;

@@ -130,7 +130,12 @@ fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
         let value = |own: f64| Text::new("hd_axis.millimetres").with_number("value", own, 0);
         let text = Text::new("hd_axis.preview_unchanged_value");
         let text = text.with_text("low", value(low)).with_text("high", value(high));
-        row(ui, skin, &skin.say("hd_axis.preview_unchanged"), RichText::new(skin.words(&text)).color(skin.palette.warn));
+        row(
+            ui,
+            skin,
+            &skin.say("hd_axis.preview_unchanged"),
+            RichText::new(skin.words(&text)).color(skin.palette.warn),
+        );
     }
 }
 
@@ -156,7 +161,8 @@ fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries)
     let ruler = shown.axis.ruler(shown.seen);
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
-            let text = Text::new("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
+            let text =
+                Text::new("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
             paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
         }
         Ok(_) => {}
@@ -165,14 +171,7 @@ fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries)
 }
 
 /// A limit: the place where the axis is, or typed.
-fn place(
-    ui: &mut Ui,
-    skin: &Skin,
-    shown: &Shown<'_>,
-    id: &'static str,
-    text: &mut String,
-    actions: &mut Vec<Action>,
-) {
+fn place(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, id: &'static str, text: &mut String, actions: &mut Vec<Action>) {
     let word = skin.say(id);
     entry(ui, skin, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
