@@ -89,6 +89,30 @@ fn whatever_the_target_is_like_it_is_read_and_written() {
     }
 }
 
+/// The commands, as somebody types them.
+#[test]
+fn the_commands_do_their_work_with_it() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&["--topology=hub8", "--drives=1,2", "--counted", "--serial=815"]) else { return };
+    let link = ["--link", foreign.url.as_str()];
+    let ask = |words: &[&str]| bench.run(&[words, &link[..]].concat());
+    let told = ask(&["identify", "hiperdrive", "--json"]).json();
+    assert_eq!((told["category"].as_str(), told["serial_number"].as_str()), (Some("HIPERDRIVE HUB-8"), Some("815")));
+    assert_eq!(told["drives"].as_array().map(Vec::len), Some(2), "{told}");
+    let (before, after) = (bench.file("before.ron"), bench.file("after.ron"));
+    assert_eq!(ask(&["save", "hiperdrive", "-o", &before]).status, Some(0));
+    assert!(foreign.requests().is_empty(), "reading changes nothing");
+    let written = ask(&["write", "hiperdrive", "166", "120", "--drive", "2", "--yes"]);
+    assert_eq!((written.status, foreign.requests().join(", ")), (Some(0), "SET 266 120, SET 47 1, STORE".to_owned()));
+    assert_eq!(ask(&["save", "hiperdrive", "-o", &after]).status, Some(0));
+    let found = bench.run(&["diff", &before, &after, "--json"]).json_with(3);
+    assert_eq!(found["differences"].as_array().map(Vec::len), Some(1), "{found}");
+    let restored = ask(&["restore", &before, "--yes", "--json"]).json();
+    assert_eq!((restored["written"].as_u64(), restored["write_cycles"].as_u64()), (Some(1), Some(1)), "{restored}");
+    assert_eq!(foreign.requests(), ["SET 266 350", "SET 47 1", "STORE"]);
+    assert_eq!(ask(&["verify", &before]).status, Some(0));
+}
+
 #[test]
 fn what_is_no_drive_says_who_it_is() {
     let bench = Bench::new();

@@ -108,8 +108,8 @@ pub enum Finding {
         number: DriveNumber,
         /// Which one.
         variant: Variant,
-        /// What it is called.
-        name: String,
+        /// Its serial number.
+        serial_number: String,
     },
     /// No drive is plugged in.
     NoDrives,
@@ -269,8 +269,8 @@ fn drives(identity: &Identity) -> Vec<(Verdict, Finding)> {
         return vec![(Verdict::Bad, Finding::NoDrives)];
     }
     let found = |drive: &DriveIdentity| {
-        let DriveIdentity { number, variant, name, .. } = drive;
-        (Verdict::Good, Finding::Drive { number: *number, variant: *variant, name: name.clone() })
+        let DriveIdentity { number, variant, serial_number, .. } = drive;
+        (Verdict::Good, Finding::Drive { number: *number, variant: *variant, serial_number: serial_number.clone() })
     };
     identity.drives.iter().map(found).collect()
 }

@@ -46,10 +46,10 @@ fn finding(finding: &Finding) -> Text {
         Finding::Source(source) => self::source(*source),
         Finding::Saved => Text::new("hd_check.saved"),
         Finding::NotSaved(number) => Text::new("hd_check.not_saved").with("number", number),
-        Finding::Drive { number, variant: own, name } => Text::new("hd_check.drive")
+        Finding::Drive { number, variant: own, serial_number } => Text::new("hd_check.drive")
             .with("drive", number.get())
             .with_text("variant", variant(*own))
-            .with("name", name),
+            .with("serial", serial_number),
         Finding::NoDrives => Text::new("hd_check.no_drives"),
         Finding::Requested => Text::new("hd_check.requested"),
         Finding::NotRequested => Text::new("hd_lock.not_requested"),
