@@ -410,8 +410,8 @@ impl Studio {
     }
 
     fn escape(&mut self) {
-        // Before anything else: whoever presses it in a fright means the machine.
-        if self.moves() {
+        // Before anything else.
+        if self.moves_by_hand() {
             return self.stop_motion();
         }
         if self.question.take().is_some() {

@@ -4,9 +4,11 @@
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, LimitsStay, Mark, Measure, Motor, Unit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish, connect};
+use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::device::hiperdrive::dead_man::{Goal, Lock};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, Length, ParameterNumber, PositionScale};
+use encoder_studio::protocol::ethernet_ip::{Identity, IdentityItem, Revision, SocketAddress};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR};
 
 use crate::support::Desk;
 
@@ -63,6 +65,21 @@ pub(crate) fn edit(desk: &mut Desk, edit: Edit) {
 fn sets(desk: &Desk) -> usize {
     let lines = unit(desk).session.trace.lines();
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
+}
+
+/// A device that answers when all in the network are asked.
+fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> Found {
+    let identity = Identity {
+        vendor,
+        device_type: 0x0C,
+        product_code: 1,
+        revision: Revision { major: 1, minor: 2 },
+        status: 0,
+        serial_number: 17,
+        product_name: name.to_owned(),
+    };
+    let socket = SocketAddress::new(address.into(), port);
+    Found { address: address.into(), port, identity: IdentityItem { version: 1, socket, identity, state: 3 } }
 }
 
 /// Reviews what is edited and writes it.
@@ -207,4 +224,28 @@ fn without_control_nothing_is_asked_of_a_drive() {
     }
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
     assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable(ONE).is_empty());
+}
+
+#[test]
+fn who_answers_in_the_network_fills_the_form() {
+    let mut outside = crate::support::Outside::new("");
+    outside.found =
+        vec![found([10, 0, 0, 9], 2222, 1, "a switch"), found([10, 0, 0, 7], 44818, VENDOR, "HIPERDRIVE HUB-4")];
+    let mut desk = Desk { studio: outside.studio(), outside };
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.connect(connect::Action::Open);
+    desk.connect(connect::Action::Discover);
+    assert!(desk.studio.connect.as_ref().unwrap().discovery.as_ref().unwrap().is_running());
+    desk.until("they have answered", |studio| {
+        studio.connect.as_ref().unwrap().discovery.as_ref().is_some_and(|own| !own.is_running())
+    });
+    let discovery = desk.studio.connect.as_ref().unwrap().discovery.clone().unwrap();
+    let names: Vec<&str> = discovery.devices().iter().map(|own| own.name.as_str()).collect();
+    assert_eq!(names, ["HIPERDRIVE HUB-4", "a switch"], "ours come first");
+    desk.connect(connect::Action::ChooseDevice(0));
+    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.7:44818");
+    desk.connect(connect::Action::ChooseDevice(1));
+    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222");
+    desk.connect(connect::Action::ChooseDevice(2));
+    assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222", "there is none");
 }

@@ -10,6 +10,7 @@ use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Review, Revie
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
 use encoder_studio::device::biss::Way;
+use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
@@ -33,6 +34,8 @@ pub(crate) struct Outside {
     /// [`SLOW`] opens from now on.
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: Patience,
+    /// Who answers when all in the network are asked.
+    pub(crate) found: Vec<Found>,
 }
 
 /// The port at which the encoder stands that `begin` finds; `sim:` leads to it too.
@@ -73,7 +76,7 @@ impl Outside {
             wires.insert(server.to_owned(), wires[port].clone());
         }
         let (wakes, opens, patience) = (Arc::default(), Arc::default(), Patience::default());
-        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes, opens, patience }
+        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes, opens, patience, found: Vec::new() }
     }
 
     pub(crate) fn store(&self) -> Store {
@@ -89,7 +92,7 @@ impl Outside {
     }
 
     pub(crate) fn world(&self) -> World {
-        let (wires, opens) = (self.wires.clone(), self.opens.clone());
+        let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         World {
             open_biss: Arc::new(move |url, store| {
@@ -130,6 +133,7 @@ impl Outside {
                 Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
             }),
             ports: Arc::new(|| Ok(Vec::new())),
+            discover: Arc::new(move || Ok(found.clone())),
             patience: self.patience,
             ..World::real(self.store())
         }

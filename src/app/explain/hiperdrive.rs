@@ -5,6 +5,8 @@ mod check;
 mod error;
 mod motion;
 mod names;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use check::{check, source, switch};

@@ -27,6 +27,11 @@ impl Studio {
         self.hiperdrives().any(Unit::is_moving)
     }
 
+    /// Something is under way that was asked for here: whoever presses Esc in a fright means that.
+    pub(in crate::app) fn moves_by_hand(&self) -> bool {
+        self.hiperdrives().any(|unit| unit.moves.is_moving() || unit.moves.is_under_way())
+    }
+
     /// Somebody has control of some drives: what they say comes by itself.
     pub fn is_in_control(&self) -> bool {
         self.hiperdrives().any(|unit| unit.moves.is_open())

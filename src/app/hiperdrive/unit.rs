@@ -219,7 +219,8 @@ impl Unit {
             let mut last = self.readings.values();
             last.any(|own| own.actual.status.state() == State::Moving)
         };
-        self.moves.is_moving() || self.session.line().is_some() && !self.moves.is_open() && said()
+        // What was said before it was asked no more is old by now.
+        self.moves.is_moving() || self.session.is_polling() && !self.moves.is_open() && said()
     }
 
     /// Steps and what a person measures in, of a drive as it is.

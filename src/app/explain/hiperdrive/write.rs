@@ -8,6 +8,7 @@ use super::error::{device, out_of_range};
 use super::names::parameter;
 use crate::app::Text;
 use crate::app::explain::plain;
+use crate::app::hiperdrive::network::refused;
 use crate::app::review::OpWords;
 use crate::device::hiperdrive::write::{Interrupted, Written};
 use crate::profile::hiperdrive::{Item, NetworkSettings, Op, PlanError, Service, Warning};
@@ -110,7 +111,7 @@ pub fn plan(error: &PlanError) -> Text {
                 .with("lower", lower)
                 .with("upper", upper)
         }
-        PlanError::Address(why) => Text::new("hd_plan.address").with("why", why),
+        PlanError::Address(why) => Text::new("hd_plan.address").with_text("why", refused(why)),
         PlanError::Source(method) => Text::new("hd_plan.source").with("method", method),
     }
 }
