@@ -172,4 +172,11 @@ impl Device for Hiperdrive {
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check().inspect_err(|_| self.control.lose_session())
     }
+
+    /// Drives that are in control are stopped and let go.
+    fn leave(&mut self, desk: &mut Desk) {
+        if let Err(why) = self.give(desk) {
+            tracing::warn!("{why}");
+        }
+    }
 }

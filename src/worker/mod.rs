@@ -95,6 +95,9 @@ pub trait Device: Send + 'static {
     /// # Errors
     /// When it is not.
     fn check(&mut self) -> Result<(), LinkError>;
+
+    /// The session ends: what must not be left as it is.
+    fn leave(&mut self, _desk: &mut Desk) {}
 }
 
 /// What a device says when it is asked for a watched value.

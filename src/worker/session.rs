@@ -65,6 +65,11 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
+    /// The session ends: what must not be left as it is.
+    pub(super) fn leave(&mut self) {
+        self.device.leave(&mut self.desk);
+    }
+
     /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));

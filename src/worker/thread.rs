@@ -116,6 +116,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
     if paced.is_some() {
         bench.session.pace(None);
     }
+    bench.session.leave();
 }
 
 impl<D: Device> Bench<D> {

@@ -15,6 +15,8 @@ mod act;
 mod cause;
 mod lead;
 mod stage;
+#[cfg(test)]
+mod tests;
 
 use std::time::Duration;
 

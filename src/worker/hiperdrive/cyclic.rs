@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, bounded};
+use crossbeam_channel::{Receiver, bounded};
 
 use super::motion::Motion;
 use crate::device::hiperdrive::Opened;
@@ -18,7 +18,7 @@ use crate::device::hiperdrive::cyclic::{CyclicLost, Drives};
 use crate::link::{Clock, Datagrams};
 use crate::protocol::hiperdrive::DriveNumber;
 
-/// A cyclic connection on its thread. Dropping it stops the drives, and waits for that.
+/// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
 pub struct Cyclic {
     motion: Motion,
     wishes: Arc<Wishes>,
@@ -91,30 +91,18 @@ impl Cyclic {
         *self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Nothing is sent any more.
-    pub fn is_over(&self) -> bool {
-        self.wait(Duration::ZERO)
-    }
-
     /// Stops the drives, switches them off and ends; what is left is to close the connection. Why it was lost, where it was.
     pub fn close(self) -> Option<CyclicLost> {
-        self.end();
-        self.lost()
-    }
-
-    fn end(&self) {
         self.wishes.end.store(true, Ordering::SeqCst);
-        self.wait(PATIENCE);
-    }
-
-    fn wait(&self, patience: Duration) -> bool {
-        matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
+        // The channel ends with the thread; whoever is later than that is not waited for.
+        let _ = self.ended.recv_timeout(PATIENCE);
+        self.lost()
     }
 }
 
 impl Drop for Cyclic {
     fn drop(&mut self) {
-        self.end();
+        self.wishes.end.store(true, Ordering::SeqCst);
     }
 }
 

@@ -180,6 +180,17 @@ impl Motion {
         self.lock().view.lost.clone()
     }
 
+    /// Whether its parameters allow an endless run, whoever asks for it.
+    pub fn could_run_endlessly(&self, drive: DriveNumber) -> bool {
+        self.lock().permits.get(&drive).is_some_and(|permit| permit.endless)
+    }
+
+    /// No drive was sent a word with which it moves: a stop that was asked for is on the wire.
+    pub fn is_standing(&self) -> bool {
+        let cell = self.lock();
+        !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
+    }
+
     fn lock(&self) -> MutexGuard<'_, Cell> {
         // Each change is whole: whoever panicked has left nothing half done.
         self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)

@@ -15,7 +15,7 @@ fn at(ms: u64) -> Moment {
     Moment::START + Duration::from_millis(ms)
 }
 
-/// As the reference's packets have it: 00020001 to the target, 00020002 back; 10 ms.
+/// As the reference's packets have it (section 9): 00020001 both ways; 10 ms.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };

@@ -42,8 +42,6 @@ pub(super) enum Stage {
         begun: Mark,
         /// The stop of its mode.
         word: ControlWord,
-        /// What is held afterwards, if its mode's stop does.
-        then: Goal,
     },
 }
 
@@ -155,39 +153,27 @@ impl DeadMan {
 
     /// The act has ended, and what moves is to stand.
     pub(super) fn stop(&mut self, now: Moment, how: Ended) {
-        // Who looks after the drive gets it back as it was.
-        let attended = matches!(how, Ended::Stopped | Ended::Replaced | Ended::RangeEnd);
         let moved = self.stage.has_motion();
         self.end(how);
         if moved {
-            let then = if attended || !self.after_run { Goal::Enabled } else { Goal::Ready };
             let (begun, word) = (self.mark(now), self.sent.control.stopped());
-            self.stage = Stage::Stop { rung: Rung::Mode, since: now, begun, word, then };
+            self.stage = Stage::Stop { rung: Rung::Mode, since: now, begun, word };
         }
     }
 
-    /// Up the ladder while it does not stand; what is held when it does.
+    /// Up the ladder while it does not stand; what is held when it does. Behind a run that is ready, from where the next
+    /// motion leads up again.
     fn climb(&mut self, mark: Mark, actual: Actual) {
-        let Stage::Stop { rung, since, begun, word, then } = self.stage else { return };
+        let Stage::Stop { rung, since, begun, word } = self.stage else { return };
         if rung == Rung::Close {
             return;
         }
         if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
-            let then = match rung {
-                Rung::Mode => then,
-                Rung::Operational => Goal::Operational,
-                Rung::Off | Rung::Close => Goal::Off,
-            };
+            // No higher than the rung's own word.
             self.hold_what_is(actual.status.state());
-            self.level = self.level.min(then);
-            let back = if self.after_run { then } else { self.level };
-            if back != self.level && actual.status.state() == State::Enabled {
-                self.stage = Stage::Lead(Lead::to(back));
-                self.advance(mark.at, actual);
-            }
         } else if mark.at.since(since) >= RUNG {
             let rung = rung.next();
-            self.stage = Stage::Stop { rung, since: mark.at, begun, word, then };
+            self.stage = Stage::Stop { rung, since: mark.at, begun, word };
         }
     }
 
@@ -206,7 +192,7 @@ impl DeadMan {
                 Goal::Off => Rung::Close,
             };
             let (begun, word) = (self.mark(now), self.resting());
-            self.stage = Stage::Stop { rung, since: now, begun, word, then: Goal::Operational };
+            self.stage = Stage::Stop { rung, since: now, begun, word };
         }
     }
 

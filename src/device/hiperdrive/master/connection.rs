@@ -86,13 +86,13 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a cyclic connection. One that has ended already is closed.
+    /// Closes a cyclic connection. One that has ended already is closed. A wish to end is not heard.
     ///
     /// # Errors
     /// [`Error::Refused`]; the way.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
-        match self.request(Asked::Close, &close.request(), Repeats::Always) {
+        match self.shielded(|master| master.request(Asked::Close, &close.request(), Repeats::Always)) {
             Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
             ended => ended.map(|_| ()),
         }
