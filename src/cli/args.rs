@@ -3,6 +3,7 @@
 mod act;
 mod analyse;
 mod decode;
+mod motion;
 mod ssi;
 
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(super) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
 pub(super) use decode::{Decode, Direction, Protocol, Words};
+pub(super) use motion::Move;
 pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
 
 use crate::link::LinkUrl;
@@ -86,6 +88,8 @@ pub(super) enum Command {
     Restore(Restore),
     /// Write one value.
     Write(Write),
+    /// hiperdrive: a drive goes to a position. Ctrl-C stops it; it is off afterwards.
+    Move(Move),
     /// An action: hiperface restart, check, data fields …; biss calibrate, filter …; hiperdrive save … (help do lists them).
     Do(Do),
     /// Explain captured bytes, offline.

@@ -161,6 +161,7 @@ fn dispatch(common: &Common, command: Command) -> Result {
             no_drive(&write.of, write.device)?;
             (kind::of(write.device).write)(common, &output, &write)
         }
+        Command::Move(target) => hiperdrive::drive_to(common, &output, &target),
         Command::Do(act) => {
             no_drive(&act.of, act.device)?;
             if act.all && act.device != DeviceKind::Hiperdrive {

@@ -51,6 +51,11 @@ pub(super) trait Runs: Device {
 
     /// A job that ended early, in words.
     fn failure(error: &Self::Error) -> Vec<Text>;
+
+    /// What Ctrl-C does at once, before anything else, each time that it is pressed.
+    fn interrupt(_kept: &Self::Kept) -> Box<dyn Fn() + Send> {
+        Box::new(|| ())
+    }
 }
 
 /// A session on its thread.
@@ -100,8 +105,11 @@ impl<D: Runs> Runner<D> {
         let stopper = worker.stopper();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
+        let interrupt = D::interrupt(&kept);
         ctrlc::set_handler(move || {
-            if pressed.swap(true, Ordering::SeqCst) {
+            let again = pressed.swap(true, Ordering::SeqCst);
+            interrupt();
+            if again {
                 std::process::exit(130);
             }
             stopper.stop();

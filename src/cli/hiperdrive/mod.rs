@@ -6,6 +6,7 @@ mod find;
 mod image;
 mod inspect;
 mod meaning;
+mod r#move;
 mod plan;
 mod position;
 mod profiles;
@@ -20,6 +21,7 @@ use crate::profile::hiperdrive::{Item, ItemError};
 use crate::protocol::hiperdrive::KIND;
 
 pub(super) use meaning::parameter_words;
+pub(super) use r#move::drive_to;
 
 /// What can be done with drives.
 pub(super) const COMMANDS: Kind = Kind {

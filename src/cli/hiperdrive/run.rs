@@ -1,5 +1,8 @@
 //! Running jobs on an adapter or a hub with its drives.
 
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
 use crate::app::{Text, explain};
 use crate::cli::Result;
 use crate::cli::args::{Code, OfDrive};
@@ -10,6 +13,10 @@ use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Value};
 use crate::store::Store;
 use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark, open};
 use crate::worker::{OpenError, Session};
+
+/// Some of the longest intervals: a stop word is out before the program may end.
+const STOPPED: Duration = Duration::from_millis(500);
+const LOOKS: Duration = Duration::from_millis(1);
 
 /// A session with an adapter or a hub on its thread.
 pub(super) type Runner = runner::Runner<Hiperdrive>;
@@ -39,6 +46,18 @@ impl Runs for Hiperdrive {
 
     fn failure(error: &JobError) -> Vec<Text> {
         explain::hiperdrive::job(error)
+    }
+
+    /// What moves is told to stop, and that is waited for.
+    fn interrupt(motion: &Motion) -> Box<dyn Fn() + Send> {
+        let motion = motion.clone();
+        Box::new(move || {
+            motion.stop();
+            let until = Instant::now() + STOPPED;
+            while !motion.is_standing() && Instant::now() < until {
+                sleep(LOOKS);
+            }
+        })
     }
 }
 

@@ -1,0 +1,30 @@
+//! `move`: the one command that moves something.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+use super::{DeviceKind, OfDrive};
+
+#[derive(Args)]
+pub(in crate::cli) struct Move {
+    /// The kind of device: the others do not move.
+    #[arg(value_parser = PossibleValuesParser::new(["hiperdrive"]).map(|_| DeviceKind::Hiperdrive))]
+    pub(in crate::cli) device: DeviceKind,
+    /// Where to, in steps as the drive is scaled.
+    #[arg(allow_negative_numbers = true)]
+    pub(in crate::cli) target: String,
+    /// Something moves: somebody has looked that it may.
+    #[arg(long)]
+    pub(in crate::cli) yes: bool,
+    #[command(flatten)]
+    pub(in crate::cli) of: OfDrive,
+    /// Of the drive's greatest speed.
+    #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
+    pub(in crate::cli) speed: u8,
+    /// Of the nominal torque; drives take steps of 25.
+    #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
+    pub(in crate::cli) torque: u8,
+    /// It is stopped after so long.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(in crate::cli) timeout: u16,
+}

@@ -1,0 +1,280 @@
+//! Whatever happens to the host, its wires or its window while a drive moves: the drive stands, and keeps standing. The drive
+//! is a process of its own, and who looks at it has a connection of its own. Limits are those of safety, with a second on
+//! top for a machine that is busy.
+
+mod wires;
+
+use std::process::Child;
+use std::sync::Arc;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use encoder_studio::device::hiperdrive::cyclic::CyclicLost;
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Wish};
+use encoder_studio::protocol::hiperdrive::{Actual, Direction, DriveNumber, Percent, State};
+use encoder_studio::store::Store;
+use encoder_studio::worker::hiperdrive::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
+use encoder_studio::worker::{Event, Session, Worker};
+
+use super::support::{Bench, Simulated, ended, signal};
+use wires::{Way, Wires};
+
+/// What a machine that is busy may add.
+const BUSY: Duration = Duration::from_secs(1);
+/// Without a word from the person.
+const FROZEN: Duration = Duration::from_millis(300);
+/// Slow enough for a machine that is busy.
+const RPI: &str = "rpi=50";
+/// Eight intervals, and the way in which it brakes.
+const WATCHDOG: Duration = Duration::from_millis(500);
+const FAST: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+const JOG: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FAST };
+
+/// A drive that somebody looks at.
+struct Drive {
+    bench: Bench,
+    simulated: Simulated,
+    observer: Session<Hiperdrive>,
+}
+
+impl Drive {
+    fn start() -> Self {
+        let bench = Bench::new();
+        let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0"]);
+        let url = format!("enip:{}", simulated.place).parse().unwrap();
+        let observer = open(&url, Store::at(&bench.path("observer"))).unwrap();
+        Drive { bench, simulated, observer }
+    }
+
+    fn actual(&mut self) -> Actual {
+        match self.observer.run_inline(HiperdriveJob::Position(DriveNumber::FIRST)).unwrap() {
+            HiperdriveOutput::Position(reading) => reading.actual,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn moves(&mut self) -> bool {
+        let actual = self.actual();
+        actual.status.state() == State::Moving || actual.speed != 0
+    }
+
+    #[track_caller]
+    fn begins(&mut self) {
+        let until = Instant::now() + Duration::from_secs(10);
+        while self.actual().speed == 0 {
+            assert!(Instant::now() < until, "it does not move");
+            sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// It stands before the time is up, and half a second later it is where it was.
+    #[track_caller]
+    fn stands_within(&mut self, limit: Duration) {
+        let until = Instant::now() + limit + BUSY;
+        while self.moves() {
+            assert!(Instant::now() < until, "it moves on: {:?}", self.actual());
+            sleep(Duration::from_millis(5));
+        }
+        let stood = self.actual().position;
+        sleep(Duration::from_millis(500));
+        assert_eq!(self.actual().position, stood);
+    }
+}
+
+/// A host in this process, in control of the drive.
+struct Host {
+    worker: Worker<Hiperdrive>,
+    motion: Motion,
+}
+
+impl Host {
+    fn in_control(drive: &Drive, place: &str) -> Self {
+        let url = format!("enip:{place}?{RPI}").parse().unwrap();
+        let session = open(&url, Store::at(&drive.bench.path("host"))).unwrap();
+        let motion = session.motion();
+        let mut host = Host { worker: Worker::spawn(session, Arc::new(|| ())).unwrap(), motion };
+        host.run(HiperdriveJob::Take);
+        host
+    }
+
+    fn run(&mut self, job: HiperdriveJob) {
+        let id = self.worker.submit(job).unwrap();
+        loop {
+            match self.worker.events().recv_timeout(Duration::from_secs(20)).unwrap() {
+                Event::Finished(of, _) if of == id => return,
+                Event::Failed(of, error) if of == id => panic!("{error}"),
+                _ => {}
+            }
+        }
+    }
+
+    /// A hand on the button.
+    fn holds(&self, time: Duration) {
+        let until = Instant::now() + time;
+        while Instant::now() < until {
+            self.motion.refresh();
+            sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Jogs, at full speed.
+    fn jogs(&self, drive: &mut Drive) {
+        let until = Instant::now() + Duration::from_secs(20);
+        let mut act = 0;
+        while drive.actual().speed <= 100 {
+            assert!(Instant::now() < until, "it does not move: {:?}", self.motion);
+            // A machine that is busy may have held the hand up.
+            let over = self.motion.view().drives[0].ended.is_some_and(|(number, _)| number >= act);
+            if act == 0 || over {
+                act = self.motion.intend(DriveNumber::FIRST, JOG);
+            }
+            self.motion.refresh();
+            sleep(Duration::from_millis(5));
+        }
+        self.motion.refresh();
+    }
+
+    fn ended(&self) -> Option<Ended> {
+        self.motion.view().drives[0].ended.map(|(_, ended)| ended)
+    }
+}
+
+#[test]
+fn a_frozen_window() {
+    let mut drive = Drive::start();
+    let host = Host::in_control(&drive, &drive.simulated.place.clone());
+    host.jogs(&mut drive);
+    // Nobody says anything any more.
+    drive.stands_within(FROZEN + WATCHDOG);
+    assert_eq!(host.ended(), Some(Ended::Stale));
+    // Whoever comes back holds the same button still: nothing.
+    let stood = drive.actual().position;
+    host.holds(Duration::from_millis(500));
+    assert_eq!(drive.actual().position, stood);
+    assert!(host.motion.is_open());
+    host.jogs(&mut drive);
+    host.motion.stop();
+    drive.stands_within(WATCHDOG);
+    assert_eq!(host.ended(), Some(Ended::Stopped));
+}
+
+/// The window is closed: the session is let go.
+#[test]
+fn an_end_without_a_word() {
+    let mut drive = Drive::start();
+    let host = Host::in_control(&drive, &drive.simulated.place.clone());
+    host.jogs(&mut drive);
+    assert!(host.worker.close(Duration::from_secs(5)));
+    drive.stands_within(Duration::ZERO);
+    assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault: it was told");
+    // Nobody has it: the next one may take it.
+    let next = Host::in_control(&drive, &drive.simulated.place.clone());
+    assert!(next.motion.is_open());
+}
+
+#[test]
+fn a_wire_for_parameters_that_is_cut() {
+    let mut drive = Drive::start();
+    let wires = Wires::to(&drive.simulated.place);
+    let host = Host::in_control(&drive, &wires.place());
+    host.jogs(&mut drive);
+    wires.cut_stream();
+    // An idle session looks every half second.
+    let holding = host.motion.clone();
+    let held = std::thread::spawn(move || {
+        for _ in 0..100 {
+            holding.refresh();
+            sleep(Duration::from_millis(20));
+        }
+    });
+    drive.stands_within(Duration::from_millis(500) + WATCHDOG);
+    held.join().unwrap();
+    assert_eq!(host.motion.view().lost, Some(CyclicLost::Session));
+}
+
+#[test]
+fn wires_for_packets_that_are_cut() {
+    for (ways, told) in [(&[Way::ToTarget, Way::ToHost][..], false), (&[Way::ToTarget], false), (&[Way::ToHost], true)]
+    {
+        let mut drive = Drive::start();
+        let wires = Wires::to(&drive.simulated.place);
+        let host = Host::in_control(&drive, &wires.place());
+        host.jogs(&mut drive);
+        ways.iter().for_each(|way| wires.cut(*way));
+        drive.stands_within(WATCHDOG);
+        // Where only the way back is cut, the drive is told; else its watchdog stops it, and it is a fault.
+        let faulty = drive.actual().status.state() == State::Fault;
+        assert_eq!(faulty, !told, "{ways:?}");
+        let until = Instant::now() + Duration::from_secs(5);
+        while host.motion.is_open() {
+            assert!(Instant::now() < until, "{ways:?}: the loss is not noticed");
+            sleep(Duration::from_millis(10));
+        }
+        assert!(matches!(host.motion.view().lost, Some(CyclicLost::Silent { .. })), "{ways:?}");
+        // Mended: it stays as it is, whoever holds the button.
+        ways.iter().for_each(|way| wires.mend(*way));
+        let stood = drive.actual().position;
+        host.motion.intend(DriveNumber::FIRST, JOG);
+        host.holds(Duration::from_millis(500));
+        assert_eq!(drive.actual().position, stood);
+    }
+}
+
+/// Garbage at both ends, as fast as it goes: a release is a stop all the same.
+#[test]
+fn a_flood() {
+    let mut drive = Drive::start();
+    let wires = Wires::to(&drive.simulated.place);
+    let host = Host::in_control(&drive, &wires.place());
+    host.jogs(&mut drive);
+    let flood = wires.flood();
+    host.holds(Duration::from_millis(300));
+    host.motion.stop();
+    drive.stands_within(WATCHDOG + FROZEN);
+    assert!(flood.end() > 1000);
+    let figures = host.motion.view().link;
+    assert!(figures.malformed > 0, "{figures:?}");
+}
+
+/// `move` that runs in a process of its own.
+fn moving(drive: &mut Drive) -> Child {
+    let link = format!("enip:{}?{RPI}", drive.simulated.place);
+    let arguments = ["move", "hiperdrive", "30000000", "--yes", "--link", &link];
+    let child = drive.bench.program(&arguments).spawn().unwrap();
+    drive.begins();
+    child
+}
+
+#[test]
+fn a_process_that_is_killed() {
+    let mut drive = Drive::start();
+    let mut child = moving(&mut drive);
+    signal(&child, "KILL");
+    drive.stands_within(WATCHDOG);
+    child.wait().unwrap();
+    assert_eq!(drive.actual().status.state(), State::Fault, "its watchdog has stopped it");
+}
+
+#[test]
+fn a_process_that_is_frozen_and_wakes() {
+    let mut drive = Drive::start();
+    let child = moving(&mut drive);
+    signal(&child, "STOP");
+    drive.stands_within(WATCHDOG);
+    let stood = drive.actual().position;
+    signal(&child, "CONT");
+    let ran = ended(child, Instant::now());
+    assert_eq!((ran.status, drive.actual().position), (Some(1), stood), "{ran:?}");
+}
+
+#[test]
+fn an_interrupt() {
+    let mut drive = Drive::start();
+    let child = moving(&mut drive);
+    signal(&child, "INT");
+    drive.stands_within(WATCHDOG);
+    let ran = ended(child, Instant::now());
+    let position = drive.actual().position.to_string();
+    ran.fails(1, &["stopped", &position]);
+    assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault");
+}

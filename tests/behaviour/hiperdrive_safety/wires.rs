@@ -1,0 +1,180 @@
+//! Wires between a host and a target that can be cut: the stream goes through here, and so do the packets, whose ports are
+//! written anew where the connection is opened.
+
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
+use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{JoinHandle, spawn};
+use std::time::Duration;
+
+/// A way of packets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    ToTarget,
+    ToHost,
+}
+
+pub(super) struct Wires {
+    place: String,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    /// Both ends of the stream.
+    streams: Mutex<Vec<TcpStream>>,
+    /// Takes what the host sends, and what the target sends.
+    sockets: [UdpSocket; 2],
+    cut: [AtomicBool; 2],
+    /// Where the host wants its packets.
+    host: AtomicU16,
+    target: u16,
+    end: AtomicBool,
+}
+
+/// Garbage on its way to both ends.
+pub(super) struct Flood {
+    end: Arc<AtomicBool>,
+    sent: Arc<AtomicU64>,
+    thread: JoinHandle<()>,
+}
+
+impl Wires {
+    /// To `host:port`.
+    pub(super) fn to(target: &str) -> Self {
+        let port = target.rsplit(':').next().unwrap().parse().unwrap();
+        let socket = || {
+            let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+            socket.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
+            socket
+        };
+        let shared = Arc::new(Shared {
+            streams: Mutex::default(),
+            sockets: [socket(), socket()],
+            cut: Default::default(),
+            host: AtomicU16::new(0),
+            target: port,
+            end: AtomicBool::new(false),
+        });
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let place = listener.local_addr().unwrap().to_string();
+        let (passing, target) = (shared.clone(), target.to_owned());
+        spawn(move || {
+            let (host, _) = listener.accept().unwrap();
+            let target = TcpStream::connect(target).unwrap();
+            passing.streams.lock().unwrap().extend([host.try_clone().unwrap(), target.try_clone().unwrap()]);
+            let (from, to, way) = (host.try_clone().unwrap(), target.try_clone().unwrap(), passing.clone());
+            spawn(move || way.pass_stream(from, to, 0x8001, 1));
+            spawn(move || passing.pass_stream(target, host, 0x8000, 0));
+        });
+        for way in [Way::ToTarget, Way::ToHost] {
+            let passing = shared.clone();
+            spawn(move || passing.pass_packets(way));
+        }
+        Wires { place, shared }
+    }
+
+    pub(super) fn place(&self) -> String {
+        self.place.clone()
+    }
+
+    pub(super) fn cut_stream(&self) {
+        for stream in self.shared.streams.lock().unwrap().iter() {
+            // One of them may have ended already.
+            let _ = stream.shutdown(Shutdown::Both);
+        }
+    }
+
+    pub(super) fn cut(&self, way: Way) {
+        self.shared.cut[way as usize].store(true, Ordering::SeqCst);
+    }
+
+    pub(super) fn mend(&self, way: Way) {
+        self.shared.cut[way as usize].store(false, Ordering::SeqCst);
+    }
+
+    /// Garbage to both ports, until it is ended.
+    pub(super) fn flood(&self) -> Flood {
+        let (end, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+        let ports = [self.shared.target, self.shared.host.load(Ordering::SeqCst)];
+        let (ends, counts) = (end.clone(), sent.clone());
+        let thread = spawn(move || {
+            let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+            let mut dice = fastrand::Rng::with_seed(1);
+            while !ends.load(Ordering::SeqCst) {
+                let packet: Vec<u8> = (0..dice.usize(0..80)).map(|_| dice.u8(..)).collect();
+                for port in ports {
+                    // A full buffer drops it.
+                    let _ = socket.send_to(&packet, ("127.0.0.1", port));
+                }
+                // Leaves something of the processor to the others.
+                if counts.fetch_add(1, Ordering::SeqCst) % 20 == 0 {
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+            }
+        });
+        Flood { end, sent, thread }
+    }
+}
+
+impl Flood {
+    /// How many there were.
+    pub(super) fn end(self) -> u64 {
+        self.end.store(true, Ordering::SeqCst);
+        self.thread.join().unwrap();
+        self.sent.load(Ordering::SeqCst)
+    }
+}
+
+impl Drop for Wires {
+    fn drop(&mut self) {
+        self.shared.end.store(true, Ordering::SeqCst);
+        self.cut_stream();
+    }
+}
+
+impl Shared {
+    /// A frame comes in one piece here. The port in an address item of this type becomes the one of a socket of ours.
+    fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
+        let mut buffer = [0; 4096];
+        while let Ok(count) = from.read(&mut buffer) {
+            if count == 0 {
+                break;
+            }
+            let bytes = &mut buffer[..count];
+            // Type and length of the item, and the family, whose high byte comes first.
+            let [low, high] = item.to_le_bytes();
+            let head = [low, high, 16, 0, 0, 2];
+            if let Some(at) = bytes.windows(6).position(|window| window == head) {
+                let port = &mut bytes[at + 6..at + 8];
+                if item == 0x8001 {
+                    self.host.store(u16::from_be_bytes([port[0], port[1]]), Ordering::SeqCst);
+                }
+                port.copy_from_slice(&self.sockets[ours].local_addr().unwrap().port().to_be_bytes());
+            }
+            if to.write_all(bytes).is_err() {
+                break;
+            }
+        }
+        let _ = to.shutdown(Shutdown::Both);
+    }
+
+    fn pass_packets(&self, way: Way) {
+        let (socket, other) = match way {
+            Way::ToTarget => (&self.sockets[0], &self.sockets[1]),
+            Way::ToHost => (&self.sockets[1], &self.sockets[0]),
+        };
+        let mut buffer = [0; 1500];
+        while !self.end.load(Ordering::SeqCst) {
+            let Ok((count, _)) = socket.recv_from(&mut buffer) else { continue };
+            let port = match way {
+                Way::ToTarget => self.target,
+                Way::ToHost => self.host.load(Ordering::SeqCst),
+            };
+            if !self.cut[way as usize].load(Ordering::SeqCst) {
+                // Nobody may be there any more.
+                let _ = other.send_to(&buffer[..count], ("127.0.0.1", port));
+            }
+        }
+    }
+}
