@@ -36,7 +36,9 @@ const VALUE: f32 = 116.0;
 const RANGE: f32 = 128.0;
 const FACTORY: f32 = 88.0;
 const KEPT: f32 = 48.0;
-const LINE: f32 = 26.0;
+/// Of a line that is read, and of one that is typed into.
+const READ: f32 = 20.0;
+const TYPED: f32 = 30.0;
 const NARROW: f32 = 600.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
@@ -85,7 +87,8 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Row], view: &mut View, a
     let narrow = ui.available_width() < NARROW;
     let id = rows.first().map(|row| row.number);
     ui.push_id(id, |ui| {
-        ui.spacing_mut().interact_size.y = 22.0;
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.spacing_mut().item_spacing.y = 0.0;
         let mut table = TableBuilder::new(ui)
             .vscroll(false)
             .column(Column::exact(NUMBER))
@@ -107,7 +110,8 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Row], view: &mut View, a
                 }
             })
             .body(|body| {
-                body.rows(LINE, rows.len(), |mut line| {
+                let heights = rows.iter().map(|row| if row.is_editable { TYPED } else { READ });
+                body.heterogeneous_rows(heights, |mut line| {
                     let Some(row) = rows.get(line.index()) else { return };
                     line.col(|ui| {
                         ui.label(skin.mono(row.number.to_string()));
