@@ -88,7 +88,7 @@ fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         }
         ui.add_space(skin.space.between);
         let allowed = unit.may_set_up();
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin"));
             if response.clicked() {
                 actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Axis(Run::Begin)));
@@ -198,12 +198,18 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
             }
         }
         let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             if primary(ui, skin, allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
         });
     });
+}
+
+/// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it.
+fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    let size = egui::vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
 /// How it ended: what was written, and whether that lasts.

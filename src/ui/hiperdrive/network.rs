@@ -94,14 +94,15 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
 
 fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
     let word = skin.say("hd_net.source");
-    entry(ui, skin, &word, |ui| {
-        let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
-        if !sources.contains(&before.source) {
-            sources.push(before.source);
-        }
-        let named = sources.into_iter().map(|own| (own, skin.words(&network::source(own))));
-        options(ui, &word, &mut form.source, named);
-    });
+    let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
+    if !sources.contains(&before.source) {
+        sources.push(before.source);
+    }
+    let named = sources.into_iter().map(|own| (own, skin.words(&network::source(own))));
+    // Below its name: beside it there is no room in a narrow column.
+    ui.label(skin.label(word.as_str()));
+    options(ui, &word, &mut form.source, named);
+    ui.add_space(skin.space.inside);
     let types = form.has_addresses();
     let [first, second] = &mut form.name_servers;
     let [first_before, second_before] = &before.name_servers;
