@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Mark, Motor};
 use encoder_studio::app::{Action, Severity, Tab, connect};
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock};
-use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord};
+use encoder_studio::protocol::hiperdrive::{
+    Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
+};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
@@ -202,6 +204,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.endless"));
+    assert!(unit(&desk).could_run_endlessly(ONE).is_ok(), "it can be switched on");
     drive(&mut desk, Motor::Expert(true));
     assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
@@ -242,4 +245,34 @@ fn locks_say_what_to_do() {
     assert!(matches!(unit(&desk).marks()[..], [Mark::NoTimeout { .. }]));
     write(&mut desk);
     assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NoTimeout]);
+}
+
+#[test]
+fn a_run_ends_at_once_where_its_panel_is_out_of_sight() {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
+    desk.until("it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    desk.act(Action::ShowTab(Tab::Biss));
+    until_standing(&desk);
+    desk.until("the window knows it", |studio| !studio.moves());
+}
+
+#[test]
+fn limits_that_somebody_else_has_set_are_read_before_anything_moves() {
+    let mut desk = read("sim:");
+    let target = unit(&desk).target.clone().unwrap();
+    let set = |number_: u16, value: i64| {
+        target.with(|station| station.write(Moment::default(), number(number_), &Value::Number(value)).unwrap());
+    };
+    set(158, -65_536);
+    set(160, 65_536);
+    assert_eq!(unit(&desk).limits(ONE), Some((-33_488_896, 33_488_896)), "as they were read");
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("they are read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.moves.is_open() && own.limits(ONE) == Some((-65_536, 65_536)) && own.session.is_ready()
+    });
+    assert!(unit(&desk).could_run_endlessly(ONE).is_err(), "they are not the factory's");
+    drive(&mut desk, Motor::Move { target: 65_537 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
 }

@@ -108,7 +108,13 @@ impl Unit {
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
             Motor::Expert(expert) => return self.moves.set_expert(expert),
-            Motor::ConfirmLimits(drive) => return self.moves.confirm_limits(drive),
+            Motor::ConfirmLimits(drive) => {
+                // Those that are shown have to be those that the drive has.
+                if !self.is_stale {
+                    self.moves.confirm_limits(drive);
+                }
+                return;
+            }
             Motor::JogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => Wish::Jog { direction, effort: self.moves.jog_effort() },
             Motor::Lead(goal) => Wish::Lead(goal),
@@ -178,6 +184,7 @@ impl Unit {
 
     /// A profile was read for a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+        self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);
         let Some(path) = self.session.save_to.take() else { return };
         let mut remarks = Vec::new();

@@ -48,13 +48,15 @@ impl Studio {
         self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.let_go());
     }
 
-    /// A jog lives only as long as its panel can be seen: another tab or device, a dialog or a question end it.
+    /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog or a question
+    /// end them.
     pub(in crate::app) fn hold_in_sight(&mut self) {
         let is_covered = self.connect.is_some() || self.question.is_some();
         let seen = self.shown.of(Tab::Hiperdrive).filter(|_| self.settings.tab == Tab::Hiperdrive && !is_covered);
         for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
             if seen != Some(unit.session.id) || unit.review.is_some() {
-                unit.moves.release();
+                // A run in speed mode has no end of its own either.
+                unit.moves.let_go();
             }
         }
     }

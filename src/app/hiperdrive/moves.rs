@@ -267,13 +267,13 @@ impl Moves {
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
     }
 
-    /// Some drive moves or is about to.
+    /// Some drive moves, is about to, or is led to where it may.
     pub fn is_moving(&self) -> bool {
         let moves = |own: &DriveView| {
             own.actual.status.state() == State::Moving
                 || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
         };
-        self.view.open && self.view.drives.iter().any(moves) || self.is_held()
+        self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
 
     /// An act is under way that has to be kept alive.

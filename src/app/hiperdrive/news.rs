@@ -76,7 +76,7 @@ impl Unit {
         self.record.begin(&opened.began);
         self.moves.begin(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
-        (self.watched, self.has_polled) = (DriveNumber::FIRST, false);
+        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, false);
         self.session.take_line(opened, services);
         self.submit(HiperdriveJob::Hello, services);
     }
@@ -253,9 +253,14 @@ impl Unit {
             HiperdriveOutput::Taken => {
                 self.moves.beat();
                 self.poll();
-                self.watch(services);
+                // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones.
+                self.is_stale = true;
+                self.submit(HiperdriveJob::Survey, services);
             }
-            HiperdriveOutput::Given => self.moves.beat(),
+            HiperdriveOutput::Given => {
+                self.moves.beat();
+                self.is_stale = false;
+            }
             HiperdriveOutput::Watched(drive) => self.watched = drive,
             // The command line asks for it.
             HiperdriveOutput::Identity(_) => {}

@@ -4,7 +4,7 @@ use super::unit::Unit;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::{Goal, Lock, Phase as Doing, Wish};
-use crate::protocol::hiperdrive::{DriveNumber, Percent, RunEnd, State, effective_torque};
+use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Percent, RunEnd, State, effective_torque};
 
 /// How it stands with what was asked of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,10 +35,12 @@ impl Unit {
     /// # Errors
     /// Why not, in words.
     pub fn can_give(&self) -> Result<(), Text> {
-        match self.session.why_not_ready() {
+        // Also while the device does not answer.
+        match self.session.line() {
             _ if !self.moves.is_open() => Err(Text::new("hd_refused.not_taken")),
-            Some(why) => Err(why),
-            None => Ok(()),
+            None => Err(Text::new("session.not_connected")),
+            Some(_) if self.session.is_busy() => Err(Text::new("session.busy")),
+            Some(_) => Ok(()),
         }
     }
 
@@ -48,6 +50,12 @@ impl Unit {
     /// Why not, in words.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_be_led()?;
+        if let Phase::Silent(why) = &self.session.phase {
+            return Err(why.clone());
+        }
+        if self.is_stale {
+            return Err(explain::hiperdrive::lock(Lock::Unread));
+        }
         if let Some(lock) = self.moves.locks(drive).first() {
             return Err(explain::hiperdrive::lock(*lock));
         }
@@ -66,6 +74,24 @@ impl Unit {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+    }
+
+    /// Whether an endless run can be switched on: limits and scaling of the drive are the factory's.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+        let is_delivered = |number: &u16| {
+            let number = ParameterNumber::of_drive(*number, drive);
+            let row = number.and_then(|number| Some((number, number.row()?)));
+            let delivered = row.and_then(|(number, row)| self.factory_value(number, row));
+            delivered.is_some()
+                && self.staged.base().zip(number).and_then(|(base, number)| base.get(number)) == delivered
+        };
+        match [154, 156, 158, 160].iter().all(is_delivered) {
+            true => Ok(()),
+            false => Err(Text::new("hd_refused.endless")),
+        }
     }
 
     fn may_be_led(&self) -> Result<(), Text> {

@@ -60,6 +60,8 @@ pub struct Unit {
     pub(super) is_remembered: bool,
     /// What was read last of each drive while nobody had control.
     readings: BTreeMap<DriveNumber, Reading>,
+    /// Limits and scaling may be others than those that were read: control was taken since.
+    pub(super) is_stale: bool,
     /// Which drive is polled.
     pub(super) watched: DriveNumber,
     /// Polling has begun by itself since the link was opened.
@@ -94,6 +96,7 @@ impl Unit {
             axes: BTreeMap::new(),
             is_remembered: false,
             readings: BTreeMap::new(),
+            is_stale: false,
             watched: DriveNumber::FIRST,
             has_polled: false,
             looks_at_errors: false,
@@ -165,7 +168,7 @@ impl Unit {
 
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
-            self.moves.release();
+            self.moves.let_go();
             self.drive = drive;
             self.record.forget();
         }
@@ -308,6 +311,7 @@ impl Unit {
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();
+        self.is_stale = false;
         if !self.drives().contains(&self.drive)
             && let Some(drive) = self.drives().first().copied()
         {
@@ -322,9 +326,12 @@ impl Unit {
     }
 
     /// Where a scale is another one than it was, nobody has looked at the limits since.
-    fn notice_scales(&mut self, now: &Image) {
+    pub(super) fn notice_scales(&mut self, now: &Image) {
         let Some(before) = self.staged.base() else { return };
-        let is_other = |drive: &DriveNumber| before.scale(*drive).is_some_and(|own| now.scale(*drive) != Some(own));
+        let is_other = |drive: &DriveNumber| {
+            let scales = before.scale(*drive).zip(now.scale(*drive));
+            scales.is_some_and(|(before, now)| before != now)
+        };
         for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
             self.moves.unconfirm(drive);
         }

@@ -26,7 +26,7 @@ impl Unit {
 
     /// Makes the plan of a change, to be looked at. What is held is let go: the review stands over it.
     pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
-        self.moves.release();
+        self.moves.let_go();
         if let Some(why) = self.session.why_not_ready() {
             services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
             return;

@@ -182,8 +182,9 @@ fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             }
         });
         paragraph(ui, skin.caption(skin.say("hd_run.words")));
-        let endless = unit.may_run_endlessly(unit.drive());
-        ui.add_enabled_ui(endless.is_ok(), |ui| {
+        let endless = unit.could_run_endlessly(unit.drive());
+        // It can always be switched off.
+        ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
             let response = ui.checkbox(&mut expert, skin.say("hd_run.expert"));
             if response.changed() {
                 actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Expert(expert))));
