@@ -36,6 +36,7 @@ mod state;
 mod support;
 mod texts;
 mod widgets_commutation;
+mod widgets_hiperdrive_setup;
 mod widgets_idle;
 mod widgets_interbus;
 mod widgets_pages;

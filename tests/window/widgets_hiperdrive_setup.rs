@@ -1,0 +1,109 @@
+//! Lamps, network and the set-up of an axis as a person uses them: clicked, typed, and said in both languages.
+
+use egui::accesskit::Role;
+use egui_kittest::Node;
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::hiperdrive::axis::Step;
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::{Action, Language, ReviewAction, Tab};
+use encoder_studio::protocol::ethernet_ip::AddressSource;
+
+use crate::screen::Screen;
+
+/// So tall that all of a page is drawn.
+const TALL: [f32; 2] = [1280.0, 2400.0];
+
+fn page(link: &str, page: &'static str) -> Screen {
+    let mut screen = Screen::opened_in(Tab::Hiperdrive, link, TALL);
+    screen.until("it is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
+    });
+    screen.click(page);
+    screen
+}
+
+impl Screen {
+    fn entry<'a>(&'a self, label: &'a str) -> Node<'a> {
+        self.harness.get_by_role_and_label(Role::TextInput, label)
+    }
+
+    /// Replaces what stands in an entry.
+    fn put(&mut self, label: &str, text: &str) {
+        self.entry(label).focus();
+        self.steps();
+        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        self.entry(label).type_text(text);
+        self.steps();
+    }
+
+    fn press(&mut self, role: Role, label: &str) {
+        self.harness.get_by_role_and_label(role, label).click();
+        self.steps();
+    }
+}
+
+#[test]
+fn lamps_are_clicked_until_they_look_like_the_real_ones() {
+    let mut screen = page("sim:", "page.diagnosis");
+    assert!(screen.shows("Exactly the requested drives are there, and well."));
+    screen.press(Role::RadioButton, "Device: Bus adapter");
+    assert!(screen.shows("The drive is well."));
+    screen.press(Role::Button, "RS485: green");
+    assert!(screen.shows("No supply.") && screen.shows("Check the control supply and its fuse."));
+    screen.press(Role::RadioButton, "Device: Hub");
+    screen.press(Role::RadioButton, "Switch S3: 3");
+    assert!(screen.shows("The drive is neither there nor requested.") && screen.shows("S3 is not at 0"));
+    screen.press(Role::Button, "NS: green");
+    screen.press(Role::Button, "NS: green, flashing");
+    screen.press(Role::Button, "NS: red, flashing");
+    assert!(screen.shows("Another device has the same address."));
+}
+
+#[test]
+fn an_address_is_typed_looked_at_and_written() {
+    let mut screen = page("sim:", "page.device");
+    assert!(screen.shows("asks a DHCP server") && !screen.is_enabled("hd_net.write"));
+    screen.press(Role::RadioButton, "Address comes from: what is stored");
+    screen.put("Address", "192.168.5.255");
+    screen.put("Mask", "255.255.255.0");
+    assert!(screen.shows("192.168.5.255 goes to all devices of the network.") && !screen.is_enabled("hd_net.write"));
+    screen.put("Address", "192.168.5.20");
+    screen.put("Gateway", "192.168.6.1");
+    assert!(screen.shows("The gateway 192.168.6.1 is outside the network 192.168.5.0/24."));
+    screen.put("Gateway", "192.168.5.1");
+    assert!(screen.shows("The device has the stored address 192.168.5.20."));
+    screen.click("hd_net.write");
+    screen.until("the plan is there", |studio| {
+        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+            && studio.hiperdrive().unwrap().session.is_ready()
+    });
+    let Stage::Ready(plan) = screen.studio().shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Review(id, ReviewAction::Write(plan)));
+    screen.until("it is written and read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready()
+            && own.network_settings().is_some_and(|own| {
+                own.source == AddressSource::Stored && own.interface.address.to_string() == "192.168.5.20"
+            })
+    });
+}
+
+#[test]
+fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
+    let mut screen = page("sim:?requested=0", "page.axis");
+    screen.check_language();
+    screen.click("hd_axis.begin");
+    assert!(!screen.is_enabled("hd_axis.next") && screen.shows("Request the drive first."));
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Request);
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        for id in ["page.axis", "page.device", "page.diagnosis"] {
+            screen.click(id);
+            screen.check_language();
+        }
+    }
+    screen.click("page.axis");
+    screen.click("hd_axis.cancel");
+    assert!(screen.shows("Nothing was written."));
+}
