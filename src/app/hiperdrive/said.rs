@@ -4,7 +4,7 @@ use super::unit::Unit;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::{Goal, Lock, Phase as Doing, Wish};
-use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Percent, RunEnd, State, effective_torque};
+use crate::protocol::hiperdrive::{DriveNumber, Percent, RunEnd, State, effective_torque};
 
 /// How it stands with what was asked of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,17 +81,8 @@ impl Unit {
     /// # Errors
     /// Why not, in words.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
-        let is_delivered = |number: &u16| {
-            let number = ParameterNumber::of_drive(*number, drive);
-            let row = number.and_then(|number| Some((number, number.row()?)));
-            let delivered = row.and_then(|(number, row)| self.factory_value(number, row));
-            delivered.is_some()
-                && self.staged.base().zip(number).and_then(|(base, number)| base.get(number)) == delivered
-        };
-        match [154, 156, 158, 160].iter().all(is_delivered) {
-            true => Ok(()),
-            false => Err(Text::new("hd_refused.endless")),
-        }
+        let could = self.moves.motion().is_some_and(|motion| motion.could_run_endlessly(drive));
+        if could { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
     }
 
     fn may_be_led(&self) -> Result<(), Text> {
