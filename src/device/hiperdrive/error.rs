@@ -317,6 +317,11 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
+    /// It is not said at the moment, or by this device: other parameters may be.
+    pub const fn is_unsaid(&self) -> bool {
+        matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
+    }
+
     /// The device has answered, and does not do it.
     pub const fn refusal(&self) -> Option<&Refusal> {
         match self {

@@ -125,10 +125,10 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
         drives.push(DriveIdentity {
             number,
             variant,
-            name: master.read_text(of(121, number)?)?,
-            article_number: master.read_text(of(122, number)?)?,
-            serial_number: master.read_text(of(123, number)?)?,
-            version: master.read_text(of(125, number)?)?,
+            name: drive_text(master, 121, number)?,
+            article_number: drive_text(master, 122, number)?,
+            serial_number: drive_text(master, 123, number)?,
+            version: drive_text(master, 125, number)?,
             requested: is_requested(master, number)?,
         });
     }
@@ -137,6 +137,14 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
     let serial_number = master.read_number(own(17)?)?.to_string();
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
+}
+
+/// What a drive says of itself; nothing where it does not say it, as one of which nothing is wanted may (`U`).
+pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
+    match master.read_text(of(base, drive)?) {
+        Err(error) if error.is_unsaid() => Ok(String::new()),
+        ended => ended,
+    }
 }
 
 /// What it says to be. What has no such parameter tells its name.
@@ -165,7 +173,7 @@ pub fn survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ParameterN
             Ok(value) => {
                 values.insert(number, value);
             }
-            Err(Error::Refused { .. } | Error::NoDrive { .. }) => {}
+            Err(error) if error.is_unsaid() => {}
             Err(error) => return Err(error),
         }
     }

@@ -16,8 +16,7 @@ use crate::bits::MaskedBytes;
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
 use crate::protocol::ethernet_ip::{
-    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
-    Request,
+    Body, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply, Request,
 };
 use crate::protocol::hiperdrive::{
     Access, DriveNumber, Kind, OutOfRange, ParameterNumber, ParameterRow, Range, Topology, Value, ValueError,
@@ -400,7 +399,6 @@ impl<'a> Master<'a> {
 
 /// What a frame with a reply says.
 fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), Trouble> {
-    debug_assert_eq!(frame.command, Command::SEND_RR_DATA);
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());

@@ -62,7 +62,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
         for base in [152, 154, 156, 158, 160, 186] {
             match master.read_number(of(base, drive)?) {
                 Ok(value) => values.push((base, value)),
-                Err(Error::Refused { .. } | Error::NoDrive { .. }) => {}
+                Err(error) if error.is_unsaid() => {}
                 Err(error) => return Err(error),
             }
         }

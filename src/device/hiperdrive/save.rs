@@ -69,8 +69,14 @@ pub fn read_state(
     let image = read_image(master, numbers, told)?;
     let mut positions = Positions::new();
     for drive in &identity.drives {
-        // Of 32 bits.
-        positions.insert(drive.number, master.read_number(of(107, drive.number)?)? as i32);
+        match master.read_number(of(107, drive.number)?) {
+            // Of 32 bits.
+            Ok(position) => {
+                positions.insert(drive.number, position as i32);
+            }
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
+        }
     }
     let state = DeviceState { identity: identity.profile(), image, positions };
     Ok((identity, state))
@@ -90,14 +96,8 @@ fn read_image(
                 image.values.insert(number, value);
             }
             // What is not there cannot be kept; texts are never.
-            Err(
-                Error::Refused { .. }
-                | Error::NoDrive { .. }
-                | Error::NoPlace { .. }
-                | Error::Unknown(_)
-                | Error::Value { .. }
-                | Error::WriteOnly { .. },
-            ) => {}
+            Err(Error::NoPlace { .. } | Error::Unknown(_) | Error::Value { .. } | Error::WriteOnly { .. }) => {}
+            Err(error) if error.is_unsaid() => {}
             Err(error) => return Err(error),
         }
     }

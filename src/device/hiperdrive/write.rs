@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use super::error::Asked;
-use super::identify::{drive_status, of, own, topology};
+use super::identify::{drive_status, drive_text, of, own, topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::profile::Consent;
@@ -83,7 +83,7 @@ pub fn confirm<'p>(
     }
     for drive in touched(plan, identity) {
         if let Some(known) = identity.drive(drive)
-            && master.read_text(of(123, drive)?)? != known.serial_number
+            && drive_text(master, 123, drive)? != known.serial_number
         {
             return changed(format!("drive {}", drive.get()));
         }
@@ -206,7 +206,7 @@ fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,
-            Err(Error::Refused { .. }) => -1,
+            Err(error) if error.is_unsaid() => -1,
             Err(error) => return Err(error),
         };
         let waited = master.now().since(begun);
