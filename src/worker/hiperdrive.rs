@@ -148,6 +148,7 @@ impl Device for Hiperdrive {
         self.let_go_of_lost(desk);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
+            self.look_at_rules(desk, drive, actual)?;
             return Ok(Reading { at: desk.clock.now(), drive, actual });
         }
         Ok(position(&mut self.master(desk), drive)?)
@@ -171,6 +172,11 @@ impl Device for Hiperdrive {
 
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check().inspect_err(|_| self.control.lose_session())
+    }
+
+    fn idle(&mut self, desk: &mut Desk) -> Option<Remark> {
+        self.let_go_of_lost(desk);
+        self.remark.take()
     }
 
     /// Drives that are in control are stopped and let go.

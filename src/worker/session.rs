@@ -65,6 +65,11 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
+    /// Nothing is to do: looks after what goes on without being asked, and tells what there is to say of it.
+    pub fn idle(&mut self) -> Option<D::Remark> {
+        self.device.idle(&mut self.desk)
+    }
+
     /// The session ends: what must not be left as it is.
     pub(super) fn leave(&mut self) {
         self.device.leave(&mut self.desk);

@@ -108,6 +108,9 @@ fn work<D: Device>(mut bench: Bench<D>) {
                 lost = true;
                 bench.outbox.send(Event::Lost(error));
             }
+            if let Some(remark) = bench.session.idle() {
+                bench.outbox.send(Event::Remark(remark));
+            }
         }
         let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
         let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);

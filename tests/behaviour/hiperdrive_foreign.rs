@@ -257,7 +257,7 @@ fn a_session_that_goes_stops_what_it_has_opened() {
     let motion = session.motion();
     comes("what the drive says", || motion.view().link.received > 3);
     drop(session);
-    assert!(!motion.is_open());
+    comes("the end", || !motion.is_open());
     let mut log = foreign.requests();
     comes("the end at the target", || {
         log.extend(foreign.requests());

@@ -169,6 +169,14 @@ pub enum Error {
         /// The word behind the status: 0100h or 0106h.
         extended: u16,
     },
+    /// The device wants to send or to hear more seldom than was asked for: too seldom to stop a drive in time.
+    #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
+    TooSlow {
+        /// The interval that was asked for, in milliseconds.
+        asked_ms: u64,
+        /// The longer of those that it gives.
+        got_ms: u64,
+    },
     /// This session has the cyclic connection.
     #[error("the cyclic connection is open")]
     InControl,

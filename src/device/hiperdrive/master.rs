@@ -5,6 +5,7 @@
 //! stream answers behind it.
 
 mod connection;
+mod refused;
 
 use std::time::Duration;
 
@@ -16,11 +17,10 @@ use crate::bits::MaskedBytes;
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
 use crate::protocol::ethernet_ip::{
-    Body, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply, Request,
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
+    Request,
 };
-use crate::protocol::hiperdrive::{
-    Access, DriveNumber, Kind, OutOfRange, ParameterNumber, ParameterRow, Range, Topology, Value, ValueError,
-};
+use crate::protocol::hiperdrive::{Access, Kind, ParameterNumber, ParameterRow, Topology, Value, ValueError};
 use crate::units::Moment;
 
 /// Behind bytes that are no frame: silence for so long, and what comes next is one again.
@@ -204,74 +204,6 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Why a parameter was refused, as far as can be asked.
-    ///
-    /// # Errors
-    /// The way.
-    fn why_refused(&mut self, asked: Asked, number: ParameterNumber, refusal: Refusal) -> Result<Error, Error> {
-        let Some(drive) = number.drive() else { return Ok(Error::Refused { asked, refusal }) };
-        if let Some(topology) = self.station.known.topology
-            && drive.get() > topology.drives()
-        {
-            return Ok(Error::NoPlace { drive, topology });
-        }
-        if self.is_zero(number, 120, drive)? {
-            return Ok(Error::NoDrive { drive });
-        }
-        // What is asked of it is refused in this state: because nobody wants anything of it?
-        if refusal.status == GeneralStatus::STATE && self.is_zero(number, 152, drive)? {
-            return Ok(Error::NotRequested { drive });
-        }
-        Ok(Error::Refused { asked, refusal })
-    }
-
-    /// Another parameter of a drive is known to be 0.
-    fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
-        let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
-            return Ok(false);
-        };
-        let request = Request::get(number.class(), 1, number.attribute());
-        match self.request(Asked::Parameter(number), &request, Repeats::Always) {
-            Ok(reply) => Ok(!reply.data.is_empty() && reply.data.iter().all(|byte| *byte == 0)),
-            Err(Error::Refused { .. }) => Ok(false),
-            Err(error) => Err(error),
-        }
-    }
-
-    fn why_not_set(&mut self, number: ParameterNumber, value: i64, refusal: Refusal) -> Result<Error, Error> {
-        let row = settable(number)?;
-        match refusal.status {
-            GeneralStatus::NOT_SETTABLE => Ok(Error::ReadOnly { number, name: row.name }),
-            GeneralStatus::INVALID_VALUE => {
-                let range = self.range_now(number, row)?;
-                Ok(match range {
-                    Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
-                    None => Error::Refused { asked: Asked::Set(number), refusal },
-                })
-            }
-            _ => self.why_refused(Asked::Set(number), number, refusal),
-        }
-    }
-
-    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4).
-    fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
-        let Some(drive) = number.drive().filter(|_| matches!(row.number, 158 | 160 | 198)) else {
-            return Ok(row.allowed());
-        };
-        let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
-            Some(number) => self.read_number(number).map(Some),
-            None => Ok(None),
-        };
-        let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
-        let (least, most) = row.kind.limits().unwrap_or_default();
-        let [Some(lower), Some(upper), Some(position)] = values else { return Ok(row.allowed()) };
-        Ok(Some(match row.number {
-            158 => Range::Within(least, position.min(upper - 1)),
-            160 => Range::Within(position.max(lower + 1), most),
-            _ => Range::Within(lower, upper),
-        }))
-    }
-
     /// Asks something of an object.
     fn request(&mut self, asked: Asked, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
         self.request_with(asked, request, &[], repeats).map(|(reply, _)| reply)
@@ -366,7 +298,7 @@ impl<'a> Master<'a> {
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.answers(&frame) {
                             self.station.late += 1;
-                        } else if answer.status == EncapsulationStatus::OK {
+                        } else if answer.status == EncapsulationStatus::OK || has_session(&answer) {
                             return Ok(Ok(answer));
                         } else {
                             return Ok(Err(Trouble::Status(answer.status)));
@@ -397,6 +329,13 @@ impl<'a> Master<'a> {
     }
 }
 
+/// A stream has one session: where the reply to the first RegisterSession was lost, the next one is refused with its number.
+fn has_session(answer: &Frame) -> bool {
+    answer.command == Command::REGISTER_SESSION
+        && answer.status == EncapsulationStatus::UNSUPPORTED
+        && answer.session != 0
+}
+
 /// What a frame with a reply says.
 fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), Trouble> {
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
@@ -420,7 +359,7 @@ fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
 
 /// Setting it does something, and what it reads afterwards is no proof of that.
 const fn does_something(row: &ParameterRow) -> bool {
-    matches!(row.number, 47 | 197 | 199)
+    matches!(row.number, 47 | 197 | 198 | 199)
 }
 
 /// The kind of a number by the length of what came.

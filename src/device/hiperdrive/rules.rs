@@ -70,6 +70,25 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
     })
 }
 
+/// Reads one of the parameters that rule a drive again, another one with each turn.
+///
+/// # Errors
+/// The way.
+pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, turn: usize) -> Result<Rules, Error> {
+    let mut read = |base| match master.read_number(of(base, drive)?) {
+        Ok(value) => Ok(Some(value)),
+        Err(error) if error.is_unsaid() => Ok(None),
+        Err(error) => Err(error),
+    };
+    // What belongs together is read together.
+    Ok(match turn % 4 {
+        0 => Rules { requested: read(152)?, ..known },
+        1 => Rules { timeout: read(186)?, ..known },
+        2 => Rules { scale: read(154)?.zip(read(156)?), ..known },
+        _ => Rules { limits: read(158)?.zip(read(160)?), ..known },
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -27,8 +27,6 @@ pub struct Station {
     pub timeout: Duration,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
-    /// This session has the cyclic connection: registers 101 to 104 are its own.
-    pub in_control: bool,
     pub(super) line: LineState,
     /// The number of the session at the device.
     pub(super) session: Option<u32>,
@@ -70,7 +68,6 @@ impl Station {
             udp: IMPLICIT_PORT,
             timeout: Self::TIMEOUT,
             recorded: false,
-            in_control: false,
             line: LineState::new(margin),
             session: None,
             next: 1,

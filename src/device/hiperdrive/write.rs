@@ -136,7 +136,10 @@ pub fn carry_out(
     let mut done = Written::default();
     for (number, op) in confirmed.plan.ops.iter().enumerate() {
         tell(number);
-        if let Err(cause) = master.check_cancel() {
+        let before = number.checked_sub(1).and_then(|before| confirmed.plan.ops.get(before));
+        // Limits in another scale lie elsewhere: nobody ends in between.
+        let together = before.is_some_and(|before| are_of_one_place(before, op));
+        if !together && let Err(cause) = master.check_cancel() {
             return Err(Box::new(Interrupted { done, unclear: None, cause }));
         }
         if let Err(cause) = master.shielded(|master| perform(master, op, &mut done)) {
@@ -145,6 +148,15 @@ pub fn carry_out(
         done.ops += 1;
     }
     Ok(done)
+}
+
+/// Both write scale or limits of the same drive.
+fn are_of_one_place(one: &Op, other: &Op) -> bool {
+    let place = |op: &Op| match op {
+        Op::Write { number, .. } if matches!(number.base(), 154 | 156 | 158 | 160) => number.drive(),
+        _ => None,
+    };
+    place(one).is_some() && place(one) == place(other)
 }
 
 fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
@@ -164,17 +176,31 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// A parameter is written and read back. A reference is rounded to 64 steps (reference 4).
+/// A parameter is written and read back. A reference is rounded to 64 steps (reference 4), and the position is there then.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set(number, wanted)?;
     let reads = master.read_number(number)?;
-    let rounded = i32::try_from(wanted).ok().filter(|_| number.base() == 198).and_then(nearest_reference);
-    if reads == wanted || rounded.is_some_and(|rounded| i64::from(rounded) == reads) {
+    let Some(drive) = number.drive().filter(|_| number.base() == REFERENCE) else {
+        return if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) };
+    };
+    let rounded = i32::try_from(wanted).ok().and_then(nearest_reference).map_or(wanted, i64::from);
+    if reads != rounded && reads != wanted {
+        return Err(Error::NotTaken { number, wanted, reads });
+    }
+    let number = of(107, drive)?;
+    let (numerator, denominator) = (master.read_number(of(154, drive)?)?, master.read_number(of(156, drive)?)?);
+    // A drive that stands re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
+    let near = (256 * numerator / denominator.max(1) / 72).max(64);
+    let position = master.read_number(number)?;
+    if (position - reads).abs() <= near {
         Ok(())
     } else {
-        Err(Error::NotTaken { number, wanted, reads })
+        Err(Error::NotTaken { number, wanted: reads, reads: position })
     }
 }
+
+/// The position that is set, by the number of drive 1.
+const REFERENCE: u16 = 198;
 
 fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written) -> Result<(), Error> {
     match service {
@@ -217,16 +243,19 @@ fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
     }
 }
 
-/// Ends the fault of a drive: 197 = 0 where it is of RS-485 alone, otherwise the drives are reset before it (reference 4).
-fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
+/// The fault of a drive needs a reset of all drives before it is acknowledged: all but one of RS-485 alone (reference 4).
+///
+/// # Errors
+/// The way.
+pub fn needs_reset(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
     let status = drive_status(master, drive)?;
     // Older ones are acknowledged already.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
-    let only_line = recent.all(|code| *code == ErrorCode::RS485);
-    if !only_line {
-        master.set(ParameterNumber::SAVE, -4)?;
-        await_idle(master, Service::Reset)?;
-    }
+    Ok(recent.any(|code| *code != ErrorCode::RS485))
+}
+
+/// Ends the fault of a drive: 197 = 0. What it needs before it is an operation of its own.
+fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = of(197, drive)?;
     master.set(number, 0)?;
     match master.read_number(number)? {

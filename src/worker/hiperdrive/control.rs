@@ -8,7 +8,7 @@ use super::commit::commit as carry_through;
 use super::{Commit, Committed, Cyclic, Hiperdrive, JobError, Motion, Remark, Told};
 use crate::device::hiperdrive::cyclic::CyclicLost;
 use crate::device::hiperdrive::dead_man::Permit;
-use crate::device::hiperdrive::{Error, Identity, Rules, Survey, identify, read_rules};
+use crate::device::hiperdrive::{Error, Identity, Rules, Survey, identify, read_rule, read_rules};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::protocol::ethernet_ip::ForwardClose;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, ParameterNumber, Value};
@@ -22,6 +22,12 @@ pub(super) struct Control {
     open: Option<Open>,
     /// What rules the drives, as it was read last.
     rules: BTreeMap<DriveNumber, Rules>,
+    /// The device and its drives, as they were when it was opened last.
+    identity: Option<Identity>,
+    /// Which of the rules is looked at next.
+    turn: usize,
+    /// Drives that were away since their rules were read.
+    away: Vec<DriveNumber>,
 }
 
 struct Open {
@@ -31,7 +37,16 @@ struct Open {
 
 impl Control {
     pub(super) fn new(port: Option<Box<dyn DatagramPort>>, clock: Arc<dyn Clock>) -> Self {
-        Control { port, clock: clock.clone(), motion: Motion::new(clock), open: None, rules: BTreeMap::new() }
+        Control {
+            port,
+            clock: clock.clone(),
+            motion: Motion::new(clock),
+            open: None,
+            rules: BTreeMap::new(),
+            identity: None,
+            turn: 0,
+            away: Vec::new(),
+        }
     }
 
     pub(super) fn motion(&self) -> Motion {
@@ -42,6 +57,11 @@ impl Control {
     pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let view = self.motion.view();
         view.drives.iter().find(|own| view.open && own.number == drive).map(|own| own.actual)
+    }
+
+    /// The device and its drives, while drives may be moved.
+    fn held(&self) -> Option<Identity> {
+        self.open.as_ref().and(self.identity.clone())
     }
 
     /// The explicit messages are gone: drives stop.
@@ -60,6 +80,14 @@ impl Control {
             };
             self.rule(&survey.identity, drive.number, Rules::by(read));
         }
+    }
+
+    /// A drive is away: what it may do when it is back nobody knows.
+    fn forget(&mut self, drive: DriveNumber) {
+        if !self.away.contains(&drive) {
+            self.away.push(drive);
+        }
+        self.motion.permit(drive, Permit::default());
     }
 
     /// Where the scale is another one than before, limits lie elsewhere: nobody has looked at them yet.
@@ -94,7 +122,7 @@ impl Hiperdrive {
         match started {
             Ok(cyclic) => {
                 self.control.open = Some(Open { cyclic, close: opened.close });
-                self.station.in_control = true;
+                self.control.identity = Some(identity);
                 Ok(())
             }
             Err(error) => {
@@ -109,7 +137,6 @@ impl Hiperdrive {
 
     /// Stops all drives and closes the cyclic connection.
     pub(super) fn give(&mut self, desk: &mut Desk) -> Result<(), Error> {
-        self.station.in_control = false;
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
         self.master(desk).forward_close(&close)
@@ -150,6 +177,32 @@ impl Hiperdrive {
             tracing::warn!("{why}");
         }
         ended
+    }
+
+    /// While drives may be moved, somebody else may change what rules them: one parameter of a drive is read again with each
+    /// look at it, and all of them once it was away.
+    ///
+    /// # Errors
+    /// The way.
+    pub(super) fn look_at_rules(&mut self, desk: &mut Desk, drive: DriveNumber, actual: Actual) -> Result<(), Error> {
+        let Some(identity) = self.control.held().filter(|identity| identity.drive(drive).is_some()) else {
+            return Ok(());
+        };
+        if !actual.status.is_present() {
+            self.control.forget(drive);
+            return Ok(());
+        }
+        let rules = match self.control.rules.get(&drive).copied().filter(|_| !self.control.away.contains(&drive)) {
+            None => read_rules(&mut self.master(desk), drive)?,
+            Some(rules) => {
+                self.control.turn = self.control.turn.wrapping_add(1);
+                let turn = self.control.turn;
+                read_rule(&mut self.master(desk), drive, rules, turn)?
+            }
+        };
+        self.control.away.retain(|away| *away != drive);
+        self.control.rule(&identity, drive, rules);
+        Ok(())
     }
 
     fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {

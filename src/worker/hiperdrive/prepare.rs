@@ -1,9 +1,11 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
 use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use crate::device::hiperdrive::write::needs_reset;
 use crate::device::hiperdrive::{Master, read_state, settings};
 use crate::profile::hiperdrive::{
-    HiperdrivePlan, Image, Restore, plan_edits, plan_network, plan_restore, plan_service, plan_set_position,
+    HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
+    plan_set_position,
 };
 use crate::protocol::hiperdrive::ParameterNumber;
 use crate::worker::commit::cycles_seen;
@@ -45,7 +47,14 @@ pub(super) fn prepare(
         }
         Change::Do(service) => {
             let (identity, state) = state(&mut master, Vec::new())?;
-            let plan = plan_service(&state.image, *service);
+            let mut plan = plan_service(&state.image, *service);
+            if let Service::Acknowledge(drive) = service
+                && needs_reset(&mut master, *drive)?
+            {
+                // It concerns all drives, and is shown as what it is.
+                plan = plan_service(&state.image, Service::Reset);
+                plan.ops.push(Op::Service(*service));
+            }
             (identity, state.image, only(plan))
         }
         Change::Network(wanted) => {

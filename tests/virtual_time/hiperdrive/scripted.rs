@@ -341,5 +341,24 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
     // A reply that is lost may be one to a connection that is open: it is not opened twice.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
-    assert_eq!((error, desk.sent().len()), (Error::NoReply { asked: Asked::Open, tries: 1 }, 2));
+    assert_eq!(error, Error::NoReply { asked: Asked::Open, tries: 1 });
+    let services: Vec<u8> = desk.sent().iter().skip(1).map(|frame| frame[40]).collect();
+    assert!(services.len() >= 2 && services[0] == 0x54 && services[1..].iter().all(|service| *service == 0x4E));
+}
+
+#[test]
+fn a_connection_that_is_too_slow_is_closed_again() {
+    // 50 ms each way where 10 were asked for: C350h.
+    let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
+    let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
+    let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
+    assert_eq!(error, Error::TooSlow { asked_ms: 10, got_ms: 50 });
+    assert_eq!(desk.sent()[2][40], 0x4E);
+    // From 35 ms on a target gives up after four intervals, before that after eight.
+    for (ms, multiplier) in [(34, 1), (35, 0)] {
+        let mut desk = Desk::with([]);
+        desk.station.interval = Duration::from_millis(ms);
+        desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
+        assert_eq!(desk.sent()[1][40 + 24], multiplier, "{ms} ms");
+    }
 }

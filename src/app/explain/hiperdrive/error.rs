@@ -29,6 +29,9 @@ pub fn device(error: &Error) -> Text {
             .with("status", refusal)
             .with_text("remedy", remedy(refusal)),
         Error::OtherMaster { extended } => Text::new("hd_said.other_master").with("code", format!("0x{extended:04X}")),
+        Error::TooSlow { asked_ms, got_ms } => {
+            Text::new("hd_said.too_slow").with("asked", asked_ms).with("got", got_ms)
+        }
         Error::InControl => Text::new("hd_said.in_control"),
         Error::NoCyclic => Text::new("hd_said.no_cyclic"),
         Error::Unknown(number) => Text::new("hd_said.unknown").with("number", number),

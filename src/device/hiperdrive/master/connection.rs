@@ -40,8 +40,14 @@ pub struct Opened {
 
 /// Our name in the list of makers: none that is given away (reference 9).
 const VENDOR: u16 = 0x1234;
-/// Eight intervals: a host that is late once loses nothing.
+/// Eight intervals: a host that is late once loses nothing. Of long ones four are enough, so that drives stop soon.
 const TIMEOUT: u8 = 1;
+const LONG_TIMEOUT: u8 = 0;
+/// From here on intervals are long.
+const LONG: Duration = Duration::from_millis(35);
+/// What a device makes of an interval may be this many times as long, and no longer than what may be asked for.
+const SLOWER: u32 = 2;
+const LONGEST: Duration = Duration::from_millis(100);
 
 /// What the device may not take of a request.
 const CONNECTION_IN_USE: u16 = 0x0100;
@@ -98,6 +104,13 @@ impl Master<'_> {
         }
     }
 
+    /// What may be open, and cannot be used, is closed; why it cannot be used is what counts.
+    fn close_blindly(&mut self, close: &ForwardClose) {
+        if let Err(why) = self.shielded(|master| master.forward_close(close)) {
+            tracing::warn!("{why}");
+        }
+    }
+
     fn open_so(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<Opened, Error> {
         self.station.connections = self.station.connections.wrapping_add(1);
         let serial = self.station.connections;
@@ -111,13 +124,14 @@ impl Master<'_> {
         let to_target = parameters(NetworkType::PointToPoint, RealTimeFormat::Header).ok_or(Error::NoCyclic)?;
         let to_originator = parameters(kind, RealTimeFormat::Modeless).ok_or(Error::NoCyclic)?;
         let interval = self.station.interval.as_micros() as u32;
+        let timeout = if self.station.interval < LONG { TIMEOUT } else { LONG_TIMEOUT };
         let [configuration, to, from] = ASSEMBLIES;
         let open = ForwardOpen {
             timeout: RequestTimeout::TWO_SECONDS,
             to_target_id: 0,
             to_originator_id: self.station.originator.rotate_left(16) ^ u32::from(serial),
             owner,
-            connection_timeout: ConnectionTimeout::new(TIMEOUT).ok_or(Error::NoCyclic)?,
+            connection_timeout: ConnectionTimeout::new(timeout).ok_or(Error::NoCyclic)?,
             to_target_interval_us: interval,
             to_target,
             to_originator_interval_us: interval,
@@ -126,12 +140,26 @@ impl Master<'_> {
             path: Path::assemblies(configuration, to, from),
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
-        // Opened twice it would be refused as in use: it is sent once.
-        let (reply, items) = self.request_with(Asked::Open, &open.request(), &[ours], Repeats::Never)?;
-        let opened = ForwardOpened::parse(&reply.data);
-        let opened = opened.map_err(|cause| Error::Damaged { asked: Asked::Open, tries: 1, cause: cause.into() })?;
+        let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
+        // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
+        let asked = self.request_with(Asked::Open, &open.request(), &[ours], Repeats::Never);
+        let opened = asked.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
+            Ok(opened) => Ok((opened, items)),
+            Err(cause) => Err(Error::Damaged { asked: Asked::Open, tries: 1, cause: cause.into() }),
+        });
+        if let Err(Error::NoReply { .. } | Error::Damaged { .. }) = &opened {
+            self.close_blindly(&close);
+        }
+        let (opened, items) = opened?;
         let micros = |us: u32| Duration::from_micros(us.into());
         let to_target_interval = micros(opened.to_target_interval_us);
+        let slowest = to_target_interval.max(micros(opened.to_originator_interval_us));
+        if slowest > LONGEST.min(self.station.interval * SLOWER) {
+            self.close_blindly(&close);
+            let milliseconds = |time: Duration| time.as_millis() as u64;
+            let (asked_ms, got_ms) = (milliseconds(self.station.interval), milliseconds(slowest));
+            return Err(Error::TooSlow { asked_ms, got_ms });
+        }
         Ok(Opened {
             to_target_id: opened.to_target_id,
             to_originator_id: opened.to_originator_id,
@@ -141,7 +169,7 @@ impl Master<'_> {
             layout,
             port: items.socket_to_target().map_or(self.station.udp, |address| address.port),
             group: items.socket_to_originator().and_then(group),
-            close: ForwardClose { timeout: open.timeout, owner, path: open.path },
+            close,
         })
     }
 }
