@@ -16,7 +16,10 @@ pub(super) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     let mut text = Lines::default();
     for line in lines {
         let (step, verdict) = (line.step.terminal(), verdict(line.verdict).terminal());
-        let words = format!("{verdict:9}  {}", findings(line).join("; "));
+        let found = findings(line);
+        // A sentence ends with the line, and not in the middle of it.
+        let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
+        let words = format!("{verdict:9}  {}", found.join("; "));
         text.add(&step, words.trim_end());
         list.push(json!({"step": step, "verdict": verdict, "findings": findings(line)}));
     }

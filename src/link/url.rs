@@ -91,6 +91,14 @@ pub enum UrlError {
         /// What is missing.
         what: &'static str,
     },
+    /// Behind the host stands what is no port.
+    #[error("{scheme}: {port} is no port: those are numbers from 1 to 65535")]
+    Port {
+        /// The word before the colon.
+        scheme: &'static str,
+        /// What stands there.
+        port: String,
+    },
     /// A parameter that is not of the form name=value.
     #[error("{0:?} is not of the form name=value")]
     Parameter(String),
@@ -169,7 +177,14 @@ impl LinkUrl {
         let is_there = match self.wire() {
             Wire::Inside => true,
             Wire::Port(name) | Wire::File(name) => !name.is_empty(),
-            Wire::Host(host) => has_host_and_port(host),
+            Wire::Host(host) => match host.rsplit_once(':') {
+                Some((host, port)) if !host.is_empty() && !port.is_empty() => {
+                    let is_port = port.parse::<u16>().is_ok_and(|port| port != 0);
+                    let (scheme, port) = (self.scheme.word(), port.to_owned());
+                    return if is_port { Ok(()) } else { Err(UrlError::Port { scheme, port }) };
+                }
+                _ => false,
+            },
         };
         let what = match self.scheme {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -191,10 +206,6 @@ const ENIP_PORT: &str = ":44818";
 /// A host alone, which may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
-}
-
-fn has_host_and_port(target: &str) -> bool {
-    target.rsplit_once(':').is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
 }
 
 impl fmt::Display for LinkUrl {
@@ -309,7 +320,11 @@ mod tests {
             ),
             ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
             ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
-            ("tcp:host:99999", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
+            ("tcp:host:99999", "tcp: 99999 is no port: those are numbers from 1 to 65535"),
+            ("tcp:host:0", "tcp: 0 is no port: those are numbers from 1 to 65535"),
+            ("tcp:host:", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
+            ("enip:127.0.0.1:99999", "enip: 99999 is no port: those are numbers from 1 to 65535"),
+            ("enip:", "enip: needs a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818"),
             ("replay:", "replay: needs a file, as in replay:capture.trace"),
             (
                 "bridge:",
@@ -320,7 +335,7 @@ mod tests {
                 "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
             ),
             ("modbus:", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
-            ("modbus:plc:many", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
+            ("modbus:plc:many", "modbus: many is no port: those are numbers from 1 to 65535"),
             ("serial:x?baud", "\"baud\" is not of the form name=value"),
             ("serial:x?baud=1&baud=2", "baud stands twice"),
         ];

@@ -60,7 +60,16 @@ fn places_without_a_drive_are_named() {
         bench.run(&[words, &["--link", hub, "--json"]].concat()).fails(1, &["2"]);
     }
     bench.run(&["position", "hiperdrive", "--drive", "5", "--link", hub]).fails(1, &["5", "4"]);
-    bench.run(&["position", "hiperdrive", "--drive", "2", "--link", "sim:"]).fails(1, &["2"]);
+    for words in [
+        &["position", "hiperdrive", "--drive", "2"][..],
+        &["move", "hiperdrive", "0", "--drive", "2", "--yes"],
+        &["read", "hiperdrive", "158", "--drive", "2"],
+        &["write", "hiperdrive", "158", "0", "--drive", "2", "--yes"],
+        &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"],
+        &["do", "hiperdrive", "set-position", "0", "--drive", "2", "--yes"],
+    ] {
+        bench.run(&[words, &["--link", "sim:"]].concat()).fails(1, &["This device has one drive, and no drive 2"]);
+    }
 }
 
 #[test]
@@ -89,6 +98,7 @@ fn options_and_actions_of_others_are_refused() {
     bench.run(&["identify", "hiperdrive"]).fails(2, &["--link"]);
     bench.run(&["identify", "hiperdrive", "--link", "serial:/dev/null"]).fails(2, &["enip:"]);
     bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1?rpi=1"]).fails(2, &["5 to 100"]);
+    bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:99999"]).fails(2, &["99999 is no port"]);
     bench.run(&["identify", "hiperdrive", "--link", "sim:?hub=3"]).fails(2, &["hub"]);
 }
 

@@ -186,3 +186,22 @@ fn what_a_change_of_scale_does_to_limits_is_said() {
     assert_eq!(ran.status, Some(0), "{ran:?}");
     ran.says(&["511", "83722.24"]);
 }
+
+#[test]
+fn a_number_that_does_something_is_named() {
+    let bench = Bench::new();
+    for (code, name) in [("-1", "47 = −1"), ("-2", "47 = −2"), ("-3", "47 = −3"), ("-4", "47 = −4")] {
+        let ran = bench.run(&["write", "hiperdrive", "47", code, "--yes", "--link", "sim:"]);
+        assert!(ran.status == Some(0) && ran.err.contains(name) && ran.out.contains(name), "{ran:?}");
+        assert_eq!(ran.err.contains("DHCP, and where no server"), code == "-3", "{ran:?}");
+    }
+    let ran = bench.run(&["do", "hiperdrive", "factory", "--all", "--yes", "--link", "sim:"]);
+    assert!(ran.err.contains("lost at the next power-up"), "{ran:?}");
+}
+
+#[test]
+fn a_number_that_is_no_parameter_is_told_where_it_stands() {
+    let bench = Bench::new();
+    let file = bench.write("slip.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 999: 7})"#);
+    bench.run(&["restore", &file, "--yes", "--link", "sim:"]).fails(1, &["parameters.999"]);
+}

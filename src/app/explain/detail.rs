@@ -150,6 +150,7 @@ pub fn url(error: &UrlError) -> Text {
         UrlError::Target { scheme, what } => {
             Text::new("detail.needs").with("scheme", scheme).with_text("what", phrase(what))
         }
+        UrlError::Port { scheme, port } => Text::new("detail.no_port").with("scheme", scheme).with("port", port),
         UrlError::Value { name, value, allowed } => {
             Text::new("detail.parameter").with("name", name).with("value", value).with_text("allowed", phrase(allowed))
         }

@@ -1,6 +1,6 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
-use super::plan::{commit, operations, prepare};
+use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
 use crate::app::{Text, explain};
 use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
@@ -11,7 +11,7 @@ use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
 use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
-use crate::profile::hiperdrive::{Op, Service};
+use crate::profile::hiperdrive::Service;
 use crate::protocol::hiperdrive::KIND;
 use crate::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput};
 
@@ -53,23 +53,12 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
-    let said: String = prepared.plan.ops.iter().flat_map(lines_of).map(|line| line + "\n").collect();
+    let said = said(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     if let (Action::Factory, false) = (act.action, act.all) {
         output.remark(&Text::new("hd_cli.not_saved").terminal());
     }
     show_done(output, &action_name(act.action), &operations, &spent, &[], &said)
-}
-
-/// What an operation has made of what.
-fn lines_of(op: &Op) -> Vec<String> {
-    let words = explain::hiperdrive::op(op);
-    let item = words.item.terminal();
-    words
-        .changes
-        .iter()
-        .map(|change| format!("{item}: {} → {}", change.old.terminal(), change.new.terminal()))
-        .collect()
 }
 
 fn set_position(act: &Do, text: &str) -> Result<Change> {

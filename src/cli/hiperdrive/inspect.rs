@@ -10,7 +10,8 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Status};
-use crate::protocol::hiperdrive::{ErrorCode, KIND, State, StatusBit, Value};
+use crate::profile::hiperdrive::Item;
+use crate::protocol::hiperdrive::{ErrorCode, KIND, State, StatusBit, StatusWord, Value, Variant};
 use crate::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput};
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
@@ -74,9 +75,8 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
         other => return Err(unexpected(&other)),
     };
     let said: Vec<Said> = status.drives.iter().flat_map(said).collect();
-    let list =
-        |is_error: bool| said.iter().filter(|own| own.is_error == is_error).map(Said::json).collect::<Vec<Json>>();
-    let (errors, warnings) = (list(true), list(false));
+    let list = |weight: Weight| said.iter().filter(|own| own.weight == weight).map(Said::json).collect::<Vec<Json>>();
+    let (errors, warnings, earlier) = (list(Weight::Error), list(Weight::Warning), list(Weight::Earlier));
     let drives: Vec<Json> = status
         .drives
         .iter()
@@ -96,6 +96,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
         "ok": errors.is_empty(),
         "errors": errors,
         "warnings": warnings,
+        "earlier": earlier,
         "drives": drives,
         "supply_v": volts(&status),
         "temperature_c": status.temperature,
@@ -104,12 +105,21 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
+/// What something that is said comes to.
+#[derive(Clone, Copy, PartialEq)]
+enum Weight {
+    Error,
+    Warning,
+    /// It was once, and is in the buffer alone.
+    Earlier,
+}
+
 /// Something that a drive says of itself.
 struct Said {
     drive: u8,
     code: u16,
     text: String,
-    is_error: bool,
+    weight: Weight,
 }
 
 impl Said {
@@ -119,31 +129,30 @@ impl Said {
 }
 
 /// What a drive reports. As many of its newest errors as it counts since the acknowledgement are errors, and at least one in a
-/// fault; the rest are of before, as the buffer has them also after power-up (reference 4), and are warnings. So is a drive that
-/// stands outside its limits, and one whose communication says something.
+/// fault; the rest are of before, as the buffer has them also after power-up (reference 4), and say nothing of now. A drive that
+/// stands outside its limits is a warning, and so is one whose communication says something.
 fn said(drive: &DriveStatus) -> Vec<Said> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));
     let error = |(at, code): (usize, &ErrorCode)| {
-        let is_error = at < since;
-        let before = if is_error { "" } else { " (of before the acknowledgement)" };
-        Said { drive: number, code: code.code(), text: format!("{}{before}", error_text(*code)), is_error }
+        let weight = if at < since { Weight::Error } else { Weight::Earlier };
+        Said { drive: number, code: code.code(), text: error_text(*code), weight }
     };
     let mut said: Vec<Said> = drive.buffer.iter().enumerate().map(error).collect();
     if is_fault && drive.buffer.is_empty() {
         let text = "the drive is in a fault and names no error".to_owned();
-        said.push(Said { drive: number, code: 0, text, is_error: true });
+        said.push(Said { drive: number, code: 0, text, weight: Weight::Error });
     }
     if drive.status.has(StatusBit::PositionLimit) {
         let text = "the drive stands outside its limits (158, 160)".to_owned();
-        said.push(Said { drive: number, code: drive.status.word(), text, is_error: false });
+        said.push(Said { drive: number, code: drive.status.word(), text, weight: Weight::Warning });
     }
     // 118: 0 is well, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
-        said.push(Said { drive: number, code: communication, text, is_error: false });
+        said.push(Said { drive: number, code: communication, text, weight: Weight::Warning });
     }
     said
 }
@@ -173,14 +182,18 @@ fn volts(status: &Status) -> f64 {
 
 fn status_text(status: &Status, said: &[Said]) -> String {
     let mut lines = Lines::default();
-    for (label, is_error) in [("error", true), ("warning", false)] {
-        let own: Vec<&Said> = said.iter().filter(|own| own.is_error == is_error).collect();
-        for one in &own {
-            lines.add(label, format!("drive {}: 0x{:04X} {}", one.drive, one.code, one.text));
+    let of = |weight: Weight| said.iter().filter(move |own| own.weight == weight);
+    let words = |own: &Said| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
+    for (label, weight) in [("error", Weight::Error), ("warning", Weight::Warning)] {
+        for own in of(weight) {
+            lines.add(label, words(own));
         }
-        if own.is_empty() {
+        if of(weight).next().is_none() {
             lines.add(format!("{label}s"), "none");
         }
+    }
+    for own in of(Weight::Earlier) {
+        lines.add("note", format!("{} (in the error buffer from before, not present now)", words(own)));
     }
     lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));
     for drive in &status.drives {
@@ -192,22 +205,42 @@ fn status_text(status: &Status, said: &[Said]) -> String {
     lines.text()
 }
 
+/// A number of a parameter for a person: words in hexadecimal and with their meaning, tenths of something as such and whole.
+fn number_text(item: Item, number: i64) -> String {
+    let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
+    let word = u16::try_from(number).ok();
+    match (base, word, unit.strip_prefix("0.1 ")) {
+        (105, Some(word), _) => {
+            let state = explain::hiperdrive::state(StatusWord::new(word).state());
+            format!("0x{word:04X} ({})", state.terminal())
+        }
+        (108..=115, Some(0), _) => "0x0000 (no error)".to_owned(),
+        (108..=115, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
+        (101 | 116..=118, Some(word), _) => format!("0x{word:04X}"),
+        (120, Some(word), _) => {
+            format!("{number} ({})", explain::hiperdrive::variant(Variant::new(word)).terminal())
+        }
+        (186, Some(255), _) => "255 (no time-out)".to_owned(),
+        // Of 32 bits.
+        (.., Some(whole)) => format!("{number} × {unit} = {:.1} {whole}", number as f64 / 10.0),
+        (.., None) if unit.is_empty() => number.to_string(),
+        (.., None) => format!("{number} {unit}"),
+    }
+}
+
 pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     let item = item(&read.item, &read.of)?;
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);
     let (own, text) = match value {
-        Value::Number(number) if unit.is_empty() => (json!(number), format!("{number}\n")),
-        // Of a fraction of something.
-        Value::Number(number) if unit.starts_with("0.") => (json!(number), format!("{number} × {unit}\n")),
-        Value::Number(number) => (json!(number), format!("{number} {unit}\n")),
-        Value::Text(text) => (json!(text), format!("{text}\n")),
+        Value::Number(number) => (json!(number), number_text(item, number)),
+        Value::Text(text) => (json!(text), text),
     };
     let mut json = json!({"item": item.to_string(), "value": own, "name": item.name()});
     if let (false, Some(keys)) = (unit.is_empty(), json.as_object_mut()) {
         keys.insert("unit".to_owned(), json!(unit));
     }
-    output.show(&json, &text)?;
+    output.show(&json, &format!("{text}\n"))?;
     Ok(Done::Well)
 }

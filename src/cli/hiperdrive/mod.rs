@@ -44,9 +44,9 @@ pub(super) const COMMANDS: Kind = Kind {
 
 /// The parameter that a user names, of the drive that is named beside it.
 fn item(text: &str, of: &OfDrive) -> Result<Item> {
-    let item = text.parse::<Item>().and_then(|item| match (of.drive, text.parse::<u16>()) {
-        (Some(drive), Ok(number)) => Item::of(number, Some(drive)),
-        (Some(drive), Err(_)) if item.0.drive().map(|own| own.get()) != Some(drive) => {
+    let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
+        (Some(drive), Some(number)) => Item::of(number, Some(drive)),
+        (Some(drive), None) if item.0.drive().map(|own| own.get()) != Some(drive) => {
             Err(ItemError::NoDrive { number: item.0.base(), drive })
         }
         _ => Ok(item),

@@ -88,7 +88,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
 
 /// What the drive may do, and its scale: by its parameters as they are now.
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
-    let variant = identity.drive(drive).ok_or_else(|| refused(Refusal::Absent))?.variant;
+    let variant = identity.named(drive).map_err(|error| failed(&explain::hiperdrive::device(&error)))?.variant;
     let mut values = Vec::new();
     for base in [152, 154, 156, 158, 160, 186] {
         let Some(number) = ParameterNumber::of_drive(base, drive) else { continue };

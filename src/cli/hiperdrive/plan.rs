@@ -11,7 +11,7 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::profiles::{Shown, Spent};
 use crate::cli::runner::unexpected;
 use crate::device::hiperdrive::write::Written;
-use crate::profile::hiperdrive::{HiperdrivePlan, Op, warnings};
+use crate::profile::hiperdrive::{HiperdrivePlan, Op, Service, warnings};
 use crate::profile::{Consent, Operation as _};
 use crate::worker::hiperdrive::{Change, Commit, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 
@@ -32,6 +32,9 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     }
     for warning in warnings(&prepared.plan) {
         output.remark(&explain::hiperdrive::warning(&warning).terminal());
+    }
+    if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
+        output.remark(&Text::new("hd_cli.address_lost").terminal());
     }
     Ok(prepared)
 }
@@ -79,6 +82,18 @@ pub(super) fn shown(prepared: &Prepared) -> Shown {
     }
     lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen})"));
     Shown { operations: operations(plan), text: lines.text(), write_cycles }
+}
+
+/// What operations have made of what, a line each.
+pub(super) fn said(plan: &HiperdrivePlan) -> String {
+    let mut text = String::new();
+    for words in plan.ops.iter().map(explain::hiperdrive::op) {
+        for change in &words.changes {
+            let (item, old, new) = (words.item.terminal(), change.old.terminal(), change.new.terminal());
+            text.push_str(&format!("{item}: {old} → {new}\n"));
+        }
+    }
+    text
 }
 
 /// The operations as JSON.

@@ -1,14 +1,14 @@
 //! `write`: one parameter.
 
 use super::item;
-use super::plan::{commit, operations, prepare};
+use super::plan::{commit, operations, prepare, said};
 use super::run::Runner;
 use crate::app::{Text, explain};
 use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_changed;
+use crate::cli::profiles::show_done;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::profile::hiperdrive::{Image, Item, PlanError, Service};
@@ -19,11 +19,15 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = item(&write.item, &write.of)?;
     let change = change(item, &write.value)?;
     require_consent(&write.consent)?;
+    // A number says little of what it does.
+    if let Change::Do(_) = change {
+        output.remark(&explain::hiperdrive::change(&change).terminal());
+    }
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
-    let operations = operations(&prepared.plan);
+    let (operations, said) = (operations(&prepared.plan), said(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
-    show_changed(output, &item.to_string(), &operations, &spent)
+    show_done(output, &item.to_string(), &operations, &spent, &[], &said)
 }
 
 /// What writing a value comes to. What no device takes is refused before anything is opened.

@@ -106,6 +106,17 @@ impl Identity {
     pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
         self.drives.iter().find(|drive| drive.number == number)
     }
+
+    /// A drive that somebody has named.
+    ///
+    /// # Errors
+    /// [`Error::NoPlace`], [`Error::NoDrive`].
+    pub fn named(&self, drive: DriveNumber) -> Result<&DriveIdentity, Error> {
+        let topology = self.topology;
+        let is_place = drive.get() <= topology.drives();
+        let missing = if is_place { Error::NoDrive { drive } } else { Error::NoPlace { drive, topology } };
+        self.drive(drive).ok_or(missing)
+    }
 }
 
 /// Reads who is there.

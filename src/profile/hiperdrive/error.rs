@@ -2,7 +2,7 @@
 
 use super::Item;
 use crate::protocol::ethernet_ip::AddressError;
-use crate::protocol::hiperdrive::{DriveNumber, OutOfRange};
+use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, Topology, Variant};
 
 /// Why something cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,6 +24,31 @@ pub enum PlanError {
         profile: String,
         /// In the drive.
         device: String,
+    },
+    /// The profile was read from another kind of device.
+    #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
+    OtherKind {
+        /// In the profile.
+        profile: Topology,
+        /// What the device is.
+        device: Topology,
+    },
+    /// At a place there is a drive of another variant than the profile's.
+    #[error(
+        "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
+        drive.get(),
+        profile.number(),
+        profile.row().map_or("in no table", |row| row.name),
+        device.number(),
+        device.row().map_or("in no table", |row| row.name)
+    )]
+    OtherVariant {
+        /// Which place.
+        drive: DriveNumber,
+        /// In the profile.
+        profile: Variant,
+        /// What the drive is.
+        device: Variant,
     },
     /// A number beyond what a parameter may be.
     #[error(transparent)]

@@ -75,10 +75,19 @@ impl FromStr for Item {
             Some((number, drive)) => (number, Some(drive.parse().map_err(|_| unknown())?)),
             None => (text, None),
         };
-        // A sign in front is no part of a number here.
-        let digits = number.bytes().all(|byte| byte.is_ascii_digit());
-        let number = number.parse().ok().filter(|_| digits).ok_or_else(unknown)?;
-        Item::of(number, drive)
+        Item::of(Item::number(number).ok_or_else(unknown)?, drive)
+    }
+}
+
+impl Item {
+    /// A parameter's number as it is typed: decimal, or hexadecimal with `0x`; a sign in front is no part of it.
+    pub fn number(text: &str) -> Option<u16> {
+        let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+            Some(digits) => (digits, 16),
+            None => (text, 10),
+        };
+        let is_plain = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        u16::from_str_radix(digits, radix).ok().filter(|_| is_plain)
     }
 }
 
@@ -92,6 +101,8 @@ mod tests {
             ("47", 47, "47"),
             ("158", 158, "158"),
             ("158 drive 1", 158, "158"),
+            ("0x9E", 158, "158"),
+            ("0X9e drive 2", 258, "158 drive 2"),
             ("158 drive 2", 258, "158 drive 2"),
             ("258", 258, "158 drive 2"),
             ("258 drive 2", 258, "158 drive 2"),
@@ -107,6 +118,9 @@ mod tests {
         for (text, why) in [
             ("limit", "\"limit\" is no parameter"),
             ("-158", "\"-158\" is no parameter"),
+            ("0x", "\"0x\" is no parameter"),
+            ("0x-9E", "\"0x-9E\" is no parameter"),
+            ("9E", "\"9E\" is no parameter"),
             ("+158", "\"+158\" is no parameter"),
             ("", "\"\" is no parameter"),
             ("158 drive", "\"158 drive\" is no parameter"),

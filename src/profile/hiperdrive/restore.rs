@@ -9,7 +9,8 @@ use crate::protocol::hiperdrive::DriveNumber;
 /// What a restore may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
-    /// The profile may go onto a device with another serial number, or with drives that have one.
+    /// The profile may go onto a device of another kind or with another serial number, or with such drives: onto the places
+    /// that both have.
     pub allow_other_device: bool,
     /// What a person has marked as belonging to the mounting may go onto another device. The reference (198) never does.
     pub with_mounting: bool,
@@ -68,18 +69,28 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left })
 }
 
-/// Refuses a device, or drives of it, that the profile was not read from. What has no serial number in the profile is of no
-/// device, so that it is refused by none; so is a place at which there is no drive.
+/// Refuses a device, or drives of it, that the profile was not read from, and those of another kind. What the profile does not
+/// say of its device fits any; so does a place at which there is no drive.
 ///
 /// # Errors
-/// [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
+/// [`PlanError::OtherKind`], [`PlanError::OtherDevice`], [`PlanError::OtherVariant`], [`PlanError::OtherDrive`].
 pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    if let (Some(profile), Some(device)) = (profile.identity.topology, device.topology)
+        && profile != device
+    {
+        return Err(PlanError::OtherKind { profile, device });
+    }
     let (of_profile, of_device) = (&profile.identity.serial_number, &device.serial_number);
     if !of_profile.is_empty() && of_profile != of_device {
         return Err(PlanError::OtherDevice { profile: of_profile.clone(), device: of_device.clone() });
     }
     for own in &profile.identity.drives {
         let Some(there) = drive_at(device, own.number) else { continue };
+        if let (Some(profile), Some(device)) = (own.variant, there.variant)
+            && profile != device
+        {
+            return Err(PlanError::OtherVariant { drive: own.number, profile, device });
+        }
         if !own.serial_number.is_empty() && own.serial_number != there.serial_number {
             let (profile, device) = (own.serial_number.clone(), there.serial_number.clone());
             return Err(PlanError::OtherDrive { drive: own.number, profile, device });

@@ -186,7 +186,8 @@ fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
     Ok(MountingMark { item, meaning, unknown: entries.rest() })
 }
 
-/// Parameters of the device, or of a drive by the numbers of drive 1. What is no parameter is kept as it is.
+/// Parameters of the device, or of a drive by the numbers of drive 1. A number that is none of theirs is a slip; a name is an
+/// entry that this program does not know, and kept as it is.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
@@ -200,6 +201,10 @@ fn read_parameters(
             Some(drive) => ParameterNumber::of_drive(own, drive),
         });
         let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
+            if let ron::Value::Number(own) = &name {
+                let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
+                return Err(ProfileError::Value { path, what: no_parameter(own, drive) });
+            }
             unknown.0.entry(drive).or_default().push((name, value));
             continue;
         };
@@ -215,6 +220,20 @@ fn read_parameters(
         }
     }
     Ok(())
+}
+
+/// Why a number stands for no parameter where it stands.
+fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> String {
+    let number = number.into_f64();
+    match drive {
+        None => format!("there is no parameter {number}"),
+        Some(drive) => {
+            let place = drive.get();
+            format!(
+                "there is no parameter {number} of a drive; those of drive {place} stand here by the numbers of drive 1, 100 to 199"
+            )
+        }
+    }
 }
 
 #[cfg(test)]

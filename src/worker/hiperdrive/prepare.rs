@@ -2,7 +2,7 @@
 
 use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
 use crate::device::hiperdrive::write::needs_reset;
-use crate::device::hiperdrive::{Master, read_state, settings};
+use crate::device::hiperdrive::{Error, Identity, Master, read_state, settings};
 use crate::profile::hiperdrive::{
     HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
     plan_set_position,
@@ -23,7 +23,11 @@ pub(super) fn prepare(
         tell(Tell::Progress(Progress { done, total, what: Doing::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
-    let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| read_state(master, numbers, told);
+    let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {
+        let (identity, state) = read_state(master, numbers, told)?;
+        are_there(&identity, change)?;
+        Ok::<_, Error>((identity, state))
+    };
     let (identity, image, plan) = match change {
         Change::Restore { profile, options } => {
             let (identity, state) = state(&mut master, Vec::new())?;
@@ -68,6 +72,16 @@ pub(super) fn prepare(
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
     let Restore { plan, unchanged, missing, mounting_left } = plan;
     Ok(Prepared { kind: change.kind(), plan, identity, image, cycles_seen, unchanged, missing, mounting_left })
+}
+
+/// That there are the drives which a person has named. A profile may have more of them.
+fn are_there(identity: &Identity, change: &Change) -> Result<(), Error> {
+    let named = match change {
+        Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),
+        Change::SetPosition { drive, .. } | Change::Do(Service::Acknowledge(drive)) => vec![*drive],
+        Change::Restore { .. } | Change::Do(_) | Change::Network(_) => Vec::new(),
+    };
+    named.into_iter().try_for_each(|drive| identity.named(drive).map(|_| ()))
 }
 
 fn only(plan: HiperdrivePlan) -> Restore {

@@ -52,7 +52,7 @@ fn finding(finding: &Finding) -> Text {
             .with("serial", serial_number),
         Finding::NoDrives => Text::new("hd_check.no_drives"),
         Finding::Requested => Text::new("hd_check.requested"),
-        Finding::NotRequested => Text::new("hd_lock.not_requested"),
+        Finding::NotRequested => Text::new("hd_check.not_requested"),
         Finding::LookAtS3 => Text::new("hd_check.look_at_s3"),
         Finding::LineGood => Text::new("hd_check.line_good"),
         Finding::LineWord(0xFFFF) => Text::new("hd_check.line_none"),

@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::device::hiperdrive::{Asked, Damage, Error, Refusal};
 use crate::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
-use crate::protocol::hiperdrive::{OutOfRange, ParameterNumber, Range};
+use crate::protocol::hiperdrive::{OutOfRange, ParameterNumber, Range, Topology};
 
 /// What a device did not do.
 pub fn device(error: &Error) -> Text {
@@ -36,6 +36,9 @@ pub fn device(error: &Error) -> Text {
         Error::NoCyclic => Text::new("hd_said.no_cyclic"),
         Error::Unknown(number) => Text::new("hd_said.unknown").with("number", number),
         Error::NoNumber(number) => Text::new("hd_said.unknown").with("number", number),
+        Error::NoPlace { drive, topology: Topology::Adapter } => {
+            Text::new("hd_said.one_drive").with("drive", drive.get())
+        }
         Error::NoPlace { drive, topology } => {
             Text::new("hd_said.no_place").with("drive", drive.get()).with("places", topology.drives())
         }

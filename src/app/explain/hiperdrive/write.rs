@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::check::{source, switch};
 use super::error::{device, out_of_range};
-use super::names::parameter;
+use super::names::{parameter, variant};
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::hiperdrive::network::refused;
@@ -82,11 +82,18 @@ pub fn item(item: Item) -> Text {
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
-            Text::new("plan.other_device").with("profile", profile).with("device", device)
+            Text::new("hd_plan.other_device").with("profile", profile).with("device", device)
         }
         PlanError::OtherDrive { drive, profile, device } => {
             Text::new("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
         }
+        PlanError::OtherKind { profile, device } => {
+            Text::new("hd_plan.other_kind").with("profile", profile.category()).with("device", device.category())
+        }
+        PlanError::OtherVariant { drive, profile, device } => Text::new("hd_plan.other_variant")
+            .with("drive", drive.get())
+            .with_text("profile", variant(*profile))
+            .with_text("device", variant(*device)),
         PlanError::OutOfRange(error) => out_of_range(error),
         PlanError::ReadOnly { item } => about("hd_said.read_only", *item),
         PlanError::Moves { item } => about("hd_said.motion", *item),

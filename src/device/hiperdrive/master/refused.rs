@@ -4,6 +4,7 @@
 use super::{Master, Repeats, settable};
 use crate::device::hiperdrive::Error;
 use crate::device::hiperdrive::error::{Asked, Refusal};
+use crate::device::hiperdrive::identify::topology;
 use crate::protocol::ethernet_ip::{GeneralStatus, Request};
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, ParameterRow, Range};
 
@@ -19,9 +20,11 @@ impl Master<'_> {
         refusal: Refusal,
     ) -> Result<Error, Error> {
         let Some(drive) = number.drive() else { return Ok(Error::Refused { asked, refusal }) };
-        if let Some(topology) = self.station.known.topology
-            && drive.get() > topology.drives()
-        {
+        let topology = match self.station.known.topology {
+            None if refusal.status == GeneralStatus::PATH_UNKNOWN => Some(topology(self)?),
+            known => known,
+        };
+        if let Some(topology) = topology.filter(|topology| drive.get() > topology.drives()) {
             return Ok(Error::NoPlace { drive, topology });
         }
         if self.is_zero(number, 120, drive)? {

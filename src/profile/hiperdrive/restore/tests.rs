@@ -3,6 +3,7 @@
 use super::*;
 use crate::profile::hiperdrive::test_profiles::{drive, identity, image, image_of, number, profile};
 use crate::profile::hiperdrive::{MountingMark, Op, Service, compare};
+use crate::protocol::hiperdrive::{Topology, Variant};
 
 fn device() -> DeviceState {
     let profile = profile();
@@ -56,6 +57,29 @@ fn another_device_or_drive_is_refused() {
     let error = plan_restore(&profile(), &device, NONE).unwrap_err();
     let expected = PlanError::OtherDrive { drive: drive(3), profile: "4712".to_owned(), device: "5000".to_owned() };
     assert_eq!(error, expected);
+    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    let mut by_hand = profile();
+    by_hand.identity = ProfileIdentity::default();
+    assert!(plan_restore(&by_hand, &device, NONE).is_ok());
+}
+
+/// The serial number is the same in all of these.
+#[test]
+fn another_kind_of_device_or_drive_is_refused() {
+    let mut device = device();
+    device.identity.topology = Some(Topology::Adapter);
+    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    assert_eq!(error, PlanError::OtherKind { profile: Topology::Hub4, device: Topology::Adapter });
+    assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
+    let restore = plan_restore(&profile(), &device, OTHER).unwrap();
+    assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13), "what is of a place that both have");
+    device.identity = profile().identity;
+    device.identity.drives[1].variant = Some(Variant::new(13));
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    let (profiles, devices) = (Variant::new(7), Variant::new(13));
+    assert_eq!(error, PlanError::OtherVariant { drive: drive(3), profile: profiles, device: devices });
+    assert!(error.to_string().contains("7 (HDA30A)") && error.to_string().contains("13 (HDA70)"), "{error}");
     assert!(plan_restore(&profile(), &device, OTHER).is_ok());
     let mut by_hand = profile();
     by_hand.identity = ProfileIdentity::default();

@@ -69,16 +69,16 @@ fn parameters_of_drives_may_stand_beside_those_of_the_device() {
 #[test]
 fn what_is_not_known_is_kept() {
     let text = SHORT
-        .replace("24: 0x10", "24: 0x10, 45: 7, \"owner\": (name: \"CK\")")
+        .replace("24: 0x10", "24: 0x10, \"owner\": (name: \"CK\")")
         .replace("number: 2,", "number: 2, axis: \"feed\",")
-        .replace("154: 400,", "154: 400, 155: Some(3),")
+        .replace("154: 400,", "154: 400, \"spare\": Some(3),")
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
     let document = Document::parse(&text).unwrap();
     let profile = document.body.hiperdrive().unwrap();
     assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
     let written = document.emit();
     for kept in
-        ["45: 7,", "\"owner\": (name: \"CK\"),", "axis: \"feed\",", "155: Some(3),", "colour: \"red\",", "by: \"CK\""]
+        ["\"owner\": (name: \"CK\"),", "axis: \"feed\",", "\"spare\": Some(3),", "colour: \"red\",", "by: \"CK\""]
     {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
@@ -92,6 +92,13 @@ fn a_slip_is_told_where_it_stands() {
         ("24: 0x10", "24: 1, 24: 2", "line 4, column "),
         ("24: 0x10", "258: 1", "drives[0].parameters.158: 158 drive 2 stands twice"),
         ("24: 0x10", "107: 1", "parameters.107: actual position is not kept by the device"),
+        ("24: 0x10", "999: 7", "parameters.999: there is no parameter 999"),
+        ("24: 0x10", "45: 7", "parameters.45: there is no parameter 45"),
+        ("24: 0x10", "70000: 7", "parameters.70000: there is no parameter 70000"),
+        ("24: 0x10", "17: 1", "parameters.17: serial number is not kept by the device"),
+        ("154: 400", "155: 1", "drives[0].parameters.155: there is no parameter 155 of a drive"),
+        ("154: 400", "24: 1", "drives[0].parameters.24: there is no parameter 24 of a drive"),
+        ("154: 400", "254: 1", "drives[0].parameters.254: there is no parameter 254 of a drive"),
         ("24: 0x10", "101: 1", "parameters.101: control word is not kept by the device"),
         ("{24: 0x10}", "[24]", "parameters must be a map: {number: value, …}"),
         (
