@@ -407,8 +407,11 @@ pub(super) fn settled_entry(
     let response = text_entry(ui, &mut text, width, label, "");
     if response.has_focus() {
         *draft = Some((text, problem));
-    } else if response.lost_focus() && text != shown {
-        if let Err(why) = take(&text) {
+    } else if response.lost_focus() {
+        // What stood there before is right, whatever was typed in between.
+        if text != shown
+            && let Err(why) = take(&text)
+        {
             *draft = Some((text, Some(why)));
         }
     } else if problem.is_some() {

@@ -200,7 +200,8 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
     let pressed = moves && response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if name(response, active, &word).clicked() || pressed {
-        actions.push(Action::Stop);
+        // What is shown of a drive goes on while it is stopped.
+        actions.push(if moves { Action::StopMotion } else { Action::Stop });
     }
 }
 

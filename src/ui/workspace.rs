@@ -73,7 +73,13 @@ fn hiperdrive_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, a
     let (Some(unit), Some(device)) = (studio.hiperdrive(), studio.shown()) else {
         return nothing(ui, skin, studio, actions);
     };
-    running(ui, skin, device, None, actions);
+    // Below, so that nothing moves away under the finger that holds a drive.
+    if device.running().is_some() && !device.is_reviewing() {
+        egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
+            .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
+            .show_separator_line(false)
+            .show(ui, |ui| running(ui, skin, device, None, actions));
+    }
     lost(ui, skin, device, actions);
     hiperdrive::page_ui(ui, skin, (studio, device), unit, views.hiperdrive(unit), actions);
 }

@@ -61,6 +61,7 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     if drives.len() < 2 {
         return;
     }
+    ui.label(skin.label(skin.say("hd_bar.drive")));
     let mut shown = unit.drive();
     let named = drives.into_iter().map(|drive| (drive, drive.get().to_string()));
     if options(ui, &skin.say("hd_bar.drive"), &mut shown, named) {

@@ -33,16 +33,16 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<
                 check(ui, skin, unit, actions);
             }
         },
-        |ui, actions| {
+        |ui, _| {
             drives(ui, skin, unit);
-            if !is_profile {
-                ui.add_space(skin.space.groups);
-                services(ui, skin, unit, actions);
-            }
             ui.add_space(skin.space.groups);
             wiring(ui, skin);
         },
     );
+    if !is_profile {
+        ui.add_space(skin.space.groups);
+        services(ui, skin, unit, actions);
+    }
 }
 
 fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {

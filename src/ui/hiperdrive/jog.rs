@@ -2,13 +2,13 @@
 
 use egui::{Ui, vec2};
 
-use super::motion::{View, effort_ui, length_ui};
+use super::motion::{View, effort_ui, length_ui, why_not};
 use crate::app::Action;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::protocol::hiperdrive::Direction;
+use crate::ui::Skin;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};
 use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
-use crate::ui::{Skin, icons};
 
 /// Height of the buttons that are held.
 const PAD: f32 = 72.0;
@@ -16,21 +16,19 @@ const PAD: f32 = 72.0;
 /// The card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     card(ui, skin, "hd_jog.title", |ui| {
-        let allowed = unit.may_move(unit.drive());
-        let set = |effort| Motor::JogEffort(effort);
-        effort_ui(ui, skin, unit, (unit.moves.jog_effort(), &mut view.jog_effort), set, actions);
+        let drafts = &mut view.jog_effort;
+        let effort = effort_ui(ui, skin, unit, (unit.moves.jog_effort(), drafts), Motor::JogEffort, actions);
+        let allowed = effort.and(unit.may_move(unit.drive()));
         pads_ui(ui, skin, unit, allowed.is_ok(), actions);
         paragraph(ui, skin.caption(skin.say("hd_jog.words")));
-        if let Err(why) = &allowed {
-            paragraph(ui, egui::RichText::new(skin.words(why)).color(skin.palette.warn));
-        }
+        why_not(ui, skin, &allowed);
         ui.add_space(skin.space.between);
         ui.separator();
         ui.label(skin.heading(skin.say("hd_step.title")));
         length_ui(ui, skin, unit, "hd_step.by", &mut view.step, actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if allowed_button(ui, skin, &allowed, icons::CARET_RIGHT, &skin.say(id)).clicked() {
+                if allowed_button(ui, skin, &allowed, "", &skin.say(id)).clicked() {
                     match forms::step(unit, &view.step, unit.measure, sign) {
                         Ok(by) => {
                             view.step_problem = None;

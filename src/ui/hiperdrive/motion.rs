@@ -4,18 +4,18 @@ use egui::{RichText, Ui};
 
 use super::{figures, jog};
 use crate::app::explain::hiperdrive as explain;
-use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::app::hiperdrive::{Action as Hiperdrive, Measure, Motor, Unit, forms};
 use crate::app::{Action, SessionId, Text};
-use crate::device::hiperdrive::dead_man::{Effort, Goal, Phase};
-use crate::protocol::hiperdrive::{Direction, RunEnd, State};
+use crate::device::hiperdrive::dead_man::{Effort, Goal, Motive, Phase};
+use crate::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
 use crate::ui::controls::{
-    allowed_button, card, choice, entry, paragraph, problem, row, settled_entry, text_entry, two_columns,
+    allowed_button, card, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry, two_columns,
 };
 use crate::ui::widgets::{StateMachine, state_machine};
 use crate::ui::{Skin, icons};
 
-/// What is typed and does not count yet.
-type Draft = Option<(String, Option<Text>)>;
+/// A percentage as it is typed.
+type Draft = Option<String>;
 
 /// What is typed.
 #[derive(Default)]
@@ -32,25 +32,35 @@ pub(super) struct View {
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
-/// Height of the line that says what is done with the drive.
-const SAID: f32 = 24.0;
+/// Height of what says what is done with the drive.
+const SAID: f32 = 44.0;
+/// Height of a page below which the states stand behind what moves the drive.
+const LOW: f32 = 480.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    if unit.profile().is_some() {
+        empty(ui, skin, &skin.say("hd_motion.offline"), None);
+        return;
+    }
+    // In a low window what moves the drive comes before the picture of its states.
+    let low = ui.clip_rect().height() < LOW;
     locks(ui, skin, unit, actions);
-    states(ui, skin, unit, actions);
-    ui.add_space(skin.space.groups);
+    if !low {
+        states(ui, skin, unit, actions);
+        ui.add_space(skin.space.groups);
+    }
     two_columns(
         ui,
         skin,
         (view, &mut *actions),
         |ui, (view, actions)| jog::card_ui(ui, skin, unit, view, actions),
-        |ui, (view, actions)| {
-            to_position(ui, skin, unit, view, actions);
-            ui.add_space(skin.space.groups);
-            at_speed(ui, skin, unit, actions);
-        },
+        |ui, (view, actions)| moves(ui, skin, unit, view, actions),
     );
     ui.add_space(skin.space.groups);
+    if low {
+        states(ui, skin, unit, actions);
+        ui.add_space(skin.space.groups);
+    }
     figures::words_card_ui(ui, skin, unit, unit.drive());
 }
 
@@ -65,7 +75,12 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 paragraph(ui, skin.words(&explain::lock(lock)));
             });
             if let Some((low, high)) = unit.limits_to_confirm(drive) {
-                let [low, high] = [low, high].map(|steps| skin.words(&unit.place(drive, steps)));
+                // In turns too, whatever is chosen: the same number of steps may be another place than it was.
+                let turns = |steps: i32| unit.ruler(drive).of(steps.into(), Measure::Turns);
+                let [low, high] = [low, high].map(|steps| {
+                    let turns = turns(steps).map(|own| format!("{} {}", skin.number(own, 2), skin.say("unit.turns")));
+                    format!("{}  {}", skin.words(&unit.place(drive, steps)), turns.unwrap_or_default())
+                });
                 row(ui, skin, &skin.say("hd_limits.lower"), skin.mono(low));
                 row(ui, skin, &skin.say("hd_limits.upper"), skin.mono(high));
                 if allowed_button(ui, skin, &Ok(()), icons::CHECK, &skin.say("hd_limits.confirm")).clicked() {
@@ -90,23 +105,42 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| skin.words(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
         if let Some(state) = state_machine(ui, skin, &machine) {
-            let motor = match state {
+            let wanted = match state {
                 State::NotReady => Motor::Lead(Goal::Off),
                 State::Ready => Motor::Lead(Goal::Ready),
                 State::Operational => Motor::Lead(Goal::Operational),
                 State::Locked => Motor::Acknowledge,
                 State::Enabled | State::Moving | State::Fault => Motor::Lead(Goal::Enabled),
             };
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(motor)));
+            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(wanted)));
         }
         // Always as high: nothing may move away under the finger that holds a drive.
         let top = ui.cursor().top();
+        failed(ui, skin, unit, present, actions);
         if let Some(said) = unit.said(drive) {
             let ink = if said.is_well { skin.palette.good } else { skin.palette.warn };
-            let words = skin.words(&said.words);
-            ui.add(egui::Label::new(RichText::new(&words).color(ink)).truncate()).on_hover_text(words);
+            paragraph(ui, RichText::new(skin.words(&said.words)).color(ink));
         }
         ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
+    });
+}
+
+/// What has failed, and the way out of it.
+fn failed(ui: &mut Ui, skin: &Skin, unit: &Unit, present: Option<State>, actions: &mut Vec<Action>) {
+    if !matches!(present, Some(State::Fault | State::Locked)) {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        let open = unit.moves.is_open();
+        if enabled_button(ui, open, icons::CHECK, &skin.say("hd_states.acknowledge")).clicked() {
+            motor(actions, unit.session.id, Motor::Acknowledge);
+        }
+        let newest = unit.drive_status(unit.drive()).and_then(|own| own.buffer.first().copied());
+        if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
+            let words = explain::error(code);
+            let text = format!("{:04X}  {}", code.code(), skin.words(&words.name));
+            ui.label(RichText::new(text).color(skin.palette.bad)).on_hover_text(skin.words(&words.remedy));
+        }
     });
 }
 
@@ -114,90 +148,91 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
     actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(motor)));
 }
 
-/// To a position.
-fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_move.title", |ui| {
-        let drive = unit.drive();
-        let id = unit.session.id;
-        if let Some(actual) = unit.actual(drive) {
-            let now = skin.words(&unit.place(drive, actual.position));
-            row(ui, skin, &skin.say("hd_move.now"), skin.mono(now));
+/// To a position, and at a speed: with the same effort.
+fn moves(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    let allowed = card(ui, skin, "hd_move.title", |ui| to_position(ui, skin, unit, view, actions));
+    ui.add_space(skin.space.groups);
+    card(ui, skin, "hd_run.title", |ui| at_speed(ui, skin, unit, &allowed, actions));
+}
+
+/// To a position; whether the drive may be moved with the effort that is typed.
+fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) -> Result<(), Text> {
+    let (drive, id) = (unit.drive(), unit.session.id);
+    if let Some(actual) = unit.actual(drive) {
+        let now = skin.words(&unit.place(drive, actual.position));
+        row(ui, skin, &skin.say("hd_move.now"), skin.mono(now));
+    }
+    if let Some((low, high)) = unit.limits(drive) {
+        let [low, high] = [low, high].map(|steps| skin.words(&unit.place(drive, steps)));
+        row(ui, skin, &skin.say("hd_move.range"), skin.mono(format!("{low} … {high}")));
+    }
+    let drafts = &mut view.move_effort;
+    let effort = effort_ui(ui, skin, unit, (unit.moves.move_effort(), drafts), Motor::MoveEffort, actions);
+    length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
+    let allowed = effort.and(unit.may_move(drive));
+    ui.horizontal_wrapped(|ui| {
+        if allowed_button(ui, skin, &allowed, icons::PLAY, &skin.say("hd_move.go")).clicked() {
+            view.target_problem = forms::target(unit, &view.target, unit.measure)
+                .map(|target| motor(actions, id, Motor::Move { target }))
+                .err();
         }
-        if let Some((low, high)) = unit.limits(drive) {
-            let [low, high] = [low, high].map(|steps| skin.words(&unit.place(drive, steps)));
-            row(ui, skin, &skin.say("hd_move.range"), skin.mono(format!("{low} … {high}")));
-        }
-        length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
-        problem(ui, skin, view.target_problem.as_ref());
-        let allowed = unit.may_move(drive);
-        ui.horizontal_wrapped(|ui| {
-            if allowed_button(ui, skin, &allowed, icons::PLAY, &skin.say("hd_move.go")).clicked() {
-                match forms::target(unit, &view.target, unit.measure) {
-                    Ok(target) => {
-                        view.target_problem = None;
-                        motor(actions, id, Motor::Move { target });
-                    }
-                    Err(why) => view.target_problem = Some(why),
+        match unit.moves.phase(drive) {
+            Some(Phase::Paused { .. }) => {
+                if allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say("hd_move.resume")).clicked() {
+                    motor(actions, id, Motor::Resume);
                 }
             }
-            match unit.moves.phase(drive) {
-                Some(Phase::Paused { .. }) => {
-                    if allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say("hd_move.resume")).clicked() {
-                        motor(actions, id, Motor::Resume);
-                    }
-                }
-                phase => {
-                    let moving = matches!(phase, Some(Phase::Moving(_)));
-                    if ui
-                        .add_enabled_ui(moving, |ui| {
-                            allowed_button(ui, skin, &Ok(()), icons::PAUSE, &skin.say("hd_move.pause")).clicked()
-                        })
-                        .inner
-                    {
-                        motor(actions, id, Motor::Pause);
-                    }
+            phase => {
+                let on_its_way = matches!(phase, Some(Phase::Moving(Motive::Job { .. })));
+                if enabled_button(ui, on_its_way, icons::PAUSE, &skin.say("hd_move.pause")).clicked() {
+                    motor(actions, id, Motor::Pause);
                 }
             }
-        });
-        ui.add_space(skin.space.inside);
-        effort_ui(ui, skin, unit, (unit.moves.move_effort(), &mut view.move_effort), Motor::MoveEffort, actions);
+        }
     });
+    problem(ui, skin, view.target_problem.as_ref());
+    why_not(ui, skin, &allowed);
+    allowed
+}
+
+/// Why nothing can be moved.
+pub(super) fn why_not(ui: &mut Ui, skin: &Skin, allowed: &Result<(), Text>) {
+    if let Err(why) = allowed {
+        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+    }
 }
 
 /// At a speed, to the end of the range or, for experts, without one.
-fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_run.title", |ui| {
-        let id = unit.session.id;
-        let allowed = unit.may_move(unit.drive());
-        let mut expert = unit.moves.is_expert();
-        let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
-        ui.horizontal_wrapped(|ui| {
-            for (direction, word) in
-                [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")]
-            {
-                if allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say(word)).clicked() {
-                    let run = Hiperdrive::Drive(Motor::Run { direction, end });
-                    actions.push(Action::Hiperdrive(id, run));
-                }
+fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
+    let id = unit.session.id;
+    let mut expert = unit.moves.is_expert();
+    let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
+    ui.horizontal_wrapped(|ui| {
+        let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
+        for (direction, word) in ways {
+            if allowed_button(ui, skin, allowed, "", &skin.say(word)).clicked() {
+                motor(actions, id, Motor::Run { direction, end });
             }
-        });
-        paragraph(ui, skin.caption(skin.say("hd_run.words")));
-        let endless = unit.could_run_endlessly(unit.drive());
-        // It can always be switched off.
-        ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
-            let response = ui.checkbox(&mut expert, skin.say("hd_run.expert"));
-            if response.changed() {
-                actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Expert(expert))));
-            }
-        });
-        match endless {
-            Ok(()) => paragraph(ui, skin.caption(skin.say("hd_run.expert_words"))),
-            Err(why) => paragraph(ui, skin.caption(skin.words(&why))),
         }
     });
+    paragraph(ui, skin.caption(skin.say("hd_run.words")));
+    let endless = unit.could_run_endlessly(unit.drive());
+    // It can always be switched off.
+    ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
+        if ui.checkbox(&mut expert, skin.say("hd_run.expert")).changed() {
+            motor(actions, id, Motor::Expert(expert));
+        }
+    });
+    match endless {
+        Ok(()) => paragraph(ui, skin.caption(skin.say("hd_run.expert_words"))),
+        Err(why) => paragraph(ui, skin.caption(skin.words(&why))),
+    }
 }
 
-/// Speed and torque, in percent.
+/// Speed and torque, in percent. What is typed counts at once, so that nothing begins with what stood there before.
+///
+/// # Errors
+/// What is typed is no percentage: nothing may begin with it.
 pub(super) fn effort_ui(
     ui: &mut Ui,
     skin: &Skin,
@@ -205,29 +240,40 @@ pub(super) fn effort_ui(
     (effort, drafts): (Effort, &mut [Draft; 2]),
     set: impl Fn(Effort) -> Motor,
     actions: &mut Vec<Action>,
-) {
-    let id = unit.session.id;
+) -> Result<(), Text> {
     let [speed, torque] = drafts;
+    let mut taken = Ok(());
     for (word, own, draft, is_speed) in
         [("hd_effort.speed", effort.speed, speed, true), ("hd_effort.torque", effort.torque, torque, false)]
     {
         let word = skin.say(word);
         entry(ui, skin, &word, |ui| {
-            settled_entry(ui, draft, &own.get().to_string(), PERCENT, &word, |text| {
-                let percent = forms::percent(text)?;
+            let mut text = draft.take().unwrap_or_else(|| own.get().to_string());
+            let response = text_entry(ui, &mut text, PERCENT, &word, "");
+            let typed = forms::percent(&text);
+            if let Ok(percent) = &typed
+                && *percent != own
+            {
+                let percent = *percent;
                 let effort =
                     if is_speed { Effort { speed: percent, ..effort } } else { Effort { torque: percent, ..effort } };
-                actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(set(effort))));
-                Ok(())
-            });
+                motor(actions, unit.session.id, set(effort));
+            }
+            if response.has_focus() || typed.is_err() {
+                *draft = Some(text);
+            }
             ui.label(skin.label("%"));
             let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
-            if let Some(beside) = beside {
+            if let Some(beside) = beside.filter(|_| typed.is_ok()) {
                 ui.label(skin.caption(skin.words(&beside)));
             }
+            if let Err(why) = typed {
+                ui.label(RichText::new(icons::WARNING_CIRCLE).color(skin.palette.bad)).on_hover_text(skin.words(&why));
+                taken = Err(why);
+            }
         });
-        problem(ui, skin, draft.as_ref().and_then(|(_, why)| why.as_ref()));
     }
+    taken
 }
 
 /// A length or a place: a number and its measure.

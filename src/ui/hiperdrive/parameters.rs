@@ -32,13 +32,14 @@ enum Shown {
 
 /// Widths and heights.
 const NUMBER: f32 = 44.0;
-const VALUE: f32 = 116.0;
-const RANGE: f32 = 128.0;
+const VALUE: f32 = 168.0;
+const ENTRY: f32 = 88.0;
+const RANGE: f32 = 112.0;
 const FACTORY: f32 = 88.0;
 const KEPT: f32 = 48.0;
 /// Of a line that is read, and of one that is typed into.
 const READ: f32 = 20.0;
-const TYPED: f32 = 30.0;
+const TYPED: f32 = 34.0;
 const NARROW: f32 = 600.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
@@ -53,6 +54,12 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     });
     if let Some(refusal) = &unit.refusal {
         paragraph(ui, RichText::new(skin.words(refusal)).color(skin.palette.bad));
+    }
+    // What is typed and cannot be stands above the table too: a row has no room for it.
+    for (number, draft) in &view.drafts {
+        if let Some((_, Some(why))) = draft {
+            paragraph(ui, RichText::new(format!("{number}: {}", skin.words(why))).color(skin.palette.bad));
+        }
     }
     for (title, drive) in [("hd_params.drive", Some(unit.drive())), ("hd_params.device", None)] {
         let rows: Vec<Row> = unit.rows(drive).into_iter().filter(|row| view.shows(skin, row)).collect();
@@ -142,7 +149,9 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Row], view: &mut View, a
 
 /// The value: to be edited where that can be.
 fn value(ui: &mut Ui, skin: &Skin, unit: &Unit, row: &Row, view: &mut View, actions: &mut Vec<Action>) {
+    let is_wrong = view.drafts.get(&row.number).is_some_and(|own| matches!(own, Some((_, Some(_)))));
     let ink = match (row.is_edited, row.changed_from) {
+        _ if is_wrong => Some(skin.palette.bad),
         (true, _) => Some(skin.palette.staged),
         (false, Some(_)) => Some(skin.palette.accent),
         (false, None) => None,
@@ -165,7 +174,7 @@ fn value(ui: &mut Ui, skin: &Skin, unit: &Unit, row: &Row, view: &mut View, acti
     if let Some(ink) = ink {
         ui.visuals_mut().override_text_color = Some(ink.into());
     }
-    let response = settled_entry(ui, draft, &shown, VALUE - 44.0, &label, |text| {
+    let response = settled_entry(ui, draft, &shown, ENTRY, &label, |text| {
         let edit = forms::parameter(row, text)?;
         actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Edit(Box::new(edit))));
         Ok(())

@@ -104,7 +104,11 @@ fn paint(ui: &Ui, skin: &Skin, button: &HoldButton<'_>, response: &Response, hel
         (false, true) => (palette.raised, palette.text, palette.muted),
         (false, false) => (palette.raised, palette.muted, palette.muted),
     };
-    let edge = if response.hovered() || held { palette.accent } else { palette.muted };
+    let edge = match button.enabled {
+        true if response.hovered() || held => palette.accent,
+        true => palette.muted,
+        false => palette.line,
+    };
     let painter = ui.painter();
     painter.rect_filled(rect, skin.radius, fill);
     painter.rect_stroke(rect, skin.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
