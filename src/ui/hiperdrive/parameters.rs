@@ -98,6 +98,7 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Row], view: &mut View, a
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut table = TableBuilder::new(ui)
             .vscroll(false)
+            .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
             .column(Column::exact(NUMBER))
             .column(Column::remainder().at_least(96.0).clip(true))
             .column(Column::exact(VALUE));
@@ -157,7 +158,7 @@ fn value(ui: &mut Ui, skin: &Skin, unit: &Unit, row: &Row, view: &mut View, acti
         (false, None) => None,
     };
     if !row.is_editable {
-        let mut text = skin.mono(&row.shown);
+        let mut text = skin.mono(format!("{} {}", row.shown, words(skin, row.unit.as_ref())));
         if let Some(ink) = ink {
             text = text.color(ink);
         }
@@ -165,7 +166,6 @@ fn value(ui: &mut Ui, skin: &Skin, unit: &Unit, row: &Row, view: &mut View, acti
         if let Some(meaning) = &row.meaning {
             label.on_hover_text(skin.words(meaning));
         }
-        ui.label(skin.caption(words(skin, row.unit.as_ref())));
         return;
     }
     let label = format!("{} {}", row.number, skin.words(&row.name));
