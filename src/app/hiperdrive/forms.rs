@@ -41,6 +41,9 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
 /// What cannot be, in words.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| Text::new("hd_entry.number").with("entry", text.trim()))?;
+    if measure == Measure::Steps && value.fract() != 0.0 {
+        return Err(Text::new("hd_entry.whole_steps").with("entry", text.trim()));
+    }
     unit.ruler(unit.drive()).steps(value, measure).map_err(|beyond| match beyond {
         Beyond::NoPitch => Text::new("hd_entry.no_pitch"),
         Beyond::Bits { least, most } => Text::new("hd_entry.beyond")

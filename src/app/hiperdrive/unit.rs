@@ -200,7 +200,9 @@ impl Unit {
     /// What a drive said last: over the cyclic connection, or where it was asked.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
-        self.moves.actual(drive).or_else(read).or_else(|| self.surveyed(drive))
+        // What was read at the beginning says nothing any more once the device is gone.
+        let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected);
+        self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
 
     fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {

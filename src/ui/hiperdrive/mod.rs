@@ -11,6 +11,7 @@ mod leds;
 mod motion;
 mod network;
 mod parameters;
+mod scale;
 
 use egui::{ScrollArea, Ui};
 
@@ -88,6 +89,7 @@ pub(in crate::ui) struct View {
     serial_number: Option<String>,
     motion: motion::View,
     parameters: parameters::View,
+    scale: scale::View,
     axis: axis::View,
     leds: leds::View,
     network: network::View,
@@ -133,7 +135,11 @@ pub(super) fn page_ui(
     ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         frame.show(ui, |ui| match view.page {
             Page::Motion => motion::page_ui(ui, skin, unit, &mut view.motion, actions),
-            Page::Parameters => parameters::page_ui(ui, skin, unit, &mut view.parameters, actions),
+            Page::Parameters => {
+                parameters::page_ui(ui, skin, unit, &mut view.parameters, actions);
+                ui.add_space(skin.space.groups);
+                scale::card_ui(ui, skin, unit, &mut view.scale, actions);
+            }
             Page::Axis => axis::page_ui(ui, skin, unit, &mut view.axis, actions),
             Page::Diagnosis => {
                 errors::cards_ui(ui, skin, unit, actions);
