@@ -158,7 +158,10 @@ fn value(ui: &mut Ui, skin: &Skin, unit: &Unit, row: &Row, view: &mut View, acti
         (false, None) => None,
     };
     if !row.is_editable {
-        let mut text = skin.mono(format!("{} {}", row.shown, words(skin, row.unit.as_ref())));
+        // A unit that is a part of another one is multiplied.
+        let unit = words(skin, row.unit.as_ref());
+        let times = if unit.starts_with('0') { "× " } else { "" };
+        let mut text = skin.mono(format!("{} {times}{unit}", row.shown));
         if let Some(ink) = ink {
             text = text.color(ink);
         }
