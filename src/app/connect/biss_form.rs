@@ -1,6 +1,7 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use super::target::{adapter_in_network, assemble, entered, filled, host_and_port, parted, refused, to_adapter};
+use super::parameters::{Parameters, without_entry};
+use super::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::app::Text;
 use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::link::{LinkUrl, Scheme};
@@ -120,11 +121,7 @@ impl BissForm {
         } else {
             form.port = target.to_owned();
         }
-        for (name, value) in url.query.pairs() {
-            if !form.take(name, value) {
-                form.rest.push((name.clone(), value.clone()));
-            }
-        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -173,10 +170,7 @@ impl BissForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters())?;
-        check(&url).map_err(|error| refused(&url, &error))?;
-        Ok(url)
+        checked(self.parameters().link(self.target()?)?, check)
     }
 
     /// The encoder is reached over its bus.
@@ -201,42 +195,37 @@ impl BissForm {
         })
     }
 
-    fn parameters(&self) -> Vec<(String, String)> {
-        let mut parameters = Vec::new();
-        let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
+    fn parameters(&self) -> Parameters {
+        let mut parameters = Parameters::default();
         if self.may_say_what_is_between() && self.behind_adapter {
-            add(BRIDGE.0, BRIDGE.1);
+            parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.way == BissWay::Virtual {
-            // A German keyboard has a comma where the point should be.
-            filled(&self.rpm).iter().for_each(|rpm| add("rpm", &rpm.replace(',', ".")));
-            filled(&self.fault).iter().for_each(|fault| add("fault", fault));
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
         }
         if self.is_on_the_bus() {
-            filled(&self.clock).iter().for_each(|clock| add("clock", clock));
+            parameters.entry("clock", &self.clock);
         } else {
-            let usual = FORMAT.baud.to_string();
-            filled(&self.baud).filter(|baud| *baud != usual).iter().for_each(|baud| add("baud", baud));
+            if filled(&self.baud).is_some_and(|baud| baud != FORMAT.baud.to_string()) {
+                parameters.entry("baud", &self.baud);
+            }
             if self.parity != FORMAT.parity {
-                add("parity", self.parity.word());
+                parameters.set("parity", self.parity.word());
             }
             match self.order {
                 None => {}
-                Some(ByteOrder::LowFirst) => add("order", "low-first"),
-                Some(ByteOrder::HighFirst) => add("order", "high-first"),
+                Some(ByteOrder::LowFirst) => parameters.set("order", "low-first"),
+                Some(ByteOrder::HighFirst) => parameters.set("order", "high-first"),
             }
             match self.echo {
                 Echo::Unknown => {}
-                Echo::On => add("echo", "on"),
-                Echo::Off => add("echo", "off"),
+                Echo::On => parameters.set("echo", "on"),
+                Echo::Off => parameters.set("echo", "off"),
             }
         }
-        filled(&self.margin).iter().for_each(|margin| add("margin", margin));
-        for (name, value) in &self.rest {
-            if self.belongs(name) && parameters.iter().all(|(own, _)| own != name) {
-                parameters.push((name.clone(), value.clone()));
-            }
-        }
+        parameters.entry("margin", &self.margin);
+        parameters.rest(&self.rest, |name| self.belongs(name));
         parameters
     }
 

@@ -3,7 +3,8 @@
 
 use std::time::Duration;
 
-use super::target::{assemble, entered, filled, host_and_port, parted, refused};
+use super::parameters::{Parameters, without_entry};
+use super::target::{entered, filled, host_and_port, parted, refused};
 use crate::app::Text;
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
@@ -116,11 +117,7 @@ impl LinkForm {
                 (form.host, form.tcp_port) = parted(&target);
             }
         }
-        for (name, value) in url.query.pairs() {
-            if !form.take(name, value) {
-                form.rest.push((name.clone(), value.clone()));
-            }
-        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
@@ -158,8 +155,8 @@ impl LinkForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters()?)?;
+        let target = self.target()?;
+        let url = self.parameters()?.link(target)?;
         check(&url).map_err(|error| self.refused(&url, &error))?;
         Ok(url)
     }
@@ -173,44 +170,39 @@ impl LinkForm {
         }
     }
 
-    fn parameters(&self) -> Result<Vec<(String, String)>, Text> {
+    fn parameters(&self) -> Result<Parameters, Text> {
         let usual = LinkForm::default();
-        let mut parameters = Vec::new();
-        let mut add = |name: &str, value: &str| parameters.push((name.to_owned(), value.to_owned()));
+        let mut parameters = Parameters::default();
         if self.kind == LinkKind::Virtual {
-            filled(&self.model).filter(|model| *model != usual.model).iter().for_each(|model| add("model", model));
-            // A German keyboard has a comma where the point should be.
-            filled(&self.rpm).iter().for_each(|rpm| add("rpm", &rpm.replace(',', ".")));
-            filled(&self.fault).iter().for_each(|fault| add("fault", fault));
+            if filled(&self.model).is_some_and(|model| model != usual.model) {
+                parameters.entry("model", &self.model);
+            }
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
         }
         if self.baud != usual.baud {
-            add("baud", &self.baud.to_string());
+            parameters.set("baud", &self.baud.to_string());
         }
         if self.parity != usual.parity {
-            add("parity", self.parity.word());
+            parameters.set("parity", self.parity.word());
         }
         let address = self.address_byte()?;
         if address != DeviceAddress::FACTORY.byte() {
-            add("address", &format!("0x{address:02X}"));
+            parameters.set("address", &format!("0x{address:02X}"));
         }
         match self.echo {
             Echo::Unknown => {}
-            Echo::On => add("echo", "on"),
-            Echo::Off => add("echo", "off"),
+            Echo::On => parameters.set("echo", "on"),
+            Echo::Off => parameters.set("echo", "off"),
         }
         if !self.long_timeout {
-            add("timeout", "11");
+            parameters.set("timeout", "11");
         }
-        filled(&self.margin).iter().for_each(|margin| add("margin", margin));
-        filled(&self.periods).iter().for_each(|periods| add("periods", periods));
-        filled(&self.turns).iter().for_each(|turns| add("turns", turns));
-        for (name, value) in &self.rest {
-            // What only a virtual encoder has is not for the others; what has an entry by now stands there.
-            let foreign = self.kind != LinkKind::Virtual && virtual_only(name);
-            if !foreign && parameters.iter().all(|(own, _)| own != name) {
-                parameters.push((name.clone(), value.clone()));
-            }
-        }
+        parameters.entry("margin", &self.margin);
+        parameters.entry("periods", &self.periods);
+        parameters.entry("turns", &self.turns);
+        // What only a virtual encoder has is not for the others.
+        parameters.rest(&self.rest, |name| self.kind == LinkKind::Virtual || !virtual_only(name));
         Ok(parameters)
     }
 

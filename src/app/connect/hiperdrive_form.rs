@@ -1,6 +1,7 @@
 //! What a person fills in to connect a HIPERDRIVE, and the link it stands for. Nothing is opened here.
 
-use super::target::{assemble, entered, filled, host_and_port, parted, refused};
+use super::parameters::{Parameters, without_entry};
+use super::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::app::Text;
 use crate::device::hiperdrive::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
@@ -97,41 +98,34 @@ impl HiperdriveForm {
         let mut form = HiperdriveForm { way, ..HiperdriveForm::default() };
         match form.way {
             HiperdriveWay::Replay => form.file = url.target.clone(),
-            HiperdriveWay::Network => {
-                (form.host, form.tcp_port) = parted(&url.target);
-                if form.tcp_port == PORT {
-                    form.tcp_port.clear();
-                }
-            }
+            HiperdriveWay::Network => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
             HiperdriveWay::Virtual => {}
         }
-        for (name, value) in url.query.pairs() {
-            let hub = VirtualHub::of_word(value).filter(|_| way == HiperdriveWay::Virtual && name == "hub");
-            if let Some(hub) = hub {
-                form.hub = hub;
-            } else if (name.as_str(), value.as_str()) == BIG_ENDIAN {
-                form.big_endian = true;
-            } else {
-                match form.entry(name) {
-                    Some(entry) => value.clone_into(entry),
-                    None => form.rest.push((name.clone(), value.clone())),
-                }
-            }
-        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
-    /// The entry of a parameter; `None` where there is none.
-    fn entry(&mut self, name: &str) -> Option<&mut String> {
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == HiperdriveWay::Virtual;
-        match name {
-            "rpi" => Some(&mut self.interval),
-            "udp" => Some(&mut self.udp),
-            "timeout" => Some(&mut self.timeout),
-            "drives" if is_virtual => Some(&mut self.drives),
-            "fault" if is_virtual => Some(&mut self.fault),
-            _ => None,
-        }
+        let entry = match name {
+            "rpi" => &mut self.interval,
+            "udp" => &mut self.udp,
+            "timeout" => &mut self.timeout,
+            "drives" if is_virtual => &mut self.drives,
+            "fault" if is_virtual => &mut self.fault,
+            "hub" if is_virtual => {
+                let Some(hub) = VirtualHub::of_word(value) else { return false };
+                self.hub = hub;
+                return true;
+            }
+            _ => {
+                self.big_endian |= (name, value) == BIG_ENDIAN;
+                return (name, value) == BIG_ENDIAN;
+            }
+        };
+        value.clone_into(entry);
+        true
     }
 
     /// The link that the entries stand for. What is as usual is left out.
@@ -139,48 +133,34 @@ impl HiperdriveForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters())?;
-        check(&url).map_err(|error| refused(&url, &error))?;
-        Ok(url)
+        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
         Ok(match self.way {
             HiperdriveWay::Virtual => (Scheme::Sim, String::new()),
-            HiperdriveWay::Network => {
-                let port = filled(&self.tcp_port).unwrap_or_else(|| PORT.to_owned());
-                (Scheme::Enip, host_and_port(&self.host, &port)?)
-            }
+            HiperdriveWay::Network => (Scheme::Enip, host_and_usual_port(&self.host, &self.tcp_port, PORT)?),
             HiperdriveWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
-    fn parameters(&self) -> Vec<(String, String)> {
+    fn parameters(&self) -> Parameters {
         let is_virtual = self.way == HiperdriveWay::Virtual;
-        let mut parameters = Vec::new();
-        let mut add = |name: &str, value: &str| {
-            parameters.extend(filled(value).map(|value| (name.to_owned(), value)));
-        };
+        let mut parameters = Parameters::default();
         if is_virtual {
-            add("hub", self.hub.word().unwrap_or_default());
-            add("drives", &self.drives);
-            add("fault", &self.fault);
+            parameters.entry("hub", self.hub.word().unwrap_or_default());
+            parameters.entry("drives", &self.drives);
+            parameters.entry("fault", &self.fault);
         }
-        add("rpi", &self.interval);
+        parameters.entry("rpi", &self.interval);
         if self.big_endian {
-            add(BIG_ENDIAN.0, BIG_ENDIAN.1);
+            parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        add("udp", &self.udp);
-        add("timeout", &self.timeout);
+        parameters.entry("udp", &self.udp);
+        parameters.entry("timeout", &self.timeout);
         // What only a virtual device has is not taken along.
         let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
-        for (name, value) in self.rest.iter().filter(|(name, _)| belongs(name)) {
-            // What has an entry by now is what that says.
-            if parameters.iter().all(|(own, _)| own != name) {
-                parameters.push((name.clone(), value.clone()));
-            }
-        }
+        parameters.rest(&self.rest, belongs);
         parameters
     }
 }
@@ -188,10 +168,11 @@ impl HiperdriveForm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::connect::parameters::tests::assert_comes_back;
 
     #[test]
     fn a_link_is_shown_and_comes_back_as_it_was() {
-        for link in [
+        let links = [
             "sim:",
             "sim:?hub=4",
             "sim:?hub=8&drives=1,0,1&rpi=20&order=big&seed=7",
@@ -199,15 +180,8 @@ mod tests {
             "enip:192.168.1.5:44818",
             "enip:192.168.1.5:50123?rpi=5&order=big&udp=2222&timeout=250",
             "replay:monday.trace",
-        ] {
-            let url: LinkUrl = link.parse().unwrap();
-            let mut expected: Vec<_> = url.query.pairs().to_vec();
-            let back = HiperdriveForm::from_url(&url).url().unwrap();
-            let mut found: Vec<_> = back.query.pairs().to_vec();
-            expected.sort();
-            found.sort();
-            assert_eq!((back.scheme, &back.target, found), (url.scheme, &url.target, expected), "{link}");
-        }
+        ];
+        assert_comes_back(&links, |url| HiperdriveForm::from_url(url).url());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a person fills in to connect an INTERBUS encoder, and the link it stands for. Nothing is opened here.
 
-use super::target::{assemble, entered, filled, host_and_port, parted, refused};
+use super::parameters::{Parameters, without_entry};
+use super::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::app::Text;
 use crate::device::interbus::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
@@ -74,39 +75,30 @@ impl InterbusForm {
         let mut form = InterbusForm { way, ..InterbusForm::default() };
         match form.way {
             InterbusWay::Replay => form.file = url.target.clone(),
-            InterbusWay::Gateway => {
-                (form.host, form.tcp_port) = parted(&url.target);
-                if form.tcp_port == PORT {
-                    form.tcp_port.clear();
-                }
-            }
+            InterbusWay::Gateway => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
             InterbusWay::Virtual => {}
         }
-        for (name, value) in url.query.pairs() {
-            if (name.as_str(), value.as_str()) == LOW_FIRST {
-                form.low_first = true;
-                continue;
-            }
-            match form.entry(name) {
-                Some(entry) => value.clone_into(entry),
-                None => form.rest.push((name.clone(), value.clone())),
-            }
-        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
-    /// The entry of a parameter; `None` where there is none.
-    fn entry(&mut self, name: &str) -> Option<&mut String> {
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == InterbusWay::Virtual;
-        match name {
-            "unit" => Some(&mut self.unit),
-            "input" => Some(&mut self.input),
-            "output" => Some(&mut self.output),
-            "handshake" => Some(&mut self.handshake),
-            "rpm" if is_virtual => Some(&mut self.rpm),
-            "fault" if is_virtual => Some(&mut self.fault),
-            _ => None,
-        }
+        let entry = match name {
+            "unit" => &mut self.unit,
+            "input" => &mut self.input,
+            "output" => &mut self.output,
+            "handshake" => &mut self.handshake,
+            "rpm" if is_virtual => &mut self.rpm,
+            "fault" if is_virtual => &mut self.fault,
+            _ => {
+                self.low_first |= (name, value) == LOW_FIRST;
+                return (name, value) == LOW_FIRST;
+            }
+        };
+        value.clone_into(entry);
+        true
     }
 
     /// The link that the entries stand for. What is as usual is left out.
@@ -114,49 +106,34 @@ impl InterbusForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters())?;
-        check(&url).map_err(|error| refused(&url, &error))?;
-        Ok(url)
+        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
         Ok(match self.way {
             InterbusWay::Virtual => (Scheme::Sim, String::new()),
-            InterbusWay::Gateway => {
-                let port = filled(&self.tcp_port).unwrap_or_else(|| PORT.to_owned());
-                (Scheme::Modbus, host_and_port(&self.host, &port)?)
-            }
+            InterbusWay::Gateway => (Scheme::Modbus, host_and_usual_port(&self.host, &self.tcp_port, PORT)?),
             InterbusWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
-    fn parameters(&self) -> Vec<(String, String)> {
+    fn parameters(&self) -> Parameters {
         let is_virtual = self.way == InterbusWay::Virtual;
-        let mut parameters = Vec::new();
-        let mut add = |name: &str, value: &str| {
-            parameters.extend(filled(value).map(|value| (name.to_owned(), value)));
-        };
+        let mut parameters = Parameters::default();
         if is_virtual {
-            // A German keyboard has a comma where the point should be.
-            add("rpm", &self.rpm.replace(',', "."));
-            add("fault", &self.fault);
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
         }
-        add("unit", &self.unit);
-        add("input", &self.input);
-        add("output", &self.output);
-        add("handshake", &self.handshake);
+        parameters.entry("unit", &self.unit);
+        parameters.entry("input", &self.input);
+        parameters.entry("output", &self.output);
+        parameters.entry("handshake", &self.handshake);
         if self.low_first {
-            add(LOW_FIRST.0, LOW_FIRST.1);
+            parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
         // What only a virtual encoder has is not taken along.
         let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
-        for (name, value) in self.rest.iter().filter(|(name, _)| belongs(name)) {
-            // What has an entry by now is what that says.
-            if parameters.iter().all(|(own, _)| own != name) {
-                parameters.push((name.clone(), value.clone()));
-            }
-        }
+        parameters.rest(&self.rest, belongs);
         parameters
     }
 }
@@ -164,25 +141,19 @@ impl InterbusForm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::connect::parameters::tests::assert_comes_back;
 
     #[test]
     fn a_link_is_shown_and_comes_back_as_it_was() {
-        for link in [
+        let links = [
             "sim:",
             "sim:?cams=demo&rpm=6",
             "sim:?rpm=-60&fault=drop:0.01&order=low-first&input=4",
             "modbus:gateway:502",
             "modbus:192.168.1.9:1502?unit=3&input=4&output=6&order=low-first&handshake=500",
             "replay:monday.trace",
-        ] {
-            let url: LinkUrl = link.parse().unwrap();
-            let mut expected: Vec<_> = url.query.pairs().to_vec();
-            let back = InterbusForm::from_url(&url).url().unwrap();
-            let mut found: Vec<_> = back.query.pairs().to_vec();
-            expected.sort();
-            found.sort();
-            assert_eq!((back.scheme, &back.target, found), (url.scheme, &url.target, expected), "{link}");
-        }
+        ];
+        assert_comes_back(&links, |url| InterbusForm::from_url(url).url());
     }
 
     #[test]

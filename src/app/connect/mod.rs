@@ -7,6 +7,7 @@ mod discovery;
 mod form;
 mod hiperdrive_form;
 mod interbus_form;
+mod parameters;
 mod ports;
 mod ssi_form;
 mod target;
@@ -158,8 +159,7 @@ impl Connect {
     /// Why this is no link to the kind of device that is chosen, or the link.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
-        self.device.check(&url).map_err(|error| target::refused(&url, &error))?;
-        Ok(url)
+        target::checked(url, |url| self.device.check(url))
     }
 
     /// A link was typed; the form follows it where it can be used.

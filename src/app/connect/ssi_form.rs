@@ -1,6 +1,7 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
-use super::target::{adapter_in_network, assemble, entered, filled, parted, refused, to_adapter};
+use super::parameters::{Parameters, without_entry};
+use super::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::app::Text;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
@@ -74,26 +75,23 @@ impl SsiForm {
         } else {
             form.port = target.to_owned();
         }
-        for (name, value) in url.query.pairs() {
-            match form.entry(name) {
-                Some(entry) => value.clone_into(entry),
-                None => form.rest.push((name.clone(), value.clone())),
-            }
-        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
     }
 
-    /// The entry of a parameter; `None` where there is none.
-    fn entry(&mut self, name: &str) -> Option<&mut String> {
+    /// Fills in the entry of a parameter; false where there is none.
+    fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == SsiWay::Virtual;
-        match name {
-            "margin" => Some(&mut self.margin),
-            "voltage" => Some(&mut self.voltage),
-            "ssi" if is_virtual => Some(&mut self.layout),
-            "rpm" if is_virtual => Some(&mut self.rpm),
-            "fault" if is_virtual => Some(&mut self.fault),
-            _ => None,
-        }
+        let entry = match name {
+            "margin" => &mut self.margin,
+            "voltage" => &mut self.voltage,
+            "ssi" if is_virtual => &mut self.layout,
+            "rpm" if is_virtual => &mut self.rpm,
+            "fault" if is_virtual => &mut self.fault,
+            _ => return false,
+        };
+        value.clone_into(entry);
+        true
     }
 
     /// The link that the entries stand for. What is as usual is left out.
@@ -101,10 +99,7 @@ impl SsiForm {
     /// # Errors
     /// A sentence that says which entry cannot be used and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
-        let (scheme, target) = self.target()?;
-        let url = assemble(scheme, &target, &self.parameters())?;
-        check(&url).map_err(|error| refused(&url, &error))?;
-        Ok(url)
+        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -116,28 +111,19 @@ impl SsiForm {
         })
     }
 
-    fn parameters(&self) -> Vec<(String, String)> {
+    fn parameters(&self) -> Parameters {
         let is_virtual = self.way == SsiWay::Virtual;
-        let mut parameters = Vec::new();
-        let mut add = |name: &str, value: &str| {
-            parameters.extend(filled(value).map(|value| (name.to_owned(), value)));
-        };
+        let mut parameters = Parameters::default();
         if is_virtual {
-            add("ssi", &self.layout);
-            // A German keyboard has a comma where the point should be.
-            add("rpm", &self.rpm.replace(',', "."));
-            add("fault", &self.fault);
+            parameters.entry("ssi", &self.layout);
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
         }
-        add("voltage", &self.voltage.replace(',', "."));
-        add("margin", &self.margin);
+        parameters.decimal("voltage", &self.voltage);
+        parameters.entry("margin", &self.margin);
         // What only a virtual encoder has is not taken along.
         let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
-        for (name, value) in self.rest.iter().filter(|(name, _)| belongs(name)) {
-            // What has an entry by now is what that says.
-            if parameters.iter().all(|(own, _)| own != name) {
-                parameters.push((name.clone(), value.clone()));
-            }
-        }
+        parameters.rest(&self.rest, belongs);
         parameters
     }
 }
@@ -150,10 +136,11 @@ fn is_of_the_virtual(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::connect::parameters::tests::assert_comes_back;
 
     #[test]
     fn a_link_is_shown_and_comes_back_as_it_was() {
-        for link in [
+        let links = [
             "sim:",
             "sim:?rpm=6",
             "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
@@ -161,15 +148,8 @@ mod tests {
             "bridge:/dev/ttyACM0?voltage=24&margin=200",
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",
             "replay:monday.trace",
-        ] {
-            let url: LinkUrl = link.parse().unwrap();
-            let mut expected: Vec<_> = url.query.pairs().to_vec();
-            let back = SsiForm::from_url(&url).url().unwrap();
-            let mut found: Vec<_> = back.query.pairs().to_vec();
-            expected.sort();
-            found.sort();
-            assert_eq!((back.scheme, &back.target, found), (url.scheme, &url.target, expected), "{link}");
-        }
+        ];
+        assert_comes_back(&links, |url| SsiForm::from_url(url).url());
         assert_eq!(SsiForm::usual().to_string(), "sim:?rpm=6");
     }
 

@@ -1,11 +1,11 @@
-//! What is the same in the connection forms of all devices: an entry that must not be empty, host and port, and a link
-//! put together from its parts.
+//! What is the same in the connection forms of all devices: an entry that must not be empty, host and port, and why a link
+//! cannot be used.
 
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;
 
 use crate::app::{Text, explain};
-use crate::link::{LinkUrl, Scheme, UrlError};
+use crate::link::{LinkUrl, UrlError};
 use crate::sim::ConfigError;
 use crate::worker::OpenError;
 
@@ -29,6 +29,15 @@ const MISSING: [&str; 4] = ["form.port_missing", "form.host_missing", "form.tcp_
 /// Whether a sentence names something that is still to be entered, and nothing that is wrong.
 pub fn is_missing(problem: &Text) -> bool {
     MISSING.contains(&problem.id())
+}
+
+/// The link, where its kind of device takes it.
+///
+/// # Errors
+/// As [`refused`].
+pub(super) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
+    check(&url).map_err(|error| refused(&url, &error))?;
+    Ok(url)
 }
 
 /// Why a link cannot be used: in the words of the entry that stands for what is wrong, where there is one.
@@ -78,10 +87,24 @@ pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
+/// The same, where an empty port stands for the usual one.
+///
+/// # Errors
+/// As [`host_and_port`].
+pub(super) fn host_and_usual_port(host: &str, port: &str, usual: &str) -> Result<String, Text> {
+    host_and_port(host, filled(port).as_deref().unwrap_or(usual))
+}
+
 /// Host and port of a place in the network, as a link has them; an empty port where it has none.
 pub(super) fn parted(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
+}
+
+/// The same; the port is empty where it is the usual one.
+pub(super) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
+    let (host, port) = parted(place);
+    (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }
 
 /// Begins the target of a link to an adapter in the network.
@@ -98,21 +121,4 @@ pub(super) fn adapter_in_network(target: &str) -> Option<&str> {
 /// As [`host_and_port`].
 pub(super) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
     Ok(format!("{TCP}{}", host_and_port(host, port)?))
-}
-
-/// Puts a link together.
-///
-/// # Errors
-/// A sentence where a character would end a part of the link, or the parts make none.
-pub(super) fn assemble(scheme: Scheme, target: &str, parameters: &[(String, String)]) -> Result<LinkUrl, Text> {
-    let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
-    let unfit = unfit(target, &['?'])
-        .or_else(|| parameters.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));
-    if let Some(value) = unfit {
-        return Err(Text::new("form.characters").with("value", value));
-    }
-    let words: Vec<String> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
-    let question = if words.is_empty() { "" } else { "?" };
-    let link = format!("{}:{target}{question}{}", scheme.word(), words.join("&"));
-    link.parse().map_err(|error| other(explain::url(&error)))
 }

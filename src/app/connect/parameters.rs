@@ -1,0 +1,82 @@
+//! The parameters of a link beside the entries of its form, in both directions: what an entry says, and what has none.
+
+use super::target::{filled, other};
+use crate::app::{Text, explain};
+use crate::link::{LinkUrl, Query, Scheme};
+
+/// A parameter of a link and its value.
+pub(super) type Pair = (String, String);
+
+/// Those of a link that `take` finds no entry for: it fills one in and says whether it did.
+pub(super) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
+    query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
+}
+
+/// The parameters of a link as the entries of its form say them, in that order. What is as usual is left out.
+#[derive(Default)]
+pub(super) struct Parameters(Vec<Pair>);
+
+impl Parameters {
+    /// One that is not as usual.
+    pub(super) fn set(&mut self, name: &str, value: &str) {
+        self.0.push((name.to_owned(), value.to_owned()));
+    }
+
+    /// What an entry says, unless it is empty.
+    pub(super) fn entry(&mut self, name: &str, entry: &str) {
+        self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
+    }
+
+    /// The same of a number: a German keyboard has a comma where the point should be.
+    pub(super) fn decimal(&mut self, name: &str, entry: &str) {
+        self.entry(name, &entry.replace(',', "."));
+    }
+
+    /// Those without an entry that belong to the link. What has an entry by now is what that says.
+    pub(super) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
+        for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
+            if self.0.iter().all(|(own, _)| own != name) {
+                self.set(name, value);
+            }
+        }
+    }
+
+    /// The link with them.
+    ///
+    /// # Errors
+    /// A sentence where a character would end a part of the link, or the parts make none.
+    pub(super) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
+        let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
+        let unfit = unfit(&target, &['?'])
+            .or_else(|| self.0.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));
+        if let Some(value) = unfit {
+            return Err(Text::new("form.characters").with("value", value));
+        }
+        let words: Vec<String> = self.0.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let question = if words.is_empty() { "" } else { "?" };
+        let link = format!("{}:{target}{question}{}", scheme.word(), words.join("&"));
+        link.parse().map_err(|error| other(explain::url(&error)))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Each link fills a form, and what that stands for is the same link; parameters may stand in another order.
+    pub(in crate::app::connect) fn assert_comes_back(
+        links: &[&str],
+        through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>,
+    ) {
+        let sorted = |url: &LinkUrl| {
+            let mut pairs = url.query.pairs().to_vec();
+            pairs.sort();
+            pairs
+        };
+        for link in links {
+            let url: LinkUrl = link.parse().unwrap();
+            let back = through(&url).unwrap();
+            assert_eq!((back.scheme, &back.target, sorted(&back)), (url.scheme, &url.target, sorted(&url)), "{link}");
+        }
+    }
+}
