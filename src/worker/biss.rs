@@ -195,11 +195,7 @@ impl Device for Biss {
     }
 
     fn is_cancelled(error: &JobError) -> bool {
-        match error {
-            JobError::Device(error) => *error == Error::Cancelled,
-            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_cancelled(),
-            _ => false,
-        }
+        error.device() == Some(&Error::Cancelled)
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 
-use crate::profile::{Operation, Plan};
+use super::interruption::{Interruption, JobError};
+use crate::profile::{Body, Document, Operation, Plan};
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
 /// What a kind of device brings to a write.
@@ -18,7 +19,7 @@ pub(super) trait Write {
     /// Why nothing can be written.
     type Refusal;
     /// How far a write came that ended early, and why.
-    type Interrupted;
+    type Interrupted: Interruption;
 
     /// Checks the consent, and reads again what the plan rests upon.
     fn confirm(&mut self) -> Result<Self::Confirmed, Self::Refusal>;
@@ -31,10 +32,10 @@ pub(super) trait Write {
         &mut self,
         confirmed: &Self::Confirmed,
         intended: &Intended,
-    ) -> Result<Self::Written, Self::Interrupted>;
+    ) -> Result<Self::Written, Box<Self::Interrupted>>;
 
-    /// For the logbook: how it ended, and write cycles spent.
-    fn conclusion(ended: Result<&Self::Written, &Self::Interrupted>) -> (Outcome, u64);
+    /// Write cycles that it has cost.
+    fn write_cycles(written: &Self::Written) -> u64;
 }
 
 /// What is written, and into what.
@@ -102,36 +103,27 @@ pub enum NotBegun {
     NotKept(FileError),
 }
 
-/// A write that is not done, or not to its end.
-pub(super) enum Failed<W: Write> {
-    /// Nothing was written.
-    NotBegun(NotBegun),
-    /// Consent or base do not hold; nothing was written.
-    Refused(W::Refusal),
-    /// It was begun and not finished.
-    Interrupted {
-        /// How far it came.
-        interrupted: W::Interrupted,
-        /// The before-image.
-        backup: PathBuf,
-    },
-}
+/// A write that is not done, or not to its end; where consent or base do not hold, it is the device's error.
+pub(super) type Failed<W, P, K> = JobError<<W as Write>::Refusal, P, <W as Write>::Interrupted, K>;
 
-/// The one way to write. A plan without operations is done.
-pub(super) fn commit<W: Write>(
+/// The one way to write a change of such a kind. A plan without operations is done.
+pub(super) fn commit<W: Write, P, K>(
     store: &Store,
     terms: &Terms,
+    kind: K,
     write: &mut W,
-) -> Result<Committed<W::Written>, Failed<W>> {
+) -> Result<Committed<W::Written>, Failed<W, P, K>> {
     if terms.items.is_empty() {
         return Ok(Committed { written: W::Written::default(), backup: None, logbook_warning: None });
     }
-    check_wear(terms).map_err(Failed::NotBegun)?;
-    let confirmed = write.confirm().map_err(Failed::Refused)?;
-    let kept = Intended::note(store, terms, &write.before_image());
-    let intended = kept.map_err(|error| Failed::NotBegun(NotBegun::NotKept(error)))?;
+    check_wear(terms)?;
+    let confirmed = write.confirm().map_err(JobError::Device)?;
+    let intended = Intended::note(store, terms, &write.before_image()).map_err(NotBegun::NotKept)?;
     let ended = write.carry_out(&confirmed, &intended);
-    let (outcome, spent) = W::conclusion(ended.as_ref());
+    let (outcome, spent) = match &ended {
+        Ok(written) => (Outcome::Done, W::write_cycles(written)),
+        Err(interrupted) => (interrupted.why().map_or(Outcome::Cancelled, Outcome::Failed), interrupted.write_cycles()),
+    };
     let (backup, logbook_warning) = intended.conclude(outcome, spent);
     match ended {
         Ok(written) => Ok(Committed { written, backup: Some(backup), logbook_warning }),
@@ -139,9 +131,23 @@ pub(super) fn commit<W: Write>(
             if let Some(why) = logbook_warning {
                 tracing::warn!("{why}");
             }
-            Err(Failed::Interrupted { interrupted, backup })
+            Err(JobError::Interrupted { interrupted, backup, planned: terms.items.len(), kind })
         }
     }
+}
+
+/// A profile as it is kept before a write.
+pub(super) fn backup_of(body: Body) -> Document {
+    let mut document = Document::new(Timestamp::now().to_string(), body);
+    document.note = Some("before-image of a write".to_owned());
+    document
+}
+
+/// Write cycles that a device will have taken at least when it has taken `cost` more, where a person should know that they
+/// are numbered: from `warning` on.
+pub(super) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
+    let after = seen.unwrap_or(0).saturating_add(cost);
+    (cost > 0 && after >= warning).then_some(after)
 }
 
 /// Write cycles that this computer has seen a device take; `None` where the logbook does not tell.
@@ -206,6 +212,27 @@ mod tests {
         ends_early: bool,
     }
 
+    /// The user wished it, so many write cycles after it had begun.
+    struct Cancelled {
+        cycles: u64,
+    }
+
+    impl Interruption for Cancelled {
+        type Error = ();
+
+        fn error(&self) -> Option<&()> {
+            None
+        }
+
+        fn why(&self) -> Option<String> {
+            None
+        }
+
+        fn write_cycles(&self) -> u64 {
+            self.cycles
+        }
+    }
+
     impl Spy {
         fn open_intents(&self) -> usize {
             let logbook = Logbook::open(&self.store.logbook_path()).unwrap();
@@ -218,7 +245,7 @@ mod tests {
         type Confirmed = ();
         type Written = u64;
         type Refusal = ();
-        type Interrupted = u64;
+        type Interrupted = Cancelled;
 
         fn confirm(&mut self) -> Result<(), ()> {
             self.steps.push("confirm");
@@ -230,18 +257,15 @@ mod tests {
             "before".to_owned()
         }
 
-        fn carry_out(&mut self, (): &(), _intended: &Intended) -> Result<u64, u64> {
+        fn carry_out(&mut self, (): &(), _intended: &Intended) -> Result<u64, Box<Cancelled>> {
             self.steps.push("carry out");
             assert_eq!(self.store.backups().list("spy", "1").unwrap().len(), 1);
             assert_eq!(self.open_intents(), 1);
-            if self.ends_early { Err(1) } else { Ok(2) }
+            if self.ends_early { Err(Box::new(Cancelled { cycles: 1 })) } else { Ok(2) }
         }
 
-        fn conclusion(ended: Result<&u64, &u64>) -> (Outcome, u64) {
-            match ended {
-                Ok(cycles) => (Outcome::Done, *cycles),
-                Err(cycles) => (Outcome::Cancelled, *cycles),
-            }
+        fn write_cycles(written: &u64) -> u64 {
+            *written
         }
     }
 
@@ -274,16 +298,16 @@ mod tests {
             let root = tempfile::tempdir().unwrap();
             let store = Store::at(root.path());
             let mut spy = Spy { store: store.clone(), steps: Vec::new(), refuses, ends_early };
-            let ended = commit(&store, &terms(seen), &mut spy);
+            let ended: Result<_, Failed<Spy, (), char>> = commit(&store, &terms(seen), 'k', &mut spy);
             assert_eq!(spy.steps, steps, "{label}");
             assert_eq!(cycles_seen(&store, &terms(0).device), Some(spent), "{label}");
             match ended {
                 Ok(done) => assert!(label == "done" && done.written == 2 && done.logbook_warning.is_none()),
-                Err(Failed::Interrupted { interrupted, backup }) => {
-                    assert!(label == "cut off" && interrupted == 1 && backup.exists());
+                Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
+                    assert!(label == "cut off" && interrupted.cycles == 1 && backup.exists());
                 }
-                Err(Failed::Refused(())) => assert_eq!(label, "refused"),
-                Err(Failed::NotBegun(NotBegun::Worn { seen: 9, cost: 2, limit: 10 })) => assert_eq!(label, "worn"),
+                Err(JobError::Device(())) => assert_eq!(label, "refused"),
+                Err(JobError::NotBegun(NotBegun::Worn { seen: 9, cost: 2, limit: 10 })) => assert_eq!(label, "worn"),
                 Err(_) => panic!("{label}"),
             }
         }
@@ -299,21 +323,22 @@ mod tests {
             type Confirmed = ();
             type Written = ();
             type Refusal = ();
-            type Interrupted = ();
+            type Interrupted = Cancelled;
             fn confirm(&mut self) -> Result<(), ()> {
                 Ok(())
             }
             fn before_image(&self) -> String {
                 String::new()
             }
-            fn carry_out(&mut self, (): &(), _: &Intended) -> Result<(), ()> {
+            fn carry_out(&mut self, (): &(), _: &Intended) -> Result<(), Box<Cancelled>> {
                 Ok(())
             }
-            fn conclusion(_: Result<&(), &()>) -> (Outcome, u64) {
-                (Outcome::Done, 2)
+            fn write_cycles((): &()) -> u64 {
+                2
             }
         }
-        let Ok(done) = commit(&store, &terms(0), &mut Plain) else { panic!() };
+        let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(0), (), &mut Plain);
+        let Ok(done) = ended else { panic!() };
         assert!(done.logbook_warning.is_some());
         assert_eq!(cycles_seen(&store, &terms(0).device), None);
     }

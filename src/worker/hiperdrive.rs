@@ -24,7 +24,9 @@ pub use open::{check, open};
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::hiperdrive::check::check as check_device;
-use crate::device::hiperdrive::{Master, Reading, Station, identify, network, position, read_status, save, survey};
+use crate::device::hiperdrive::{
+    Error, Master, Reading, Station, identify, network, position, read_status, save, survey,
+};
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::protocol::hiperdrive::DriveNumber;
 use crate::sim::hiperdrive::Target;
@@ -159,11 +161,7 @@ impl Device for Hiperdrive {
     }
 
     fn is_cancelled(error: &JobError) -> bool {
-        match error {
-            JobError::Device(error) => error.is_cancelled(),
-            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_cancelled(),
-            _ => false,
-        }
+        error.device().is_some_and(Error::is_cancelled)
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

@@ -161,11 +161,7 @@ impl Device for Hiperface {
     }
 
     fn is_cancelled(error: &JobError) -> bool {
-        match error {
-            JobError::Device(error) => *error == Error::Cancelled,
-            JobError::Interrupted { interrupted, .. } => interrupted.cause == Error::Cancelled,
-            _ => false,
-        }
+        error.device() == Some(&Error::Cancelled)
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

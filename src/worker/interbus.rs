@@ -139,11 +139,7 @@ impl Device for Interbus {
     }
 
     fn is_cancelled(error: &JobError) -> bool {
-        match error {
-            JobError::Device(error) => error.is_cancelled(),
-            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_cancelled(),
-            _ => false,
-        }
+        error.device().is_some_and(Error::is_cancelled)
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

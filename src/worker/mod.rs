@@ -13,6 +13,7 @@ mod commit;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
+mod interruption;
 mod live;
 mod open;
 mod outbox;
@@ -30,6 +31,7 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
 pub use commit::{Committed, NotBegun};
+pub use interruption::{Interruption, JobError};
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;
@@ -127,6 +129,13 @@ pub struct Progress<W> {
     pub total: u64,
     /// What is being done.
     pub what: W,
+}
+
+impl<W> Progress<W> {
+    /// The operation of this number begins, from 0.
+    fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
+        Progress { done: number as u64, total: ops.len() as u64, what }
+    }
 }
 
 /// What a job tells on its way.

@@ -12,7 +12,6 @@ pub use write::{change, failure, op, plan, preset, wear, weight, written};
 
 use super::{adapter, link, not_begun, store};
 use crate::app::Text;
-use crate::device::biss::procedure::Failure;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::protocol::biss::Mismatch;
@@ -32,14 +31,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// The wire itself failed, so that nothing more can be asked over it: why.
 pub fn loss(error: &JobError) -> Option<Text> {
-    match error {
-        JobError::Device(error) => lost(error).map(link),
-        JobError::Interrupted { interrupted, .. } => match &interrupted.cause {
-            Failure::Device(error) => lost(error).map(link),
-            _ => None,
-        },
-        JobError::Plan(_) | JobError::NotBegun(_) => None,
-    }
+    lost(error.device()?).map(link)
 }
 
 fn lost(error: &Error) -> Option<&LinkError> {

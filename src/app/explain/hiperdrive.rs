@@ -34,7 +34,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// The wire itself failed, so that nothing more can be asked over it: why.
 pub fn loss(error: &JobError) -> Option<Text> {
-    match cause(error)? {
+    match error.device()? {
         Error::Link(error) => Some(link(error)),
         _ => None,
     }
@@ -42,15 +42,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
 
 /// The link is open, and nobody answers over it.
 pub fn is_silence(error: &JobError) -> bool {
-    matches!(cause(error), Some(Error::NoReply { .. }))
-}
-
-fn cause(error: &JobError) -> Option<&Error> {
-    match error {
-        JobError::Device(error) => Some(error),
-        JobError::Interrupted { interrupted, .. } => Some(&interrupted.cause),
-        JobError::Plan(_) | JobError::NotBegun(_) => None,
-    }
+    matches!(error.device(), Some(Error::NoReply { .. }))
 }
 
 /// What a job does at the moment.

@@ -72,12 +72,7 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
 
 /// The wire itself failed, so that nothing more can be asked over it: why.
 pub fn loss(error: &JobError) -> Option<Text> {
-    let cause = match error {
-        JobError::Device(error) => error,
-        JobError::Interrupted { interrupted, .. } => &interrupted.cause,
-        _ => return None,
-    };
-    match cause {
+    match error.device()? {
         Error::Link(error) => Some(link(error)),
         _ => None,
     }

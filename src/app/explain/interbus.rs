@@ -30,20 +30,12 @@ pub fn job(error: &JobError) -> Vec<Text> {
 
 /// The wire itself failed, so that nothing more can be asked over it: why.
 pub fn loss(error: &JobError) -> Option<Text> {
-    lost(device(error)?).map(link)
+    lost(error.device()?).map(link)
 }
 
 /// The link is open, and nobody answers over it.
 pub fn is_silence(error: &JobError) -> bool {
-    matches!(device(error), Some(Error::NoReply { .. }))
-}
-
-fn device(error: &JobError) -> Option<&Error> {
-    match error {
-        JobError::Device(error) => Some(error),
-        JobError::Interrupted { interrupted, .. } => Some(&interrupted.cause),
-        JobError::Plan(_) | JobError::NotBegun(_) => None,
-    }
+    matches!(error.device(), Some(Error::NoReply { .. }))
 }
 
 fn lost(error: &Error) -> Option<&LinkError> {

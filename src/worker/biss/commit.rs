@@ -1,16 +1,13 @@
 //! What a BiSS encoder brings to a write.
 
-use jiff::Timestamp;
-
 use super::{Attendance, Biss, Commit, Committed, Doing, JobError, Prepared, WEAR_LIMIT, device_key};
 use crate::device::biss::procedure::{Failure, News};
 use crate::device::biss::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::biss::{Error, Master};
 use crate::profile::biss::{BissProfile, DataImage, Op, PresetSetting, Recorded};
-use crate::profile::{Body, Document, Unknown};
-use crate::store::Outcome;
-use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
-use crate::worker::{Desk, Progress};
+use crate::profile::{Body, Unknown};
+use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::{Desk, Interruption, Progress};
 
 pub(super) fn commit(
     encoder: &mut Biss,
@@ -27,13 +24,7 @@ pub(super) fn commit(
     encoder.know(desk)?;
     let attendance = commit.attendance.clone();
     let mut write = EncoderWrite { master: encoder.master(desk), commit, attendance, tell };
-    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
-        Failed::NotBegun(why) => why.into(),
-        Failed::Refused(error) => error.into(),
-        Failed::Interrupted { interrupted, backup } => {
-            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
-        }
-    })
+    carry_through(&store, &terms, prepared.kind, &mut write)
 }
 
 struct EncoderWrite<'w, 'm> {
@@ -47,7 +38,7 @@ impl<'w> Write for EncoderWrite<'w, '_> {
     type Confirmed = Confirmed<'w>;
     type Written = Written;
     type Refusal = Error;
-    type Interrupted = Box<Interrupted>;
+    type Interrupted = Interrupted;
 
     fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
         let Commit { prepared, consent, .. } = self.commit;
@@ -62,23 +53,33 @@ impl<'w> Write for EncoderWrite<'w, '_> {
         let ops = &self.commit.prepared.plan.ops;
         let told = &mut |news: News| {
             let item = ops.get(news.op).map(Op::item).unwrap_or_default();
-            let (done, total) = (news.op as u64, ops.len() as u64);
-            (self.tell)(Progress { done, total, what: Doing::Operation { item, news: Box::new(news) } });
+            let at = news.op;
+            (self.tell)(Progress::at(ops, at, Doing::Operation { item, news: Box::new(news) }));
         };
         carry_out(&mut self.master, confirmed, &mut self.attendance, told)
     }
 
-    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
-        match ended {
-            Ok(written) => (Outcome::Done, written.write_cycles),
-            Err(interrupted) => {
-                let outcome = match &interrupted.cause {
-                    Failure::Device(Error::Cancelled) => Outcome::Cancelled,
-                    cause => Outcome::Failed(cause.to_string()),
-                };
-                (outcome, interrupted.done.write_cycles)
-            }
+    fn write_cycles(written: &Written) -> u64 {
+        written.write_cycles
+    }
+}
+
+impl Interruption for Interrupted {
+    type Error = Error;
+
+    fn error(&self) -> Option<&Error> {
+        match &self.cause {
+            Failure::Device(error) => Some(error),
+            _ => None,
         }
+    }
+
+    fn why(&self) -> Option<String> {
+        (!self.cause.is_cancelled()).then(|| self.cause.to_string())
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.done.write_cycles
     }
 }
 
@@ -99,12 +100,11 @@ fn before_image(prepared: &Prepared) -> String {
         data: touched.filter(|image| image.all().next().is_some()).collect(),
     };
     profile.mark_mounting();
-    let mut document = Document::new(Timestamp::now().to_string(), Body::Biss(profile));
-    let mut note = "before-image of a write".to_owned();
+    let mut document = backup_of(Body::Biss(profile));
+    let note = document.note.get_or_insert_default();
     for (address, value) in &base.registers {
         // A profile has no place for them.
         note.push_str(&format!("; {address} was 0x{value:02X}"));
     }
-    document.note = Some(note);
     document.emit()
 }

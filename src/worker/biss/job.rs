@@ -1,7 +1,6 @@
 //! What can be asked of a BiSS encoder, and what comes of it.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use super::Identity;
 use crate::bits::hex_compact;
@@ -15,7 +14,7 @@ use crate::profile::biss::{
 };
 use crate::protocol::biss::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, StoreError};
-use crate::worker::NotBegun;
+use crate::worker::commit::wear;
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
@@ -139,9 +138,7 @@ pub struct Prepared {
 impl Prepared {
     /// Write cycles that the flash will have taken at least, where a person should know that they are numbered.
     pub fn wear(&self) -> Option<u64> {
-        let cost = self.plan.write_cycles();
-        let after = self.cycles_seen.unwrap_or(0).saturating_add(cost);
-        (cost > 0 && after >= WEAR_WARNING).then_some(after)
+        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
@@ -249,29 +246,18 @@ pub enum BissOutput {
 }
 
 /// Why a job ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum JobError {
-    /// The device.
-    #[error(transparent)]
-    Device(#[from] Error),
-    /// It cannot be planned; nothing was written.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The encoder counts as worn, or its before-image cannot be kept; nothing was written.
-    #[error(transparent)]
-    NotBegun(#[from] NotBegun),
-    /// It was begun and not finished.
-    #[error("{interrupted}; before-image: {}", backup.display())]
-    Interrupted {
-        /// What was written, why it ended, and in which state the encoder was left.
-        interrupted: Box<Interrupted>,
-        /// The before-image.
-        backup: PathBuf,
-        /// Operations of the plan.
-        planned: usize,
-        /// The kind of change.
-        kind: ChangeKind,
-    },
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
 }
 
 /// How backups and the logbook know an encoder: serial numbers are unique within what one manufacturer calls a device.

@@ -167,11 +167,7 @@ impl Hiperdrive {
             self.control.motion.permit(drive.number, Permit::default());
         }
         let ended = carry_through(self, desk, commit, tell);
-        let lost = match &ended {
-            Err(JobError::Device(error)) => error.is_lost(),
-            Err(JobError::Interrupted { interrupted, .. }) => interrupted.cause.is_lost(),
-            _ => false,
-        };
+        let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
         // Who is gone is not asked again.
         if !lost && let Err(why) = self.read_rules(desk, identity) {
             tracing::warn!("{why}");

@@ -1,7 +1,6 @@
 //! What can be asked of an adapter or a hub with its drives, and what comes of it.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use crate::device::hiperdrive::check::{Line, Step};
 use crate::device::hiperdrive::write::{Interrupted, Written};
@@ -12,7 +11,7 @@ use crate::profile::hiperdrive::{
 };
 use crate::protocol::hiperdrive::{DriveNumber, KIND, ParameterNumber, Value};
 use crate::store::DeviceKey;
-use crate::worker::NotBegun;
+use crate::worker::commit::wear;
 
 /// Saves from which a person should know that they may be numbered: an assumption, since the manual names no limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
@@ -135,9 +134,7 @@ pub struct Prepared {
 impl Prepared {
     /// So many saves after this, where a person should know.
     pub fn wear(&self) -> Option<u64> {
-        let cost = self.plan.write_cycles();
-        let after = self.cycles_seen.unwrap_or(0).saturating_add(cost);
-        (cost > 0 && after >= WEAR_WARNING).then_some(after)
+        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
@@ -205,29 +202,18 @@ pub enum HiperdriveOutput {
 }
 
 /// Why a job ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum JobError {
-    /// The device.
-    #[error(transparent)]
-    Device(#[from] Error),
-    /// It cannot be planned; nothing was written.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// Its before-image cannot be kept; nothing was written.
-    #[error(transparent)]
-    NotBegun(#[from] NotBegun),
-    /// It was begun and not finished.
-    #[error("{interrupted}; before-image: {}", backup.display())]
-    Interrupted {
-        /// What was written, and why it ended.
-        interrupted: Box<Interrupted>,
-        /// The before-image.
-        backup: PathBuf,
-        /// Operations of the plan.
-        planned: usize,
-        /// The kind of change.
-        kind: ChangeKind,
-    },
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
 }
 
 /// How backups and the logbook know a device: saves are those of the adapter or hub, whatever is plugged into it.

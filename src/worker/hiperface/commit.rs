@@ -1,16 +1,14 @@
 //! What a HIPERFACE encoder brings to a write.
 
-use jiff::Timestamp;
-
 use super::{Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
 use crate::device::hiperface::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::hiperface::{Error, Identity, Master, profile_of};
+use crate::profile::Body;
 use crate::profile::hiperface::{Op, Recorded, Scalar};
-use crate::profile::{Body, Document};
 use crate::protocol::hiperface::KIND;
-use crate::store::{DeviceKey, Outcome};
-use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
-use crate::worker::{Desk, Progress};
+use crate::store::DeviceKey;
+use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::{Desk, Interruption, Progress};
 
 pub(super) fn commit(
     encoder: &mut Hiperface,
@@ -24,13 +22,7 @@ pub(super) fn commit(
     let device = device_key(&prepared.identity, desk.is_virtual);
     let terms = Terms::of(device, plan, Op::item, (prepared.cycles_seen, WEAR_LIMIT), commit.force_wear);
     let mut write = EncoderWrite { master: encoder.master(desk), commit, tell };
-    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
-        Failed::NotBegun(why) => why.into(),
-        Failed::Refused(error) => error.into(),
-        Failed::Interrupted { interrupted, backup } => {
-            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
-        }
-    })
+    carry_through(&store, &terms, prepared.kind, &mut write)
 }
 
 /// How backups and the logbook know an encoder.
@@ -53,7 +45,7 @@ impl<'w> Write for EncoderWrite<'w, '_> {
     type Confirmed = Confirmed<'w>;
     type Written = Written;
     type Refusal = Error;
-    type Interrupted = Box<Interrupted>;
+    type Interrupted = Interrupted;
 
     fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
         let Commit { prepared, consent, .. } = self.commit;
@@ -65,24 +57,29 @@ impl<'w> Write for EncoderWrite<'w, '_> {
     }
 
     fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
-        let total = self.commit.prepared.plan.ops.len() as u64;
-        let progress = &mut |at: usize, op: &Op| {
-            (self.tell)(Progress { done: at as u64, total, what: Doing::Operation(op.clone()) })
-        };
+        let ops = &self.commit.prepared.plan.ops;
+        let progress = &mut |at: usize, op: &Op| (self.tell)(Progress::at(ops, at, Doing::Operation(op.clone())));
         carry_out(&mut self.master, confirmed, progress)
     }
 
-    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
-        match ended {
-            Ok(written) => (Outcome::Done, written.write_cycles),
-            Err(interrupted) => {
-                let outcome = match &interrupted.cause {
-                    Error::Cancelled => Outcome::Cancelled,
-                    cause => Outcome::Failed(cause.to_string()),
-                };
-                (outcome, interrupted.done.write_cycles)
-            }
-        }
+    fn write_cycles(written: &Written) -> u64 {
+        written.write_cycles
+    }
+}
+
+impl Interruption for Interrupted {
+    type Error = Error;
+
+    fn error(&self) -> Option<&Error> {
+        Some(&self.cause)
+    }
+
+    fn why(&self) -> Option<String> {
+        (self.cause != Error::Cancelled).then(|| self.cause.to_string())
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.done.write_cycles
     }
 }
 
@@ -98,7 +95,5 @@ fn before_image(prepared: &Prepared) -> String {
         }
     }
     let profile = profile_of(&prepared.identity, base.fields.clone(), recorded);
-    let mut document = Document::new(Timestamp::now().to_string(), Body::Hiperface(profile));
-    document.note = Some("before-image of a write".to_owned());
-    document.emit()
+    backup_of(Body::Hiperface(profile)).emit()
 }

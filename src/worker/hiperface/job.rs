@@ -1,7 +1,6 @@
 //! What can be asked of a HIPERFACE encoder, and what comes of it.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use crate::device::hiperface::check::Line;
 use crate::device::hiperface::find::{Attempt, FindOptions, Findings, Found};
@@ -12,7 +11,6 @@ use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Ite
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::worker::NotBegun;
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -271,29 +269,18 @@ pub enum HiperfaceOutput {
 }
 
 /// Why a job ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum JobError {
-    /// The device.
-    #[error(transparent)]
-    Device(#[from] Error),
-    /// It cannot be planned; nothing was written.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The encoder counts as worn, or its before-image cannot be kept; nothing was written.
-    #[error(transparent)]
-    NotBegun(#[from] NotBegun),
-    /// It was begun and not finished.
-    #[error("{interrupted}; before-image: {}", backup.display())]
-    Interrupted {
-        /// What was written, and why it ended.
-        interrupted: Box<Interrupted>,
-        /// The before-image.
-        backup: PathBuf,
-        /// Operations of the plan.
-        planned: usize,
-        /// The kind of change.
-        kind: ChangeKind,
-    },
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
 }
 
 impl JobError {

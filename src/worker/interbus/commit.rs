@@ -1,15 +1,12 @@
 //! What an INTERBUS encoder brings to a write.
 
-use jiff::Timestamp;
-
 use super::{Commit, Committed, Doing, Interbus, JobError, Prepared, Remark, Told, WEAR_LIMIT, device_key};
 use crate::device::interbus::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::interbus::{Error, Master};
+use crate::profile::Body;
 use crate::profile::interbus::{Image, InterbusProfile, Op, Recorded};
-use crate::profile::{Body, Document};
-use crate::store::Outcome;
-use crate::worker::commit::{Failed, Intended, Terms, Write, commit as carry_through};
-use crate::worker::{Desk, Progress, Tell};
+use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::{Desk, Interruption, Progress, Tell};
 
 pub(super) fn commit(
     encoder: &mut Interbus,
@@ -28,13 +25,7 @@ pub(super) fn commit(
     let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
     let told = &mut |progress| (tell.borrow_mut())(Tell::Progress(progress));
     let mut write = EncoderWrite { master, commit, told };
-    carry_through(&store, &terms, &mut write).map_err(|failed| match failed {
-        Failed::NotBegun(why) => why.into(),
-        Failed::Refused(error) => error.into(),
-        Failed::Interrupted { interrupted, backup } => {
-            JobError::Interrupted { interrupted, backup, planned: plan.ops.len(), kind: prepared.kind }
-        }
-    })
+    carry_through(&store, &terms, prepared.kind, &mut write)
 }
 
 struct EncoderWrite<'w, 'm> {
@@ -47,7 +38,7 @@ impl<'w> Write for EncoderWrite<'w, '_> {
     type Confirmed = Confirmed<'w>;
     type Written = Written;
     type Refusal = Error;
-    type Interrupted = Box<Interrupted>;
+    type Interrupted = Interrupted;
 
     fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
         let Commit { prepared, consent, .. } = self.commit;
@@ -62,23 +53,29 @@ impl<'w> Write for EncoderWrite<'w, '_> {
         let ops = &self.commit.prepared.plan.ops;
         let told = &mut |number: usize| {
             let item = ops.get(number).map(Op::item).unwrap_or_default();
-            let (done, total) = (number as u64, ops.len() as u64);
-            (self.told)(Progress { done, total, what: Doing::Operation(item) });
+            (self.told)(Progress::at(ops, number, Doing::Operation(item)));
         };
         carry_out(&mut self.master, confirmed, told)
     }
 
-    fn conclusion(ended: Result<&Written, &Box<Interrupted>>) -> (Outcome, u64) {
-        match ended {
-            Ok(written) => (Outcome::Done, written.write_cycles),
-            Err(interrupted) => {
-                let outcome = match &interrupted.cause {
-                    Error::Cancelled => Outcome::Cancelled,
-                    cause => Outcome::Failed(cause.to_string()),
-                };
-                (outcome, interrupted.done.write_cycles)
-            }
-        }
+    fn write_cycles(written: &Written) -> u64 {
+        written.write_cycles
+    }
+}
+
+impl Interruption for Interrupted {
+    type Error = Error;
+
+    fn error(&self) -> Option<&Error> {
+        Some(&self.cause)
+    }
+
+    fn why(&self) -> Option<String> {
+        (self.cause != Error::Cancelled).then(|| self.cause.to_string())
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.done.write_cycles
     }
 }
 
@@ -93,7 +90,5 @@ fn before_image(prepared: &Prepared) -> String {
         }
     }
     let profile = InterbusProfile::of(identity.profile(), image, Recorded::default());
-    let mut document = Document::new(Timestamp::now().to_string(), Body::Interbus(Box::new(profile)));
-    document.note = Some("before-image of a write".to_owned());
-    document.emit()
+    backup_of(Body::Interbus(Box::new(profile))).emit()
 }

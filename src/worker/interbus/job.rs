@@ -1,7 +1,6 @@
 //! What can be asked of an INTERBUS encoder, and what comes of it.
 
 use std::fmt;
-use std::path::PathBuf;
 
 use crate::device::interbus::check::Line;
 use crate::device::interbus::write::{Interrupted, Written};
@@ -12,7 +11,6 @@ use crate::profile::interbus::{
 };
 use crate::protocol::interbus::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
 use crate::store::DeviceKey;
-use crate::worker::NotBegun;
 
 /// Stores from which a person should know that they are numbered (reference 3: some 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
@@ -223,29 +221,18 @@ pub enum InterbusOutput {
 }
 
 /// Why a job ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum JobError {
-    /// The device.
-    #[error(transparent)]
-    Device(#[from] Error),
-    /// It cannot be planned; nothing was written.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The EEPROM counts as worn, or its before-image cannot be kept; nothing was written.
-    #[error(transparent)]
-    NotBegun(#[from] NotBegun),
-    /// It was begun and not finished.
-    #[error("{interrupted}; before-image: {}", backup.display())]
-    Interrupted {
-        /// What was written, why it ended, and in which state the encoder was left.
-        interrupted: Box<Interrupted>,
-        /// The before-image.
-        backup: PathBuf,
-        /// Operations of the plan.
-        planned: usize,
-        /// The kind of change.
-        kind: ChangeKind,
-    },
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
 }
 
 /// How backups and the logbook know an encoder: there is one maker, and one type.
