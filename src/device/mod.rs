@@ -8,5 +8,6 @@ pub mod hiperface;
 pub mod interbus;
 mod line;
 pub mod ssi;
+mod written;
 
 pub use line::{Echo, LineState};

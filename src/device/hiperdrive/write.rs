@@ -5,6 +5,8 @@
 
 use std::time::Duration;
 
+pub use crate::device::written::Written;
+
 use super::error::Asked;
 use super::identify::{drive_status, drive_text, of, own, topology};
 use super::network::settings;
@@ -19,19 +21,6 @@ use crate::protocol::hiperdrive::{
 /// A plan that a person consented to and whose base still holds.
 pub struct Confirmed<'p> {
     plan: &'p HiperdrivePlan,
-}
-
-/// What was written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Written {
-    /// Operations carried out, of the plan's.
-    pub ops: usize,
-    /// Things changed, counted as a comparison counts them.
-    pub written: u64,
-    /// Those of them that were read back and found as they should be.
-    pub verified: u64,
-    /// Saves spent, or that may have been.
-    pub write_cycles: u64,
 }
 
 /// A write that ended early.

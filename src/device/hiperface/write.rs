@@ -3,6 +3,8 @@
 //!
 //! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
 
+pub use crate::device::written::Written;
+
 use super::{
     Error, Identity, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
     read_range,
@@ -22,19 +24,6 @@ pub struct Confirmed<'p> {
     plan: &'p HiperfacePlan,
     /// Number of different positions.
     range: u64,
-}
-
-/// What was written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Written {
-    /// Operations carried out, of the plan's.
-    pub ops: usize,
-    /// Things changed: bytes of fields, else one an operation.
-    pub written: u64,
-    /// Things read back and found as they should be.
-    pub verified: u64,
-    /// Persistent writes spent, repeated ones included.
-    pub write_cycles: u64,
 }
 
 /// A write that ended early.

@@ -5,6 +5,8 @@
 
 use std::time::Duration;
 
+pub use crate::device::written::Written;
+
 use super::error::Implausible;
 use super::handshake::Standing;
 use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
@@ -16,19 +18,6 @@ use crate::protocol::interbus::{Command, Gear, PARAMETERS, Parameter, ParameterR
 /// A plan that a person consented to and whose base still holds.
 pub struct Confirmed<'p> {
     plan: &'p InterbusPlan,
-}
-
-/// What was written.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Written {
-    /// Operations carried out, of the plan's.
-    pub ops: usize,
-    /// Things changed, counted as a comparison counts them.
-    pub written: u64,
-    /// Those of them that were read back and found as they should be.
-    pub verified: u64,
-    /// Stores in the EEPROM spent, or that may have been.
-    pub write_cycles: u64,
 }
 
 /// A write that ended early.
