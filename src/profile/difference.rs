@@ -27,6 +27,21 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// Compares an item that counts one, as far as both sides have it.
+    pub(super) fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
+        match (left, right) {
+            (None, None) => {}
+            (Some(_), None) => self.only_left.push(item),
+            (None, Some(_)) => self.only_right.push(item),
+            (Some(left), Some(right)) => {
+                self.compared += 1;
+                if left != right {
+                    self.differences.push(Difference { item, left: left.to_string(), right: right.to_string() });
+                }
+            }
+        }
+    }
+
     /// Items that only one side has.
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()

@@ -1,17 +1,10 @@
 //! What restoring a profile would do: only what differs, in the fewest persistent writes, and nothing that belongs to
 //! another encoder's mounting. A preset is stored and never carried out.
 
+pub use crate::profile::RestoreOptions;
+
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::protocol::biss::{Area, Filter, Firmware, Identity, PresetValue, ProcedureKind, RegisterAddress};
-
-/// What a restore may do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RestoreOptions {
-    /// The profile may go onto an encoder with another serial number, or of another kind.
-    pub allow_other_device: bool,
-    /// Values of the mounting may go onto another encoder.
-    pub with_mounting: bool,
-}
 
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,17 +22,7 @@ pub struct DeviceState {
 }
 
 /// What a restore would do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restore {
-    /// The operations.
-    pub plan: BissPlan,
-    /// Registers that are already as the profile says.
-    pub unchanged: u64,
-    /// Settings of the profile that the encoder does not have: left alone.
-    pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
-    pub mounting_left: Vec<RegisterRange>,
-}
+pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
 /// Why something cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

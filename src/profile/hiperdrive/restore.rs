@@ -1,20 +1,12 @@
 //! What restoring a profile would do: only what differs, one save behind it, and never a drive's reference, which belongs to
 //! its machine.
 
+pub use crate::profile::RestoreOptions;
+
 use super::plan_edits;
 use super::record::REFERENCE;
 use super::{HiperdrivePlan, HiperdriveProfile, Image, Item, PlanError, Positions, ProfileDrive, ProfileIdentity};
 use crate::protocol::hiperdrive::DriveNumber;
-
-/// What a restore may do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RestoreOptions {
-    /// The profile may go onto a device of another kind or with another serial number, or with such drives: onto the places
-    /// that both have.
-    pub allow_other_device: bool,
-    /// What a person has marked as belonging to the mounting may go onto another device. The reference (198) never does.
-    pub with_mounting: bool,
-}
 
 /// A device as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,19 +20,10 @@ pub struct DeviceState {
 }
 
 /// What a restore would do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restore {
-    /// The operations.
-    pub plan: HiperdrivePlan,
-    /// Parameters that are already as the profile says.
-    pub unchanged: u64,
-    /// Parameters of the profile that the device does not have, as those of an empty place: left alone.
-    pub missing: Vec<String>,
-    /// What belongs to the mounting, differs and is left alone.
-    pub mounting_left: Vec<Item>,
-}
+pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
-/// Plans a restore.
+/// Plans a restore: onto another device, at the places that both have. What belongs to the mounting is what a person has
+/// marked so, and a drive's reference (198), which is always left alone.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.

@@ -32,17 +32,7 @@ pub struct DeviceState {
 }
 
 /// What a restore would do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restore {
-    /// The operations.
-    pub plan: HiperfacePlan,
-    /// Things that are already as the profile says.
-    pub unchanged: u64,
-    /// Fields that only the encoder has, or that one side cannot read: left alone, or created without content.
-    pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
-    pub mounting_left: Vec<FieldRange>,
-}
+pub type Restore = crate::profile::Restore<HiperfacePlan, FieldRange>;
 
 /// Why a profile cannot be restored.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,17 +1,10 @@
 //! What restoring a profile would do: only what differs, in the fewest stores, and nothing that belongs to another
 //! encoder's mounting. A preset is stored and never fired.
 
+pub use crate::profile::RestoreOptions;
+
 use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, plan_edits};
 use crate::protocol::interbus::{OutOfRange, ProgramNumber};
-
-/// What a restore may do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RestoreOptions {
-    /// The profile may go onto an encoder with another serial number, or one that counts its steps otherwise.
-    pub allow_other_device: bool,
-    /// Values of the mounting may go onto another encoder.
-    pub with_mounting: bool,
-}
 
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,17 +16,7 @@ pub struct DeviceState {
 }
 
 /// What a restore would do.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restore {
-    /// The operations.
-    pub plan: InterbusPlan,
-    /// Items that are already as the profile says.
-    pub unchanged: u64,
-    /// Items of the profile that the encoder does not have: left alone.
-    pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
-    pub mounting_left: Vec<Item>,
-}
+pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// The programs that have to be read before a restore of this profile can be planned. The shift of the window is read with
 /// one of them: with the first program where the profile has nothing but the shift.

@@ -1,0 +1,23 @@
+//! What restoring a profile may do, and what it would do, whatever the kind of device.
+
+/// What a restore may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RestoreOptions {
+    /// The profile may go onto a device with another serial number, or of another kind, as far as its kind allows that.
+    pub allow_other_device: bool,
+    /// Values of the mounting may go onto another device.
+    pub with_mounting: bool,
+}
+
+/// What a restore would do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restore<Plan, Item> {
+    /// The operations.
+    pub plan: Plan,
+    /// Things that are already as the profile says, counted as a comparison counts them.
+    pub unchanged: u64,
+    /// What is left alone because one side does not have it, or cannot read it.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<Item>,
+}
