@@ -1,7 +1,7 @@
 //! Commands about profiles, whatever the kind of device: it stands in the file. `diff` and `verify` are here; what a save
 //! and a restore have in common, too.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use jiff::Timestamp;
 use serde_json::{Value as Json, json};
@@ -9,6 +9,7 @@ use serde_json::{Value as Json, json};
 use super::args::{Common, Diff, Restore};
 use super::kind;
 use super::output::{Lines, Output};
+use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
 use crate::app::explain;
@@ -94,23 +95,6 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     Ok(if equal { Done::Well } else { Done::Differs })
 }
 
-/// A plan, for a person and for a script.
-pub(super) struct Shown {
-    pub(super) operations: Vec<Json>,
-    pub(super) text: String,
-    pub(super) write_cycles: u64,
-}
-
-/// What a write has done.
-#[derive(Default)]
-pub(super) struct Spent {
-    pub(super) written: u64,
-    pub(super) verified: u64,
-    pub(super) write_cycles: u64,
-    /// `None`: there was nothing to write.
-    pub(super) backup: Option<PathBuf>,
-}
-
 /// What a restore leaves as it is.
 pub(super) struct Left {
     pub(super) unchanged: u64,
@@ -182,7 +166,7 @@ pub(super) fn show_done(
         object.insert("results".to_owned(), json!(results));
     }
     let text = match &spent.backup {
-        None => "nothing to write: it is so already\n".to_owned(),
+        None => NOTHING.to_owned(),
         Some(backup) => {
             let mut lines = Lines::default();
             lines.add("written", spent.written).add("verified", spent.verified);

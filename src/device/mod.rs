@@ -11,3 +11,4 @@ pub mod ssi;
 mod written;
 
 pub use line::{Echo, LineState};
+pub use written::Written;

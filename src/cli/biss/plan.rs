@@ -11,8 +11,8 @@ use crate::bits::hex_compact;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::agree;
-use crate::cli::output::{Lines, Output};
-use crate::cli::profiles::{Shown, Spent};
+use crate::cli::output::Output;
+use crate::cli::plan::{self, Shown, Spent, Step, warn};
 use crate::cli::runner::unexpected;
 use crate::device::biss::procedure::{Motion, Outcome, Unattended};
 use crate::device::biss::write::Written;
@@ -56,9 +56,7 @@ pub(super) fn commit(
         BissOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
-    if let Some(why) = &committed.logbook_warning {
-        output.remark(&explain::logbook(why).terminal());
-    }
+    warn(output, committed.logbook_warning.as_ref());
     let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
     Ok((Spent { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
@@ -66,36 +64,14 @@ pub(super) fn commit(
 /// The plan for a person and for a script: each operation old → new, and what it costs.
 pub(super) fn shown(prepared: &Prepared) -> Shown {
     let plan = &prepared.plan;
-    let write_cycles = plan.write_cycles();
-    if plan.is_empty() {
-        let text = "nothing to write: it is so already\n".to_owned();
-        return Shown { operations: Vec::new(), text, write_cycles };
-    }
-    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
-    let mut lines = Lines::default();
-    for step in plan.ops.iter().flat_map(steps) {
-        match (&step.old, &step.new) {
-            (Some(old), Some(new)) => lines.add(&step.item, format!("{old}  →  {new}")),
-            (_, new) => lines.add(&step.item, new.as_deref().unwrap_or_default()),
-        };
-    }
-    lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen}, of {WEAR_LIMIT})"));
-    Shown { operations: operations(plan), text: lines.text(), write_cycles }
+    let lines = plan::lines(plan.ops.iter().flat_map(steps));
+    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// The operations as JSON; registers that are saved together cost nothing by themselves.
 pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
-    let one =
-        |step: Step| json!({"item": step.item, "old": step.old, "new": step.new, "write_cycles": step.write_cycles});
-    plan.ops.iter().flat_map(steps).map(one).collect()
-}
-
-/// A line of a plan.
-struct Step {
-    item: String,
-    old: Option<String>,
-    new: Option<String>,
-    write_cycles: u64,
+    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
 fn steps(op: &Op) -> Vec<Step> {

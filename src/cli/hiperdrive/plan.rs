@@ -8,9 +8,8 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::agree;
 use crate::cli::output::{Lines, Output};
-use crate::cli::profiles::{Shown, Spent};
+use crate::cli::plan::{self, Shown, Spent};
 use crate::cli::runner::unexpected;
-use crate::device::hiperdrive::write::Written;
 use crate::profile::hiperdrive::{HiperdrivePlan, Op, Service, warnings};
 use crate::profile::{Consent, Operation as _};
 use crate::worker::hiperdrive::{Change, Commit, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
@@ -57,22 +56,12 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         HiperdriveOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
-    if let Some(why) = &committed.logbook_warning {
-        output.remark(&explain::logbook(why).terminal());
-    }
-    let Written { written, verified, write_cycles, .. } = committed.written;
-    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
+    Ok(Spent::of(output, committed))
 }
 
 /// The plan for a person and for a script: each parameter old → new, and what it costs.
 pub(super) fn shown(prepared: &Prepared) -> Shown {
     let plan = &prepared.plan;
-    let write_cycles = plan.write_cycles();
-    if plan.is_empty() {
-        let text = "nothing to write: it is so already\n".to_owned();
-        return Shown { operations: Vec::new(), text, write_cycles };
-    }
-    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
     let mut lines = Lines::default();
     for op in &plan.ops {
         let words = explain::hiperdrive::op(op);
@@ -80,8 +69,8 @@ pub(super) fn shown(prepared: &Prepared) -> Shown {
             lines.add(words.item.terminal(), format!("{}  →  {}", change.old.terminal(), change.new.terminal()));
         }
     }
-    lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen})"));
-    Shown { operations: operations(plan), text: lines.text(), write_cycles }
+    let text = plan::text(plan, lines, prepared.cycles_seen, None);
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// What operations have made of what, a line each.

@@ -9,10 +9,10 @@ use crate::cli::consent::{agree, require_consent};
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
-use crate::cli::profiles::{Spent, show_changed};
+use crate::cli::plan::{self, Spent};
+use crate::cli::profiles::show_changed;
 use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
-use crate::device::hiperface::write::Written;
 use crate::profile::Consent;
 use crate::profile::hiperface::{HiperfacePlan, Item, Op};
 use crate::protocol::hiperface::{DataFieldStatus, DeviceAddress, LineSettings};
@@ -115,19 +115,12 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         HiperfaceOutput::Committed(committed) => committed,
         other => return Err(unexpected(&other)),
     };
-    if let Some(why) = &committed.logbook_warning {
-        output.remark(&explain::logbook(why).terminal());
-    }
-    let Written { written, verified, write_cycles, .. } = committed.written;
-    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
+    Ok(Spent::of(output, committed))
 }
 
 /// The plan for a person: each operation old → new, and what it costs.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
-    if plan.is_empty() {
-        return "nothing to write: it is so already\n".to_owned();
-    }
     let mut lines = Lines::default();
     for op in &plan.ops {
         let (old, new) = change_words(op);
@@ -136,9 +129,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
     if let Some(wanted) = prepared.wanted_position {
         lines.add("wanted", format!("{wanted}; the value above keeps the phase to the sine signal (--exact does not)"));
     }
-    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
-    lines.add("write cycles", format!("{} (seen here so far: {seen})", plan.write_cycles()));
-    lines.text()
+    plan::text(plan, lines, prepared.cycles_seen, None)
 }
 
 /// The operations as JSON.

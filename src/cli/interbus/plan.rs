@@ -1,16 +1,15 @@
 //! A plan for an INTERBUS encoder: shown, agreed to, carried out.
 
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 
 use super::run::Runner;
 use crate::app::{Text, explain};
 use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::agree;
-use crate::cli::output::{Lines, Output};
-use crate::cli::profiles::{Shown, Spent};
+use crate::cli::output::Output;
+use crate::cli::plan::{self, Shown, Spent, Step};
 use crate::cli::runner::{Ended, unexpected};
-use crate::device::interbus::write::Written;
 use crate::profile::interbus::{InterbusPlan, Op, programs_needed};
 use crate::profile::{Consent, Operation as _};
 use crate::protocol::interbus::{Parameter, ProgramNumber};
@@ -69,61 +68,35 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         InterbusOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
-    if let Some(why) = &committed.logbook_warning {
-        output.remark(&explain::logbook(why).terminal());
-    }
-    let Written { written, verified, write_cycles, .. } = committed.written;
-    Ok(Spent { written, verified, write_cycles, backup: committed.backup })
+    Ok(Spent::of(output, committed))
 }
 
 /// The plan for a person and for a script: each item old → new, and what it costs.
 pub(super) fn shown(prepared: &Prepared) -> Shown {
     let plan = &prepared.plan;
-    let write_cycles = plan.write_cycles();
-    if plan.is_empty() {
-        let text = "nothing to write: it is so already\n".to_owned();
-        return Shown { operations: Vec::new(), text, write_cycles };
-    }
-    let seen = prepared.cycles_seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
-    let mut lines = Lines::default();
-    for line in plan.ops.iter().flat_map(lines_of) {
-        match &line.old {
-            Some(old) => lines.add(&line.item, format!("{old}  →  {}", line.new)),
-            None => lines.add(&line.item, &line.new),
-        };
-    }
-    lines.add("write cycles", format!("{write_cycles} (seen here so far: {seen}, of {WEAR_LIMIT})"));
-    Shown { operations: operations(plan), text: lines.text(), write_cycles }
+    let lines = plan::lines(plan.ops.iter().flat_map(steps));
+    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// The operations as JSON; what is stored together costs nothing by itself.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
-    let one =
-        |line: Line| json!({"item": line.item, "old": line.old, "new": line.new, "write_cycles": line.write_cycles});
-    plan.ops.iter().flat_map(lines_of).map(one).collect()
+    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-/// A line of a plan.
-struct Line {
-    item: String,
-    old: Option<String>,
-    new: String,
-    write_cycles: u64,
-}
-
-fn lines_of(op: &Op) -> Vec<Line> {
+fn steps(op: &Op) -> Vec<Step> {
     let cost = op.write_cycles();
-    let last = |item: &str, new: String| Line { item: item.to_owned(), old: None, new, write_cycles: cost };
-    let mut lines: Vec<Line> = op
+    let last = |item: &str, new: String| Step { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
+    let mut steps: Vec<Step> = op
         .steps()
         .into_iter()
-        .map(|step| Line { item: step.name, old: Some(step.from), new: step.to, write_cycles: 0 })
+        .map(|step| Step { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
         .collect();
-    lines.push(match op {
+    steps.push(match op {
         Op::Parameterise(_) => last("parameters", "stored".to_owned()),
         Op::Program(change) => last(&format!("cam program {}", change.program.get()), "stored".to_owned()),
         Op::FirePreset { value } => last("position", format!("becomes {value}")),
         Op::Default => last("all parameters", "as delivered (experimental)".to_owned()),
     });
-    lines
+    steps
 }
