@@ -1,7 +1,7 @@
 //! Settings of a virtual device, as the query of a `sim:` link gives them, a key with its value each: what can be written
 //! for a value, and what is wrong with one. Which keys there are is each device's matter.
 
-use std::ops::RangeInclusive;
+use std::ops::{RangeBounds, RangeInclusive};
 
 use super::FaultError;
 
@@ -45,6 +45,11 @@ type Result<T> = std::result::Result<T, ConfigError>;
 impl Setting<'_> {
     const MAX_RPM: f64 = 12_000.0;
 
+    /// `device` has no such key; what it has is `known`.
+    pub(super) fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
+        ConfigError::Key { device, key: self.key.to_owned(), known: known.join(", ") }
+    }
+
     pub(super) fn refused(self, allowed: &str) -> ConfigError {
         ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed: allowed.to_owned() }
     }
@@ -52,6 +57,12 @@ impl Setting<'_> {
     /// A whole number that fits into its type.
     pub(super) fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
         integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
+    }
+
+    /// A whole number of the range.
+    pub(super) fn within<T: TryFrom<u64> + PartialOrd>(self, range: impl RangeBounds<T>, allowed: &str) -> Result<T> {
+        let number = Some(self.number(allowed)?).filter(|number| range.contains(number));
+        number.ok_or_else(|| self.refused(allowed))
     }
 
     /// A whole number of the range, which may be negative, and is decimal.
@@ -89,4 +100,11 @@ pub(super) fn integer(text: &str) -> Option<u64> {
         Some(digits) => u64::from_str_radix(digits, 16).ok(),
         None => text.parse().ok(),
     }
+}
+
+/// The keys and values of a query, for a test.
+#[cfg(test)]
+pub(super) fn pairs(query: &str) -> Vec<(String, String)> {
+    let pairs = query.split('&').filter_map(|item| item.split_once('='));
+    pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
 }

@@ -123,11 +123,7 @@ impl Config {
                 self.reverses = setting.one_of(&[("steady", false), ("reverse", true)], "steady or reverse")?;
             }
             "waver" => self.waver = setting.decimal(0.0..=1000.0, "0 to 1000 revolutions a minute")?,
-            "position" => {
-                let allowed = "a position from 0 to 8589934591";
-                let position = Some(setting.number(allowed)?).filter(|position| *position < Self::POSITIONS);
-                self.position = position.ok_or_else(|| refuse(allowed))?;
-            }
+            "position" => self.position = setting.within(..Self::POSITIONS, "a position from 0 to 8589934591")?,
             "temperature" => {
                 self.temperature = setting.signed(-50..=205, "whole degrees Celsius from -50 to 205")?;
             }
@@ -153,10 +149,7 @@ impl Config {
                 let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
                 self.order = setting.one_of(&orders, "low-first or high-first")?;
             }
-            _ => {
-                let (device, known) = ("a virtual encoder", Self::KEYS.join(", "));
-                return Err(ConfigError::Key { device, key: key.to_owned(), known });
-            }
+            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
         }
         Ok(())
     }
@@ -183,12 +176,11 @@ fn pulses(text: &str) -> Option<Pulses> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::setting::pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-        Config::from_pairs(&pairs)
+        Config::from_pairs(&pairs(query))
     }
 
     #[test]

@@ -140,8 +140,7 @@ impl Config {
             "uart" => self.uart = setting.one_of(&[("none", false), ("hiperface", true)], "none or hiperface")?,
             "version" => self.version = setting.number("a version from 0 to 255")?,
             _ => {
-                let known = [&Self::KEYS[..], &biss::Config::KEYS].concat().join(", ");
-                return Err(ConfigError::Key { device: "a virtual adapter", key: key.to_owned(), known });
+                return Err(setting.unknown("a virtual adapter", &[&Self::KEYS[..], &biss::Config::KEYS].concat()));
             }
         }
         Ok(())
@@ -162,12 +161,11 @@ fn ssi(text: &str) -> Option<SsiEncoder> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::setting::pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-        Config::from_pairs(&pairs)
+        Config::from_pairs(&pairs(query))
     }
 
     #[test]

@@ -111,8 +111,7 @@ impl Config {
             if key == "drives" {
                 drives = Some(setting);
             } else if !config.set_drives(setting)? && !config.set_device(setting)? {
-                let (device, known) = ("a virtual HIPERDRIVE", Self::KEYS.join(", "));
-                return Err(ConfigError::Key { device, key: key.clone(), known });
+                return Err(setting.unknown("a virtual HIPERDRIVE", &Self::KEYS));
             }
         }
         config.plugged = drives.map(|setting| places(setting, config.topology)).transpose()?;
@@ -127,8 +126,8 @@ impl Config {
                 let allowed = "steps from -2147483648 to 2147483647";
                 self.position = setting.value.parse().map_err(|_| setting.refused(allowed))?;
             }
-            "speed" => self.speed = Some(within(setting, 5, 350, "tenths of rpm from 5 to 350")?),
-            "load" => self.load = within(setting, 0, 200, "percent of the nominal torque from 0 to 200")?,
+            "speed" => self.speed = Some(setting.within(5..=350, "tenths of rpm from 5 to 350")?),
+            "load" => self.load = setting.within(0..=200, "percent of the nominal torque from 0 to 200")?,
             "blocked" => self.blocked = setting.switch()?,
             "temperature" => self.temperature = setting.decimal(-40.0..=120.0, "degrees Celsius from -40 to 120")?,
             _ => return Ok(false),
@@ -142,7 +141,7 @@ impl Config {
                 let hubs = [("4", Topology::Hub4), ("8", Topology::Hub8)];
                 self.topology = setting.one_of(&hubs, "4 or 8; without it there is an adapter with one drive")?;
             }
-            "s3" => self.s3 = within(setting, 0, 9, "a position of the switch from 0 to 9")?,
+            "s3" => self.s3 = setting.within(0..=9, "a position of the switch from 0 to 9")?,
             "switch" => {
                 let allowed = "the two digits of the switch, from 0 to 99";
                 let switch = AddressSwitch::parse(setting.number(allowed)?).ok_or_else(|| setting.refused(allowed))?;
@@ -212,29 +211,18 @@ fn places(setting: Setting<'_>, topology: Topology) -> Result<Vec<bool>, ConfigE
     if places.len() <= usize::from(count) { Ok(places) } else { Err(refused()) }
 }
 
-fn within<T: TryFrom<u64> + PartialOrd>(
-    setting: Setting<'_>,
-    low: T,
-    high: T,
-    allowed: &str,
-) -> Result<T, ConfigError> {
-    let number = Some(setting.number(allowed)?).filter(|number| (low..=high).contains(number));
-    number.ok_or_else(|| setting.refused(allowed))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::protocol::hiperdrive::{ErrorCode, OutData, OutImage, ParameterNumber, StatusBit, Value};
     use crate::sim::hiperdrive::{Station, Target};
+    use crate::sim::setting::pairs;
     use crate::units::Moment;
     use proptest::prelude::*;
     use std::time::Duration;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-        Config::from_pairs(&pairs)
+        Config::from_pairs(&pairs(query))
     }
 
     #[test]

@@ -144,11 +144,7 @@ impl Config {
                 self.temperature = setting.signed(-100..=300, "whole degrees Celsius from -100 to 300")?;
             }
             "echo" => self.echo = setting.switch()?,
-            "encoders" => {
-                let allowed = "a number from 1 to 8";
-                let count = Some(setting.number(allowed)?).filter(|count| (1..=Self::MAX_ENCODERS).contains(count));
-                self.encoders = count.ok_or_else(|| refuse(allowed))?;
-            }
+            "encoders" => self.encoders = setting.within(1..=Self::MAX_ENCODERS, "a number from 1 to 8")?,
             "pace" => {
                 let paces = [("typical", Pace::Typical), ("worst", Pace::Worst)];
                 self.pace = setting.one_of(&paces, "typical or worst")?;
@@ -158,10 +154,7 @@ impl Config {
                 let allowed = "NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66";
                 self.codes = codes(value).ok_or_else(|| Setting { key, value: "**" }.refused(allowed))?;
             }
-            _ => {
-                let (device, known) = ("a virtual encoder", Self::KEYS.join(", "));
-                return Err(ConfigError::Key { device, key: key.to_owned(), known });
-            }
+            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
         }
         Ok(())
     }
@@ -198,12 +191,11 @@ fn codes(text: &str) -> Option<[AccessCode; 4]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::setting::pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-        Config::from_pairs(&pairs)
+        Config::from_pairs(&pairs(query))
     }
 
     #[test]

@@ -133,8 +133,7 @@ impl Config {
         for (key, value) in pairs {
             let setting = Setting { key, value };
             if !gear.take(setting)? && !config.set_encoder(setting)? && !config.set_gateway(setting)? {
-                let (device, known) = ("a virtual INTERBUS encoder", Self::KEYS.join(", "));
-                return Err(ConfigError::Key { device, key: key.clone(), known });
+                return Err(setting.unknown("a virtual INTERBUS encoder", &Self::KEYS));
             }
         }
         gear.put_into(&mut config.memory)?;
@@ -147,7 +146,7 @@ impl Config {
                 self.memory.counterclockwise = setting.one_of(&[("cw", false), ("ccw", true)], "cw or ccw")?;
             }
             "rpm" => self.rpm = setting.rpm()?,
-            "position" => self.position = below(setting, PLACES, "a place of the disc from 0 to 33554431")?,
+            "position" => self.position = setting.within(..PLACES, "a place of the disc from 0 to 33554431")?,
             "serial" => self.serial_number = value(setting)?,
             "operating-time" => self.operating_time = value(setting)?,
             "temperature" => {
@@ -171,9 +170,9 @@ impl Config {
             "steps-minus-one" => self.steps_minus_one = setting.switch()?,
             "busy" => {
                 let allowed = "milliseconds from 0 to 60000";
-                self.busy = Duration::from_millis(below(setting, Self::MAX_BUSY_MS + 1, allowed)?.into());
+                self.busy = Duration::from_millis(setting.within(..=Self::MAX_BUSY_MS, allowed)?.into());
             }
-            "stale" => self.stale = below(setting, Self::MAX_STALE + 1, "a number of cycles from 0 to 1000")?,
+            "stale" => self.stale = setting.within(..=Self::MAX_STALE, "a number of cycles from 0 to 1000")?,
             "selection" => {
                 self.acknowledges_selection = setting.one_of(&[("echo", true), ("output", false)], "echo or output")?;
             }
@@ -189,9 +188,7 @@ impl Config {
     fn set_gateway(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
         match setting.key {
             "encoders" => {
-                let allowed = "a number of encoders from 1 to 8";
-                let encoders = Some(setting.number(allowed)?).filter(|n| (1..=Self::MAX_ENCODERS).contains(n));
-                self.encoders = encoders.ok_or_else(|| setting.refused(allowed))?;
+                self.encoders = setting.within(1..=Self::MAX_ENCODERS, "a number of encoders from 1 to 8")?;
             }
             "unit" => self.unit = setting.number("a unit from 0 to 255")?,
             "input" => self.input = setting.number("a register from 0 to 65535")?,
@@ -248,7 +245,7 @@ impl<'a> Geared<'a> {
             memory.gear = gear.map_err(|_| setting.refused(&allowed))?;
         }
         let (steps, allowed) = (memory.gear.steps(), format!("steps from 0 to {}", memory.gear.steps() - 1));
-        memory.preset = preset.map_or(Ok(0), |setting| below(setting, steps, &allowed))?;
+        memory.preset = preset.map_or(Ok(0), |setting| setting.within(..steps, &allowed))?;
         memory.zero_shift = zero_shift.map_or(Ok(0), value)?;
         if demonstration {
             *memory = memory.clone().with_demonstration();
@@ -259,24 +256,18 @@ impl<'a> Geared<'a> {
 
 /// A number that a word has room for.
 fn value(setting: Setting<'_>) -> Result<u32, ConfigError> {
-    below(setting, Value::MAX.get() + 1, "a number from 0 to 33554431")
-}
-
-fn below(setting: Setting<'_>, limit: u32, allowed: &str) -> Result<u32, ConfigError> {
-    let number = Some(setting.number(allowed)?).filter(|number| *number < limit);
-    number.ok_or_else(|| setting.refused(allowed))
+    setting.within(..=Value::MAX.get(), "a number from 0 to 33554431")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sim::interbus::Gateway;
+    use crate::sim::setting::pairs;
     use proptest::prelude::*;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-        let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-        Config::from_pairs(&pairs)
+        Config::from_pairs(&pairs(query))
     }
 
     #[test]

@@ -12,6 +12,7 @@ use std::time::Duration;
 use super::Target;
 use crate::bits::{hex, parse_hex};
 use crate::sim::hiperdrive::Config;
+use crate::sim::setting::pairs;
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::Moment;
 
@@ -36,9 +37,7 @@ fn bytes(text: &str) -> Vec<u8> {
 }
 
 fn config(query: &str) -> Config {
-    let pair = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
-    let pairs: Vec<_> = query.split('&').filter_map(|item| item.split_once('=')).map(pair).collect();
-    Config::from_pairs(&pairs).unwrap()
+    Config::from_pairs(&pairs(query)).unwrap()
 }
 
 /// A frame: command, session, data; status, context and options are 0.
