@@ -22,3 +22,35 @@ pub struct Line<S, F> {
     /// What was found: values and codes.
     pub findings: Vec<F>,
 }
+
+impl<S, F> Line<S, F> {
+    /// A step with what it found: it ended as the worst of that, and well where it found nothing.
+    pub(super) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
+        let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
+        Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
+    }
+}
+
+/// What is known of how far a device's memory is worn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wear {
+    /// Write cycles that were seen; `None` where nobody tells.
+    pub seen: Option<u64>,
+    /// From here on a person should know.
+    pub warning: u64,
+    /// What the memory stands.
+    pub limit: u64,
+}
+
+impl Wear {
+    /// Write cycles that were seen, and what is to be said of them; `None` where nobody tells.
+    pub(super) fn judged(&self) -> Option<(Verdict, u64)> {
+        let seen = self.seen?;
+        let verdict = match seen {
+            _ if seen >= self.limit => Verdict::Bad,
+            _ if seen >= self.warning => Verdict::Attention,
+            _ => Verdict::Good,
+        };
+        Some((verdict, seen))
+    }
+}

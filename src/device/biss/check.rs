@@ -8,7 +8,7 @@ use crate::protocol::biss::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
 };
 
-pub use crate::device::check::Verdict;
+pub use crate::device::check::{Verdict, Wear};
 
 /// One line of the check.
 pub type Line = check::Line<Step, Finding>;
@@ -121,17 +121,6 @@ pub enum Finding {
     },
 }
 
-/// What is known of the flash's wear.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wear {
-    /// Write cycles that were seen; `None` where nobody tells.
-    pub seen: Option<u64>,
-    /// From here on a person should know.
-    pub warning: u64,
-    /// What the flash stands.
-    pub limit: u64,
-}
-
 /// Readings of the position that tell how good the line is.
 const READINGS: u32 = 50;
 
@@ -161,11 +150,6 @@ pub fn check(
     Ok(lines)
 }
 
-fn line(step: Step, findings: Vec<(Verdict, Finding)>) -> Line {
-    let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
-    Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
-}
-
 fn identity(identity: &Identity) -> Line {
     let mut findings = vec![(Verdict::Good, Finding::Name(identity.description.name().to_owned()))];
     if !identity.serial_number.is_empty() {
@@ -173,7 +157,7 @@ fn identity(identity: &Identity) -> Line {
     }
     findings.extend(identity.firmware.map(|firmware| (Verdict::Good, Finding::Firmware(firmware))));
     findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, Finding::Mismatch(mismatch))));
-    line(Step::Identity, findings)
+    Line::of(Step::Identity, findings)
 }
 
 fn status(status: &Status) -> Line {
@@ -190,11 +174,11 @@ fn status(status: &Status) -> Line {
     if status.protection.is_some_and(|password| password != 0) {
         findings.push((Verdict::Attention, Finding::Open));
     }
-    line(Step::Status, findings)
+    Line::of(Step::Status, findings)
 }
 
 fn position(reading: Option<PositionReading>) -> Line {
-    let Some(reading) = reading else { return line(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]) };
+    let Some(reading) = reading else { return Line::of(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]) };
     let mut findings = vec![(Verdict::Good, Finding::Position(reading))];
     if reading.error == Some(true) {
         findings.push((Verdict::Bad, Finding::ErrorBit));
@@ -202,12 +186,12 @@ fn position(reading: Option<PositionReading>) -> Line {
     if reading.warning == Some(true) {
         findings.push((Verdict::Attention, Finding::WarningBit));
     }
-    line(Step::Position, findings)
+    Line::of(Step::Position, findings)
 }
 
 fn data_sheet(identity: &Identity) -> Line {
     let Some(sheet) = &identity.data_sheet else {
-        return line(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
+        return Line::of(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
     };
     let wrong = [&sheet.common, &sheet.encoder].into_iter().filter_map(|bank| bank.eds.err());
     let mut findings: Vec<(Verdict, Finding)> = wrong.map(|error| (Verdict::Bad, Finding::Sheet(error))).collect();
@@ -224,7 +208,7 @@ fn data_sheet(identity: &Identity) -> Line {
             }
         }
     }
-    line(Step::DataSheet, findings)
+    Line::of(Step::DataSheet, findings)
 }
 
 /// Where the encoder's bank of the data sheet has its limits.
@@ -259,7 +243,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<Line> {
         findings.push((judge(fits), Finding::Supply { millivolt, low, high }));
         findings.push((judge(u32::from(milliampere) <= most), Finding::Current { milliampere, high: most }));
     }
-    (!findings.is_empty()).then(|| line(Step::Limits, findings))
+    (!findings.is_empty()).then(|| Line::of(Step::Limits, findings))
 }
 
 fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
@@ -275,7 +259,7 @@ fn wiegand(survey: &Survey) -> Option<Line> {
         _ if saved.passes() => (Verdict::Good, Finding::Wiegand(saved)),
         _ => (Verdict::Bad, Finding::Wiegand(saved)),
     };
-    Some(line(Step::Wiegand, vec![finding]))
+    Some(Line::of(Step::Wiegand, vec![finding]))
 }
 
 /// Reads the position again and again. A reading that does not come at all is damage as well.
@@ -296,15 +280,10 @@ fn readings(master: &mut Master<'_>) -> Result<Line, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(line(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
+    Ok(Line::of(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
 }
 
-fn worn(Wear { seen, warning, limit }: Wear) -> Option<Line> {
-    let seen = seen?;
-    let verdict = match seen {
-        _ if seen >= limit => Verdict::Bad,
-        _ if seen >= warning => Verdict::Attention,
-        _ => Verdict::Good,
-    };
-    Some(line(Step::Wear, vec![(verdict, Finding::Wear { seen, limit })]))
+fn worn(wear: Wear) -> Option<Line> {
+    let (verdict, seen) = wear.judged()?;
+    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
 }

@@ -203,16 +203,16 @@ pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> R
     let identity = identify(master)?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
-    lines.push(line(Step::Supply, vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)]));
+    lines.push(Line::of(Step::Supply, vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)]));
     let celsius = master.read_number(own(11)?)?;
-    lines.push(line(Step::Temperature, vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)]));
-    lines.push(line(Step::Address, address(&network(master)?)));
+    lines.push(Line::of(Step::Temperature, vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)]));
+    lines.push(Line::of(Step::Address, address(&network(master)?)));
     let saved = match master.read_number(ParameterNumber::SAVE)? {
         0 => (Verdict::Good, Finding::Saved),
         other => (Verdict::Attention, Finding::NotSaved(other)),
     };
-    lines.push(line(Step::Memory, vec![saved]));
-    lines.push(line(Step::Drives, drives(&identity)));
+    lines.push(Line::of(Step::Memory, vec![saved]));
+    lines.push(Line::of(Step::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
         told(at as u64 + 1, total, Step::Errors(drive.number));
@@ -222,11 +222,6 @@ pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> R
 }
 
 /// A line with the worst verdict of its findings.
-fn line(step: Step, findings: Vec<(Verdict, Finding)>) -> Line {
-    let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
-    Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
-}
-
 fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Finding) -> (Verdict, Finding) {
     (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
 }
@@ -241,7 +236,7 @@ fn messages(master: &mut Master<'_>) -> Result<Line, Error> {
     let late = master.station().late();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
     let replies = Finding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
-    Ok(line(Step::Messages, vec![(verdict, replies)]))
+    Ok(Line::of(Step::Messages, vec![(verdict, replies)]))
 }
 
 fn device(identity: &Identity) -> Line {
@@ -250,7 +245,7 @@ fn device(identity: &Identity) -> Line {
         Finding::SerialNumber(identity.serial_number.clone()),
         Finding::Version(identity.version.clone()),
     ];
-    line(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
+    Line::of(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
 }
 
 fn address(network: &Network) -> Vec<(Verdict, Finding)> {
@@ -294,12 +289,12 @@ fn check_drive(master: &mut Master<'_>, identity: &Identity, drive: &DriveIdenti
     };
     let temperature = in_range(status.temperature, &TEMPERATURES, Finding::Temperature);
     Ok(vec![
-        line(Step::Request(number), request),
-        line(Step::Line(number), vec![rs485]),
-        line(Step::Timeout(number), vec![timeout]),
-        line(Step::Errors(number), errors(&status)),
-        line(Step::DriveTemperature(number), vec![temperature]),
-        line(Step::Range(number), range(master, drive)?),
+        Line::of(Step::Request(number), request),
+        Line::of(Step::Line(number), vec![rs485]),
+        Line::of(Step::Timeout(number), vec![timeout]),
+        Line::of(Step::Errors(number), errors(&status)),
+        Line::of(Step::DriveTemperature(number), vec![temperature]),
+        Line::of(Step::Range(number), range(master, drive)?),
     ])
 }
 

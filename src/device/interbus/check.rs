@@ -9,7 +9,7 @@ use super::{Error, Identity, Master, Survey};
 use crate::device::check;
 use crate::protocol::interbus::{ErrorWord, ReadOut, Reply, StartupMode};
 
-pub use crate::device::check::Verdict;
+pub use crate::device::check::{Verdict, Wear};
 
 /// One line of the check.
 pub type Line = check::Line<Step, Finding>;
@@ -104,17 +104,6 @@ pub enum Finding {
     },
 }
 
-/// What is known of the EEPROM's wear.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wear {
-    /// Stores that were seen; `None` where nobody tells.
-    pub seen: Option<u64>,
-    /// From here on a person should know.
-    pub warning: u64,
-    /// What the EEPROM stands.
-    pub limit: u64,
-}
-
 /// So often the IN word is read, to see how the gateway answers.
 const LOOKS: u32 = 20;
 /// Tenths of a degree that electronics in a housing stand (`U`: the manual gives no limits).
@@ -139,13 +128,13 @@ pub fn check(
         Ok(survey) => {
             let asked = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);
-            lines.push(line(Step::Handshake, vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })]));
+            lines.push(Line::of(Step::Handshake, vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })]));
             lines.push(identity(&survey));
             lines.push(temperature(survey.temperature_tenths));
             lines.extend(worn(wear(&survey.identity)));
         }
         Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
-        Err(error) => lines.push(line(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
+        Err(error) => lines.push(Line::of(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
     }
     Ok(lines)
 }
@@ -159,7 +148,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
         slowest = slowest.max(master.now().since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
-    let answers = line(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
+    let answers = Line::of(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
     let (order, fits) = match master.suspected_order(word)? {
         Some(swapped) => ((Verdict::Bad, Finding::OrderSwapped { input: word, swapped }), false),
         None => ((Verdict::Good, Finding::OrderFits), true),
@@ -173,16 +162,11 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
             ((Verdict::Bad, Finding::Occupied(word)), false)
         }
     };
-    let lines = vec![answers, line(Step::WordOrder, vec![order]), line(Step::InputWord, vec![input])];
+    let lines = vec![answers, Line::of(Step::WordOrder, vec![order]), Line::of(Step::InputWord, vec![input])];
     Ok((lines, fits && free))
 }
 
 /// A line with the worst verdict of its findings.
-fn line(step: Step, findings: Vec<(Verdict, Finding)>) -> Line {
-    let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
-    Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
-}
-
 fn identity(survey: &Survey) -> Line {
     let identity = &survey.identity;
     let mut findings = vec![
@@ -203,20 +187,15 @@ fn identity(survey: &Survey) -> Line {
     if identity.flags.steps_minus_one() {
         findings.push((Verdict::Attention, Finding::StepsMinusOne));
     }
-    line(Step::Identity, findings)
+    Line::of(Step::Identity, findings)
 }
 
 fn temperature(tenths: i32) -> Line {
     let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
-    line(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
+    Line::of(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
 }
 
-fn worn(Wear { seen, warning, limit }: Wear) -> Option<Line> {
-    let seen = seen?;
-    let verdict = match seen {
-        _ if seen >= limit => Verdict::Bad,
-        _ if seen >= warning => Verdict::Attention,
-        _ => Verdict::Good,
-    };
-    Some(line(Step::Wear, vec![(verdict, Finding::Wear { seen, limit })]))
+fn worn(wear: Wear) -> Option<Line> {
+    let (verdict, seen) = wear.judged()?;
+    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
 }
