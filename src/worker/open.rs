@@ -1,14 +1,14 @@
 //! From a link URL to a wire: what all devices on a stream of bytes share.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::link::{
-    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, TcpLink, TraceEntry, TraceFileError,
-    UrlError, Wire, read_trace,
+    ByteLink, Clock, LinkError, LinkUrl, Query, ReplayLink, Scheme, SerialLink, SimLink, TcpLink, TraceEntry,
+    TraceFileError, UrlError, Wire, read_trace,
 };
-use crate::sim::ConfigError;
+use crate::sim::{ByteDevice, ConfigError};
 use crate::store::{FileError, StoreError, read_text};
 use crate::units::CharacterFormat;
 
@@ -69,6 +69,16 @@ pub(super) fn open_bytes(
         Wire::Host(host) => Box::new(TcpLink::connect(host, clock.clone())?),
         Wire::File(path) => Box::new(ReplayLink::new(path, read_recording(path)?, clock.clone())),
     })
+}
+
+/// The wire to a virtual device in this process.
+pub(super) fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
+    Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
+}
+
+/// Links of this kind do not lead to a device; those that do are `known`.
+pub(super) fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
+    UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
 /// A recorded trace.

@@ -1,15 +1,15 @@
 //! From a link URL to a session with a BiSS encoder.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use super::Biss;
 use crate::device::biss::{Echo, Station, Way};
-use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, SimLink, UrlError};
+use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
 use crate::sim::ConfigError;
 use crate::sim::biss::{Config, Motor, Port};
 use crate::sim::bridge::{self, Adapter};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
 /// Whether an adapter is in between, where the kind of link does not tell.
@@ -72,10 +72,7 @@ fn way(url: &LinkUrl) -> Result<Way, OpenError> {
     match url.scheme {
         Scheme::Bridge => Ok(Way::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
-        Scheme::Modbus | Scheme::Enip => {
-            let known = "sim:, serial:, tcp:, bridge:, replay:";
-            Err(UrlError::Device { scheme: url.scheme.word(), known }.into())
-        }
+        Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
         Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, "on or off", by_word)?.unwrap_or(Way::ConfigPin)),
     }
 }
@@ -117,12 +114,12 @@ impl Simulated {
             Simulated::Pin(config) => {
                 let port = Port::new(config);
                 let motor = port.encoder().motor();
-                (Box::new(SimLink::connect(Arc::new(Mutex::new(port)), clock.clone())), motor)
+                (inside(port, clock), motor)
             }
             Simulated::Bus(config) => {
                 let adapter = Adapter::new(config);
                 let motor = adapter.encoder().motor();
-                (Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())), motor)
+                (inside(adapter, clock), motor)
             }
         }
     }

@@ -7,12 +7,11 @@ use super::{Hiperdrive, Way};
 use crate::bits::MaskedBytes;
 use crate::device::hiperdrive::{PARAMETERS, Station};
 use crate::link::{
-    Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimLink, SimPort, TcpLink, TraceEntry, UdpPort, UrlError,
-    Wire,
+    Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
 };
 use crate::sim::hiperdrive::{Config, Target};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, margin, read_recording};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, read_recording};
 use crate::worker::{OpenError, Session};
 
 /// Link parameters that are the host's and nothing of the virtual device. The order of bytes is both's.
@@ -54,7 +53,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
 fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Way {
     let target = Target::new(config);
     let connection = target.connection(Ipv4Addr::UNSPECIFIED);
-    let wire = Box::new(SimLink::connect(Arc::new(Mutex::new(connection)), clock.clone()));
+    let wire = inside(connection, &clock);
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock));
     Way { wire, port: Some(port), station, target: Some(target) }
 }
@@ -68,8 +67,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             Config::default()
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Modbus => {
-            let known = "sim:, enip:, replay:";
-            return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+            return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
         }
     };
     let tcp = match url.wire() {

@@ -1,13 +1,13 @@
 //! From a link URL to a session with a HIPERFACE encoder.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use super::Hiperface;
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
-use crate::link::{ByteLink, Clock, LinkUrl, RealClock, Scheme, SimLink, UrlError};
+use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::sim::hiperface::{Bus, Config};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
 /// Link parameters that describe the line and nothing of the virtual encoder.
@@ -30,9 +30,9 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     let types = store.encoder_types()?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let wire = open_bytes(url, station.format, &clock, || {
-        let mut link = SimLink::connect(Arc::new(Mutex::new(Bus::new(&config))), clock.clone());
+        let mut link = inside(Bus::new(&config), &clock);
         link.set_format(station.format)?;
-        Ok(Box::new(link))
+        Ok(link)
     })?;
     Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
 }
@@ -40,8 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
 /// The line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
-        let known = "sim:, serial:, tcp:, replay:";
-        return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+        return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));
     }
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     if url.scheme != Scheme::Sim {

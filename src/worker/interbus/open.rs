@@ -1,17 +1,15 @@
 //! From a link URL to a session with an INTERBUS encoder.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use super::Interbus;
 use crate::bits::MaskedBytes;
 use crate::device::interbus::{PARAMETERS, Station};
-use crate::link::{
-    ByteLink, Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimLink, TraceEntry, UrlError, Wire,
-};
+use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
 use crate::protocol::ubicom::FORMAT;
 use crate::sim::interbus::{Config, Gateway};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, margin, open_bytes, read_recording};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, read_recording};
 use crate::worker::{OpenError, Session};
 
 /// Link parameters that describe the host's patience and nothing of the virtual gateway. Where the encoder is behind it
@@ -44,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     let wire = open_bytes(url, FORMAT, &clock, || {
         let gateway = Gateway::new(&config);
         motor = Some(gateway.shaft());
-        Ok(Box::new(SimLink::connect(Arc::new(Mutex::new(gateway)), clock.clone())) as Box<dyn ByteLink>)
+        Ok(inside(gateway, &clock))
     })?;
     Ok(Session::to_gateway(wire, clock, station, store, motor))
 }
@@ -58,8 +56,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             Config::default()
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Enip => {
-            let known = "sim:, modbus:, replay:";
-            return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+            return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
         }
     };
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;

@@ -1,14 +1,14 @@
 //! From a link URL to a session with an SSI encoder.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use super::Ssi;
 use crate::device::ssi::{PARAMETERS, Station};
-use crate::link::{ByteLink, Clock, LinkUrl, RealClock, Scheme, SimLink, UrlError};
+use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::protocol::ubicom::FORMAT;
 use crate::sim::bridge::{Adapter, Config};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
 /// Everything about a link to an SSI encoder that can be told without opening it.
@@ -32,7 +32,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let wire = open_bytes(url, FORMAT, &clock, || {
         let adapter = Adapter::new(&config);
         motor = Some(adapter.encoder().motor());
-        Ok(Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())) as Box<dyn ByteLink>)
+        Ok(inside(adapter, &clock))
     })?;
     Ok(Session::to_adapter(wire, clock, station, store, motor))
 }
@@ -46,8 +46,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
             Config::default()
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => {
-            let known = "sim:, bridge:, replay:";
-            return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+            return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
         }
     };
     Ok((Station::from_query(&url.query, margin(url.scheme))?, config))

@@ -1,14 +1,14 @@
 //! From a link URL to an adapter that streams: `bridge:` leads to a real one, `sim:` to the virtual one.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::Open;
-use crate::link::{ByteLink, Clock, LinkUrl, Query, Scheme, SimLink, UrlError};
+use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::ubicom::FORMAT;
 use crate::sim::bridge::{Adapter, Config};
 use crate::worker::OpenError;
-use crate::worker::open::{check_parameters, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 
 /// What a link to the virtual adapter may say as it does for a session; there is no other here.
 const BRIDGE: &str = "bridge";
@@ -20,7 +20,6 @@ const MARGIN: &str = "margin";
 /// # Errors
 /// A link that does not lead to an adapter, or a parameter that it does not take; nothing has been opened.
 pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, Open), OpenError> {
-    let known = "sim: and bridge:";
     let simulated = match url.scheme {
         Scheme::Bridge => {
             check_parameters(&url.query, url.scheme, &[MARGIN])?;
@@ -31,7 +30,7 @@ pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, O
             Some(Config::from_pairs(&url.query.without(&[BRIDGE, MARGIN]))?)
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip | Scheme::Replay => {
-            return Err(UrlError::Device { scheme: url.scheme.word(), known }.into());
+            return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
         }
     };
     let late = read_margin(&url.query)?.unwrap_or(margin(url.scheme));
@@ -39,7 +38,7 @@ pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, O
     let open = move || {
         open_bytes(&url, FORMAT, &clock, || {
             let adapter = Adapter::new(&simulated.unwrap_or_default());
-            Ok(Box::new(SimLink::connect(Arc::new(Mutex::new(adapter)), clock.clone())) as Box<dyn ByteLink>)
+            Ok(inside(adapter, &clock))
         })
     };
     Ok((late, Box::new(open)))
