@@ -6,6 +6,7 @@
 mod clock;
 mod datagram;
 mod error;
+mod punctual;
 mod replay;
 mod serial;
 mod sim;
@@ -20,6 +21,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub use clock::{Clock, RealClock, VirtualClock};
 pub use datagram::{DatagramPort, Datagrams, Shout};
 pub use error::{LinkError, LinkErrorKind};
+pub use punctual::wake_before_others;
 pub use replay::ReplayLink;
 pub use serial::{PortInfo, SerialLink, ports};
 pub use sim::{SimLink, SimPort};

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::{Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, Shout};
+use super::{Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, Shout, wake_before_others};
 use crate::units::Moment;
 
 /// The longest packet that is looked at; process data are far shorter.
@@ -111,6 +111,7 @@ impl Packets {
         let (hears, sender, from) = (deaf.clone(), self.sender.clone(), *self.target.ip());
         let thread = std::thread::Builder::new().name("cyclic packets".to_owned());
         let started = thread.spawn(move || {
+            wake_before_others();
             let mut buffer = [0; LONGEST];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {

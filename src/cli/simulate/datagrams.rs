@@ -9,7 +9,7 @@ use std::thread::Scope;
 use std::time::Duration;
 
 use super::PATIENCE;
-use crate::link::{Clock, RealClock};
+use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
 /// How long the sender sleeps at most: a packet is due no sooner behind the request that asks for it.
@@ -72,6 +72,7 @@ impl Served {
     }
 
     fn receive(&self, ended: &AtomicBool) {
+        wake_before_others();
         let mut buffer = [0; ROOM];
         while !ended.load(Ordering::SeqCst) {
             match self.socket.recv_from(&mut buffer) {
@@ -88,6 +89,7 @@ impl Served {
     }
 
     fn send(&self, ended: &AtomicBool) {
+        wake_before_others();
         while !ended.load(Ordering::SeqCst) {
             let next = self.pump(|_, _| ());
             std::thread::sleep(next.min(REST));

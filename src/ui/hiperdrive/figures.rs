@@ -46,6 +46,8 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit) {
         }
         let milliseconds = skin.number(link.interval.as_secs_f64() * 1e3, 1);
         row(ui, skin, &skin.say("hd_link.interval"), skin.mono(format!("{milliseconds} ms")));
+        let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
+        row(ui, skin, &skin.say("hd_link.priority"), skin.say(priority));
         row(ui, skin, &skin.say("hd_link.packets"), skin.mono(format!("{} → · ← {}", link.sent, link.received)));
         let bad =
             [("hd_link.missed", link.missed), ("hd_link.stale", link.stale), ("hd_link.malformed", link.malformed)];

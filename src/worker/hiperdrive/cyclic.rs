@@ -15,7 +15,7 @@ use crossbeam_channel::{Receiver, bounded};
 use super::motion::Motion;
 use crate::device::hiperdrive::Opened;
 use crate::device::hiperdrive::cyclic::{CyclicLost, Drives};
-use crate::link::{Clock, Datagrams};
+use crate::link::{Clock, Datagrams, wake_before_others};
 use crate::protocol::hiperdrive::DriveNumber;
 
 /// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
@@ -68,6 +68,7 @@ impl Cyclic {
         let failed = motion.clone();
         let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
             let _alive: crossbeam_channel::Sender<Never> = alive;
+            failed.set_punctual(wake_before_others());
             let turned = catch_unwind(AssertUnwindSafe(|| while pump.turn() {}));
             if turned.is_err() {
                 failed.fail();

@@ -25,6 +25,7 @@ struct Cell {
     /// Drives whose limits have to be looked at.
     unconfirmed: Vec<DriveNumber>,
     expert: bool,
+    punctual: bool,
     view: View,
 }
 
@@ -37,6 +38,8 @@ pub struct View {
     pub drives: Vec<DriveView>,
     /// The connection.
     pub link: LinkFigures,
+    /// The system wakes its thread before all ordinary ones.
+    pub punctual: bool,
     /// Why it is not there any more, where nobody has closed it.
     pub lost: Option<CyclicLost>,
 }
@@ -62,8 +65,14 @@ impl Motion {
     /// Nothing is wanted, and nothing is permitted.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
-        let cell =
-            Cell { intent, permits: BTreeMap::new(), unconfirmed: Vec::new(), expert: false, view: View::default() };
+        let cell = Cell {
+            intent,
+            permits: BTreeMap::new(),
+            unconfirmed: Vec::new(),
+            expert: false,
+            punctual: false,
+            view: View::default(),
+        };
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
 
@@ -165,9 +174,16 @@ impl Motion {
             open: !drives.is_ending(),
             drives: views,
             link: drives.figures().clone(),
+            punctual: false,
             lost: drives.lost().cloned(),
         };
-        self.lock().view = view;
+        let mut cell = self.lock();
+        cell.view = View { punctual: cell.punctual, ..view };
+    }
+
+    /// Whether the system wakes the connection's thread before all ordinary ones.
+    pub(super) fn set_punctual(&self, punctual: bool) {
+        self.lock().punctual = punctual;
     }
 
     /// The connection's thread has failed, or never began.

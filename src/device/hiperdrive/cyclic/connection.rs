@@ -22,6 +22,10 @@ pub struct Connection {
     arrivals: Arrivals,
     /// When something that counts came last, or when the connection was opened.
     heard: Moment,
+    /// Since when somebody has listened without a gap.
+    awake: Moment,
+    /// Until the target gives us up.
+    timeout: Duration,
     began: bool,
     figures: LinkFigures,
 }
@@ -50,6 +54,8 @@ impl Connection {
             count: 0,
             arrivals: Arrivals::default(),
             heard: now,
+            awake: now,
+            timeout: opened.timeout,
             began: false,
             figures: LinkFigures { interval: come_interval, ..LinkFigures::default() },
         }
@@ -70,11 +76,17 @@ impl Connection {
         self.next
     }
 
-    /// How long nothing has come, where that is too long.
-    pub fn silent(&self, now: Moment) -> Option<Duration> {
+    /// How long nothing has come, where that is too long: three intervals of listening. Whoever was kept from listening by a
+    /// busy computer cannot tell whether nothing came, and what came may still be on its way to him; but no longer than the
+    /// target waits, which has stopped its drives then.
+    pub fn silent(&mut self, now: Moment) -> Option<Duration> {
+        if now.since(self.next) > self.come_interval {
+            self.awake = now;
+        }
         let silence = now.since(self.heard);
         let patience = if self.began { self.come_interval * LOST } else { FIRST.max(self.come_interval * LOST) };
-        (silence > patience).then_some(silence)
+        let listened = now.since(self.heard.max(self.awake));
+        (listened > patience || silence > self.timeout.max(patience)).then_some(silence)
     }
 
     /// A packet has come: what it says, where it counts.

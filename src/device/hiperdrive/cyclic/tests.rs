@@ -189,6 +189,30 @@ fn a_loss_stops_and_stays() {
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
+/// A computer that was busy for 70 ms has heard nothing, and cannot say that nothing came: what came is still to be looked at.
+/// Beyond the target's time-out (80 ms here) the drives have stopped by themselves.
+#[test]
+fn whoever_was_kept_from_listening_listens_before_giving_up() {
+    for (away, lost) in [(70, false), (100, true)] {
+        let mut bench = Bench::jogs();
+        // What came stands in line behind whoever wakes up.
+        bench.answers = false;
+        bench.ms += away;
+        bench.cycles(1);
+        bench.answers = true;
+        bench.cycles(3);
+        assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
+    }
+    // Nothing comes after it either.
+    let mut bench = Bench::jogs();
+    bench.answers = false;
+    bench.ms += 40;
+    bench.cycles(3);
+    assert!(bench.drives.lost().is_none(), "listened for 20 ms");
+    bench.cycles(2);
+    assert!(bench.drives.lost().is_some(), "listened for 40 ms");
+}
+
 /// Closing is: stop, stand, off three times.
 #[test]
 fn an_end_stops_and_switches_off() {

@@ -1,0 +1,29 @@
+//! Threads that have to wake up at their moment. Packets of a cyclic connection are due every few milliseconds, and a computer
+//! that draws or compiles lets ordinary threads wait for longer than that.
+
+use thread_priority::{Error, ThreadPriority};
+
+/// Asks the system to wake the thread that calls this before all ordinary ones, for as long as it lives. Whether it will:
+/// Linux does it for those who may have it (`rtprio` among their limits), and for others not.
+pub fn wake_before_others() -> bool {
+    let asked = ask();
+    if let Err(error) = &asked {
+        tracing::debug!("a thread of the cyclic connection is an ordinary one: {error}");
+    }
+    asked.is_ok()
+}
+
+/// The lowest of the real-time priorities is above every ordinary one.
+#[cfg(unix)]
+fn ask() -> Result<(), Error> {
+    use thread_priority::unix::{
+        RealtimeThreadSchedulePolicy, ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
+    };
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::RoundRobin);
+    set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy)
+}
+
+#[cfg(not(unix))]
+fn ask() -> Result<(), Error> {
+    ThreadPriority::Max.set_for_current()
+}
