@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use encoder_studio::device::hiperface::Station;
-use encoder_studio::link::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock};
+use encoder_studio::link::{
+    ByteLink, Cancel, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
+};
 use encoder_studio::profile::hiperface::{HiperfaceProfile, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
@@ -43,6 +45,8 @@ pub(crate) struct Tap {
     pub(crate) formatless: bool,
     /// The link says that it is gone when it is asked.
     pub(crate) unplugged: bool,
+    /// With this frame somebody wishes an end.
+    pub(crate) cancel_at: Option<(usize, Cancel)>,
 }
 
 impl Tap {
@@ -87,6 +91,9 @@ impl ByteLink for TestLink {
             let mut tap = self.tap.lock().unwrap();
             let number = tap.sent.len();
             tap.sent.push(bytes.to_vec());
+            if let Some((_, cancel)) = tap.cancel_at.as_ref().filter(|(at, _)| *at == number) {
+                cancel.request();
+            }
             tap.deaf_from.is_none_or(|from| number < from) && tap.swallow_request != Some(number)
         };
         self.check_plug()?;

@@ -125,10 +125,9 @@ pub fn carry_out(
     let mut done = Written::default();
     for (number, op) in confirmed.plan.ops.iter().enumerate() {
         tell(number);
-        let before = number.checked_sub(1).and_then(|before| confirmed.plan.ops.get(before));
-        // Limits in another scale lie elsewhere: nobody ends in between.
-        let together = before.is_some_and(|before| are_of_one_place(before, op));
-        if !together && let Err(cause) = master.check_cancel() {
+        if !is_within_a_place(&confirmed.plan.ops, number)
+            && let Err(cause) = master.check_cancel()
+        {
             return Err(Box::new(Interrupted { done, unclear: None, cause }));
         }
         if let Err(cause) = master.shielded(|master| perform(master, op, &mut done)) {
@@ -139,13 +138,15 @@ pub fn carry_out(
     Ok(done)
 }
 
-/// Both write scale or limits of the same drive.
-fn are_of_one_place(one: &Op, other: &Op) -> bool {
+/// Scale or limits of a drive are begun before this operation and not yet whole: limits in another scale lie elsewhere, so that
+/// nobody ends in between.
+fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), 154 | 156 | 158 | 160) => number.drive(),
         _ => None,
     };
-    place(one).is_some() && place(one) == place(other)
+    let (begun, left) = ops.split_at_checked(at).unwrap_or((ops, &[]));
+    left.iter().filter_map(place).any(|drive| begun.iter().filter_map(place).any(|own| own == drive))
 }
 
 fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {

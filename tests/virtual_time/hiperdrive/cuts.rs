@@ -1,9 +1,11 @@
 //! The wire is cut at every request: what is told, what was written, and that everything ends in time.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use encoder_studio::device::hiperdrive::Error;
 use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::device::hiperdrive::write::Interrupted;
 use encoder_studio::link::Cancel;
 use encoder_studio::worker::hiperdrive::{Change, HiperdriveJob, JobError};
 
@@ -98,28 +100,58 @@ fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
     }
 }
 
+/// Carries a change out, and wishes an end with each of its requests in turn; `look` sees how each ended.
+fn wish_an_end_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &Interrupted)) {
+    for at in 0.. {
+        let mut stand = Stand::new("");
+        let prepared = stand.prepare(change()).unwrap();
+        let cancel = Cancel::default();
+        stand.session.set_cancel(cancel.clone());
+        let number = stand.tap().sent.len() + at;
+        stand.tap().cancel_at = Some((number, cancel));
+        match stand.commit(prepared) {
+            Err(JobError::Device(Error::Cancelled)) => assert!(stand.sets().is_empty(), "{at}"),
+            Err(JobError::Interrupted { interrupted, .. }) => {
+                assert_eq!((&interrupted.cause, interrupted.unclear.as_ref()), (&Error::Cancelled, None), "{at}");
+                look(&stand, &format!("request {at}"), &interrupted);
+            }
+            // Behind the last operation there is nothing to end.
+            Ok(done) => {
+                assert_eq!(stand.value(47), 0, "{at}");
+                if stand.tap().sent.len() <= number {
+                    return assert!(at > 0 && done.written.write_cycles == 1);
+                }
+            }
+            Err(error) => panic!("{at}: {error}"),
+        }
+    }
+}
+
 #[test]
 fn a_wish_to_end_is_heard_between_two_operations() {
-    let mut stand = Stand::new("");
-    let mut seen = Vec::new();
-    for transactions in (0..requests() as u64 + 4).step_by(3) {
-        let prepared = match stand.prepare(write()) {
-            Ok(prepared) if !prepared.plan.is_empty() => prepared,
-            _ => break,
-        };
-        stand.session.set_cancel(Cancel::after(transactions));
-        match stand.commit(prepared) {
-            Err(JobError::Device(Error::Cancelled)) => assert!(stand.sets().is_empty() || !seen.is_empty()),
-            Err(JobError::Interrupted { interrupted, .. }) => {
-                assert_eq!((&interrupted.cause, interrupted.unclear.as_ref()), (&Error::Cancelled, None));
-                seen.push(interrupted.done.ops);
-            }
-            Ok(_) => break,
-            Err(error) => panic!("{error}"),
-        }
-        stand.session.set_cancel(Cancel::default());
-    }
-    assert_eq!(stand.value(47), 0);
+    let mut seen = BTreeSet::new();
+    wish_an_end_at_each_request(write, |stand, label, interrupted| {
+        let taken = [(24, 7), (166, 200), (186, 30)].iter().filter(|(own, new)| stand.value(*own) == *new).count();
+        assert_eq!(interrupted.done.ops, taken, "{label}");
+        seen.insert(taken);
+    });
+    // Before the first, nothing has begun; behind the third there is still the save.
+    assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
+}
+
+/// 400 steps a turn instead of 65536 (reference 5), and limits of ten turns: half of that is another place than either. The
+/// greatest speed is written between them.
+#[test]
+fn nobody_ends_between_a_scale_and_its_limits() {
+    const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];
+    let change = || Change::Write(image(&[&[(24, 7), (166, 200)], &PLACE[..], &[(186, 30)]].concat()));
+    let mut seen = BTreeSet::new();
+    wish_an_end_at_each_request(change, |stand, label, _| {
+        let taken = PLACE.iter().filter(|(number, value)| stand.value(*number) == *value).count();
+        assert!(taken == 0 || taken == PLACE.len(), "{taken} of scale and limits, {label}");
+        seen.insert(taken);
+    });
+    assert!(seen.contains(&PLACE.len()), "behind them it can be ended: {seen:?}");
 }
 
 #[test]
