@@ -249,3 +249,18 @@ fn who_answers_in_the_network_fills_the_form() {
     desk.connect(connect::Action::ChooseDevice(2));
     assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222", "there is none");
 }
+
+/// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps a turn.
+#[test]
+fn limits_may_be_what_the_drive_can_turn() {
+    let mut desk = read("sim:");
+    let range = |desk: &Desk| {
+        let rows = unit(desk).rows(Some(ONE));
+        let row = rows.into_iter().find(|row| row.number == number(158)).unwrap();
+        row.range.unwrap().terminal()
+    };
+    assert!(range(&desk).contains("-33554432") && range(&desk).contains("33554432"), "{}", range(&desk));
+    let scale = PositionScale::new(400, 256).unwrap();
+    edit(&mut desk, Edit::Scale { drive: ONE, scale, limits: LimitsStay::InPlace });
+    assert!(range(&desk).contains("-204800 to 204800"), "{}", range(&desk));
+}

@@ -26,7 +26,7 @@ fn stands(desk: &Desk) -> bool {
 }
 
 /// In control of the drives of a virtual device.
-fn in_control(link: &str) -> Desk {
+pub(crate) fn in_control(link: &str) -> Desk {
     let mut desk = read(link);
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| {

@@ -109,7 +109,9 @@ impl Unit {
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
             Motor::Expert(expert) => return self.moves.set_expert(expert),
             Motor::ConfirmLimits(drive) => {
-                // Those that are shown have to be those that the drive has.
+                // Those that are shown have to be those that the drive has, by all that is known at this moment.
+                self.moves.look();
+                self.notice_rules();
                 if !self.is_stale {
                     self.moves.confirm_limits(drive);
                 }

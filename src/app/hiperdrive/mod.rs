@@ -20,6 +20,7 @@ mod ruler;
 mod said;
 mod setup;
 mod staged;
+mod survey;
 mod trace;
 mod unit;
 pub mod words;

@@ -4,10 +4,10 @@
 //! A jog is kept alive by what holds it, which says so with every picture; a move, a step and a run by the pictures
 //! themselves. A window that stands still says nothing, and 250 ms later everything stands.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::device::hiperdrive::dead_man::{Effort, Ended, Lock, Permit, Phase, Wish};
-use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Percent, Setpoint, State};
+use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::worker::hiperdrive::{DriveView, Motion, View};
 
 /// The drives of a session as a person moves them.
@@ -22,6 +22,10 @@ pub struct Moves {
     expert: bool,
     /// Drives whose scaling was changed since somebody looked at their limits. They outlive a session.
     unconfirmed: BTreeSet<DriveNumber>,
+    /// What drives might do at the last look.
+    permits: BTreeMap<DriveNumber, Permit>,
+    /// Drives for which that has become another since somebody asked.
+    ruled_anew: BTreeSet<DriveNumber>,
 }
 
 /// What was asked for last.
@@ -47,15 +51,16 @@ enum Kind {
 
 impl Default for Moves {
     fn default() -> Self {
-        let full = Effort { speed: Percent::FULL, torque: Percent::FULL };
         Moves {
             motion: None,
             view: View::default(),
             act: None,
             jog: Effort::JOG,
-            job: full,
+            job: Effort::MOVE,
             expert: false,
             unconfirmed: BTreeSet::new(),
+            permits: BTreeMap::new(),
+            ruled_anew: BTreeSet::new(),
         }
     }
 }
@@ -67,6 +72,7 @@ impl Moves {
             motion.limits_changed(*drive);
         }
         (self.expert, self.act) = (false, None);
+        self.permits.clear();
         self.view = motion.view();
         self.motion = Some(motion);
     }
@@ -97,14 +103,26 @@ impl Moves {
         self.look();
     }
 
-    fn look(&mut self) {
+    /// Looks at what the drives say, and at what they may do.
+    pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
         self.view = motion.view();
-        for drive in &self.view.drives {
-            if motion.permitted(drive.number).locks.contains(&Lock::LimitsUnconfirmed) {
-                self.unconfirmed.insert(drive.number);
+        for drive in self.view.drives.iter().map(|own| own.number) {
+            let permit = motion.permitted(drive);
+            if permit.locks.contains(&Lock::LimitsUnconfirmed) {
+                self.unconfirmed.insert(drive);
             }
+            let is_other = |before: &Permit| (before.limits, &before.locks) != (permit.limits, &permit.locks);
+            if self.permits.get(&drive).is_some_and(is_other) {
+                self.ruled_anew.insert(drive);
+            }
+            self.permits.insert(drive, permit);
         }
+    }
+
+    /// Drives that may do something else since this was asked last: their parameters were changed, here or by somebody else.
+    pub(super) fn take_ruled_anew(&mut self) -> BTreeSet<DriveNumber> {
+        std::mem::take(&mut self.ruled_anew)
     }
 
     /// How the last act ended, once it has: to be told once.

@@ -85,6 +85,7 @@ impl Unit {
     pub(in crate::app) fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.beat();
+        self.notice_rules();
         for (drive, before) in before {
             self.notice_fault(drive, before);
         }
@@ -108,7 +109,9 @@ impl Unit {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
         }
-        if std::mem::take(&mut self.looks_at_errors) {
+        if std::mem::take(&mut self.looks_at_all) {
+            self.submit(HiperdriveJob::Survey, services);
+        } else if std::mem::take(&mut self.looks_at_errors) {
             self.submit(HiperdriveJob::Status, services);
         } else {
             self.watch(services);

@@ -6,7 +6,9 @@ use super::unit::Unit;
 use super::words;
 use crate::app::{Text, explain};
 use crate::profile::hiperdrive::Image;
-use crate::protocol::hiperdrive::{DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Topology, Value};
+use crate::protocol::hiperdrive::{
+    DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Range, Topology, Value,
+};
 
 /// A parameter as a row of the table.
 #[derive(Clone, Debug)]
@@ -59,7 +61,7 @@ impl Unit {
 
     fn row(&self, number: ParameterNumber, kind: &'static ParameterRow) -> Row {
         let own = || self.staged.base().and_then(|image| image.get(number)).map(Value::Number);
-        let value = self.value(number).cloned().or_else(own);
+        let value = self.said_since(number).or_else(|| self.value(number).cloned()).or_else(own);
         let is_editable = is_editable(kind) && (self.profile().is_none() || Image::holds(kind));
         let staged = self.staged.value(number).filter(|_| is_editable);
         let meant = match (&value, staged) {
@@ -73,7 +75,7 @@ impl Unit {
             shown: value.as_ref().map(|value| words::shown(number, value)).unwrap_or_default(),
             meaning: meant.and_then(|value| self.meaning(number, &value)),
             unit: words::unit(kind),
-            range: kind.allowed().filter(|_| is_editable).map(explain::hiperdrive::range),
+            range: self.range(number, kind).filter(|_| is_editable).map(explain::hiperdrive::range),
             factory: self.factory_value(number, kind).map(|own| own.to_string()).unwrap_or_default(),
             staged,
             is_edited: self.staged.differs(number).is_some(),
@@ -83,16 +85,49 @@ impl Unit {
         }
     }
 
+    /// What a drive has been sent and has said since everything was read: its words, what it measures, its errors.
+    fn said_since(&self, number: ParameterNumber) -> Option<Value> {
+        let drive = number.drive()?;
+        let value = match number.base() {
+            101 => self.moves.sent(drive)?.control.word().into(),
+            102 => self.moves.sent(drive)?.speed.get().into(),
+            103 => self.moves.sent(drive)?.torque.get().into(),
+            104 => self.moves.sent(drive)?.target.into(),
+            105 => self.actual(drive)?.status.word().into(),
+            106 => self.actual(drive)?.speed.into(),
+            107 => self.actual(drive)?.position.into(),
+            base @ 108..=115 => self.drive_status(drive)?.buffer.get(usize::from(base - 108))?.code().into(),
+            _ => return None,
+        };
+        Some(Value::Number(value))
+    }
+
     /// What a parameter is from the factory, by what the device and the drive are.
     pub fn factory_value(&self, number: ParameterNumber, kind: &ParameterRow) -> Option<i64> {
         let profile = || self.profile_identity().and_then(|own| own.topology);
         let topology = self.identity().map(|own| own.topology).or_else(profile).unwrap_or(Topology::Adapter);
-        let variant = number.drive().and_then(|drive| {
-            let in_profile = || self.profile()?.drive(drive)?.variant;
-            self.drive_identity(drive).map(|own| own.variant).or_else(in_profile)
-        });
-        let family = variant.and_then(|own| own.row()).map_or(Family::Short, |row| row.family);
+        let family = number.drive().and_then(|drive| self.family(drive)).unwrap_or(Family::Short);
         kind.factory_value(topology, family)
+    }
+
+    /// What a drive is one of, as far as its variant is known.
+    fn family(&self, drive: DriveNumber) -> Option<Family> {
+        let in_profile = || self.profile()?.drive(drive)?.variant;
+        let variant = self.drive_identity(drive).map(|own| own.variant).or_else(in_profile)?;
+        variant.row().map(|row| row.family)
+    }
+
+    /// What a parameter may be: of limits and of the position that is set, the turns that the drive has (reference 5), as they
+    /// are wanted to be scaled.
+    fn range(&self, number: ParameterNumber, kind: &ParameterRow) -> Option<Range> {
+        let of_drive = || {
+            let drive = number.drive().filter(|_| matches!(number.base(), 158 | 160 | 198))?;
+            let turns = f64::from(self.family(drive)?.most_turns());
+            let most =
+                (turns * self.wanted_ruler(drive).scale.steps_per_turn()).floor().min(f64::from(i32::MAX)) as i64;
+            Some(Range::Within(-most, most))
+        };
+        of_drive().or_else(|| kind.allowed())
     }
 
     /// What a value means, where the number alone does not say it.

@@ -162,6 +162,12 @@ impl Unit {
         Some(Said { words, is_well: explain::hiperdrive::weight(ended) == Severity::Note })
     }
 
+    /// Why the control was lost, until somebody takes it again; `None` where nobody had it, and where it was given back.
+    pub fn why_lost(&self) -> Option<Text> {
+        let view = self.moves.view();
+        view.lost.as_ref().filter(|_| !view.open).map(|lost| explain::hiperdrive::lost(Some(lost)))
+    }
+
     /// What so many percent of the speed are, by parameter 166.
     pub fn speed_of(&self, percent: Percent) -> Option<Text> {
         let most = self.number(self.drive(), 166)?;

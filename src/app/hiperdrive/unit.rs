@@ -10,12 +10,12 @@ use super::moves::Moves;
 use super::record::Record;
 use super::review::Review;
 use super::ruler::{Measure, Ruler};
-use super::staged::{Mark, Staged, is_editable};
+use super::staged::{Mark, Staged};
+use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text};
 use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Network, Reading, Status, Survey};
 use crate::link::LinkUrl;
 use crate::profile::hiperdrive::{HiperdriveProfile, Image, ProfileIdentity};
@@ -52,14 +52,14 @@ pub struct Unit {
     /// The virtual device behind the session.
     pub target: Option<Target>,
     /// Which drive is shown.
-    drive: DriveNumber,
+    pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     /// Set-ups of axes that somebody has begun.
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// What was remembered of it has been looked for.
     pub(super) is_remembered: bool,
     /// What was read last of each drive while nobody had control.
-    readings: BTreeMap<DriveNumber, Reading>,
+    pub(super) readings: BTreeMap<DriveNumber, Reading>,
     /// Limits and scaling may be others than those that were read: control was taken since.
     pub(super) is_stale: bool,
     /// Which drive is polled.
@@ -68,6 +68,8 @@ pub struct Unit {
     pub(super) has_polled: bool,
     /// Errors are to be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
+    /// Everything is: somebody else has changed what rules a drive.
+    pub(super) looks_at_all: bool,
     pub(in crate::app) drafting: Drafting<Edits>,
 }
 
@@ -100,6 +102,7 @@ impl Unit {
             watched: DriveNumber::FIRST,
             has_polled: false,
             looks_at_errors: false,
+            looks_at_all: false,
         }
     }
 
@@ -297,99 +300,6 @@ impl Unit {
         self.session.stop(services);
     }
 
-    /// Takes over what was read from the device; edits stay, unless they are another device's.
-    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
-        if self.is_another(&survey.identity) {
-            if self.staged.is_dirty() {
-                let text = Text::new("session.other_encoder").with("serial", &survey.identity.serial_number);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
-            }
-            self.forget_device(services);
-        }
-        let first = self.survey.is_none();
-        let image = image(&survey);
-        self.notice_scales(&image);
-        self.session.title = Some(title(&survey.identity));
-        self.staged.refresh(image);
-        self.survey = Some(survey);
-        self.readings.clear();
-        self.is_stale = false;
-        if !self.drives().contains(&self.drive)
-            && let Some(drive) = self.drives().first().copied()
-        {
-            self.show_drive(drive);
-        }
-        if first {
-            self.load_draft(services);
-            self.log_answer(services);
-        }
-        self.list_backups(services);
-        self.axes_surveyed();
-    }
-
-    /// Where a scale is another one than it was, nobody has looked at the limits since.
-    pub(super) fn notice_scales(&mut self, now: &Image) {
-        let Some(before) = self.staged.base() else { return };
-        let is_other = |drive: &DriveNumber| {
-            let scales = before.scale(*drive).zip(now.scale(*drive));
-            scales.is_some_and(|(before, now)| before != now)
-        };
-        for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
-            self.moves.unconfirm(drive);
-        }
-    }
-
-    /// A drive was asked where it is.
-    pub(super) fn take_reading(&mut self, reading: Reading) {
-        let before = self.actual(reading.drive).map(|own| own.status.state());
-        self.readings.insert(reading.drive, reading);
-        self.notice_fault(reading.drive, before);
-    }
-
-    /// A drive that has failed since is asked why.
-    pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
-        if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
-            self.looks_at_errors = true;
-        }
-    }
-
-    /// Another device than the one that was read before.
-    pub(super) fn is_another(&self, identity: &Identity) -> bool {
-        self.identity().is_some_and(|known| {
-            (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
-        })
-    }
-
-    fn log_answer(&self, services: &mut Services) {
-        let Some(identity) = self.identity() else { return };
-        let fact = Text::new("log.hiperdrive")
-            .with("category", &identity.category)
-            .with("serial", &identity.serial_number)
-            .with("version", &identity.version)
-            .with("drives", identity.drives.len());
-        self.session.log_answer(vec![fact], services);
-    }
-
-    fn forget_device(&mut self, services: &mut Services) {
-        self.leave_draft(services);
-        (self.survey, self.status, self.check, self.review, self.refusal) = (None, None, None, None, None);
-        self.session.title = None;
-        self.staged.clear();
-        self.moves.forget();
-        self.record.forget();
-        self.readings.clear();
-        self.pitches.clear();
-        self.axes.clear();
-        (self.is_remembered, self.measure) = (false, Measure::default());
-        (self.session.backups, self.session.writes) = (None, None);
-    }
-
-    /// The connection is gone: where drives are nobody knows any more.
-    pub(super) fn forget_readings(&mut self) {
-        self.readings.clear();
-        self.looks_at_errors = false;
-    }
-
     /// Reads the list of backups and writes again, on a thread.
     pub(super) fn list_backups(&mut self, services: &Services) {
         let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
@@ -400,18 +310,4 @@ impl Unit {
     pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
         self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
-}
-
-/// What can be edited of what was read.
-fn image(survey: &Survey) -> Image {
-    let editable = |(number, value): (&ParameterNumber, &Value)| match value {
-        Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),
-        _ => None,
-    };
-    Image { values: survey.values.iter().filter_map(editable).collect() }
-}
-
-/// The name by which the log and the jobs call a device.
-fn title(identity: &Identity) -> String {
-    format!("{} · {}", identity.category, identity.serial_number)
 }

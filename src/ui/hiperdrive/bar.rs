@@ -33,6 +33,10 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Ac
                     ui.label(skin.label(skin.say("hd_bar.watching")));
                 }
             });
+            if let Some(why) = unit.why_lost() {
+                let words = format!("{}  {}", icons::WARNING_CIRCLE, skin.words(&why));
+                paragraph(ui, RichText::new(words).color(skin.palette.bad));
+            }
             paragraph(ui, skin.caption(format!("{}  {}", icons::WARNING, skin.say("hd_bar.stop_is_not"))));
         });
     });

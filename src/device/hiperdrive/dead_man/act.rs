@@ -288,6 +288,9 @@ impl Effort {
     pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
     /// What a jog begins with: 10 % and 25 %.
     pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
+    /// What a move by hand begins with: a quarter of the speed, so that whoever mistypes a target has time for STOP, and the
+    /// torque that an axis may need.
+    pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
     /// 0 % of one of them: nothing would begin.
     pub const fn is_none(self) -> bool {

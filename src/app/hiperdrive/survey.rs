@@ -1,0 +1,133 @@
+//! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
+
+use super::ruler::Measure;
+use super::staged::is_editable;
+use super::unit::Unit;
+use crate::app::services::Services;
+use crate::app::session::Drafted;
+use crate::app::{Severity, Text};
+use crate::device::hiperdrive::dead_man::Lock;
+use crate::device::hiperdrive::{Identity, Reading, Survey};
+use crate::profile::hiperdrive::Image;
+use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, State, Value};
+
+impl Unit {
+    /// Takes over what was read from the device; edits stay, unless they are another device's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        if self.is_another(&survey.identity) {
+            if self.staged.is_dirty() {
+                let text = Text::new("session.other_encoder").with("serial", &survey.identity.serial_number);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            self.forget_device(services);
+        }
+        let first = self.survey.is_none();
+        let image = image(&survey);
+        self.notice_scales(&image);
+        self.session.title = Some(title(&survey.identity));
+        self.staged.refresh(image);
+        self.survey = Some(survey);
+        self.readings.clear();
+        (self.is_stale, self.looks_at_all) = (false, false);
+        if !self.drives().contains(&self.drive)
+            && let Some(drive) = self.drives().first().copied()
+        {
+            self.show_drive(drive);
+        }
+        if first {
+            self.load_draft(services);
+            self.log_answer(services);
+        }
+        self.list_backups(services);
+        self.axes_surveyed();
+    }
+
+    /// Where a scale is another one than it was, nobody has looked at the limits since.
+    pub(super) fn notice_scales(&mut self, now: &Image) {
+        let Some(before) = self.staged.base() else { return };
+        let is_other = |drive: &DriveNumber| {
+            let scales = before.scale(*drive).zip(now.scale(*drive));
+            scales.is_some_and(|(before, now)| before != now)
+        };
+        for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
+            self.moves.unconfirm(drive);
+        }
+    }
+
+    /// Whoever has the control reads again and again what rules the drives. Where that is not what is shown here, everything
+    /// is read anew: nothing moves by limits, and no limits are confirmed, that a person cannot see.
+    pub(super) fn notice_rules(&mut self) {
+        for drive in self.moves.take_ruled_anew() {
+            let Some(permit) = self.moves.permit(drive).filter(|permit| permit.limits.is_some()) else { continue };
+            let other_limits = permit.limits != self.limits(drive);
+            if other_limits || permit.locks.contains(&Lock::LimitsUnconfirmed) {
+                (self.is_stale, self.looks_at_all) = (true, true);
+            }
+        }
+    }
+
+    /// A drive was asked where it is.
+    pub(super) fn take_reading(&mut self, reading: Reading) {
+        let before = self.actual(reading.drive).map(|own| own.status.state());
+        self.readings.insert(reading.drive, reading);
+        self.notice_fault(reading.drive, before);
+    }
+
+    /// A drive that has failed since is asked why.
+    pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
+        if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
+            self.looks_at_errors = true;
+        }
+    }
+
+    /// Another device than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        self.identity().is_some_and(|known| {
+            (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
+        })
+    }
+
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = self.identity() else { return };
+        let fact = Text::new("log.hiperdrive")
+            .with("category", &identity.category)
+            .with("serial", &identity.serial_number)
+            .with("version", &identity.version)
+            .with("drives", identity.drives.len());
+        self.session.log_answer(vec![fact], services);
+    }
+
+    fn forget_device(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        (self.survey, self.status, self.check, self.review, self.refusal) = (None, None, None, None, None);
+        self.session.title = None;
+        self.staged.clear();
+        self.moves.forget();
+        self.record.forget();
+        self.readings.clear();
+        self.pitches.clear();
+        self.axes.clear();
+        (self.is_remembered, self.measure) = (false, Measure::default());
+        (self.session.backups, self.session.writes) = (None, None);
+    }
+
+    /// The connection is gone: where drives are nobody knows any more.
+    pub(super) fn forget_readings(&mut self) {
+        self.readings.clear();
+        (self.looks_at_errors, self.looks_at_all) = (false, false);
+    }
+}
+
+/// What can be edited of what was read.
+fn image(survey: &Survey) -> Image {
+    let editable = |(number, value): (&ParameterNumber, &Value)| match value {
+        Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),
+        _ => None,
+    };
+    Image { values: survey.values.iter().filter_map(editable).collect() }
+}
+
+/// The name by which the log and the jobs call a device.
+fn title(identity: &Identity) -> String {
+    format!("{} · {}", identity.category, identity.serial_number)
+}

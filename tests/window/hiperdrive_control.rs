@@ -1,0 +1,140 @@
+//! Who has the control of HIPERDRIVE drives, by actions: how it is lost and what is said of it, and parameters that somebody
+//! else changes meanwhile.
+
+use std::time::Duration;
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::{Severity, Studio, Text};
+use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::protocol::hiperdrive::{ErrorCode, Value};
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, drive, number, read, unit};
+use crate::hiperdrive_motion::in_control;
+use crate::support::Desk;
+
+/// What another master writes.
+fn set(desk: &Desk, of: u16, value: i64) {
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+}
+
+/// The device sends no cyclic packets any more, and still answers messages.
+fn fall_silent(desk: &Desk) {
+    unit(desk).target.clone().unwrap().with(|station| station.close(Moment::default()));
+}
+
+fn is_open(studio: &Studio) -> bool {
+    studio.hiperdrive().unwrap().moves.is_open()
+}
+
+#[test]
+fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
+    let mut desk = in_control("sim:");
+    // Nothing is asked of the device: the loss tells itself.
+    act(&mut desk, Hiperdrive::Poll(None));
+    desk.settle();
+    assert_eq!(unit(&desk).why_lost(), None);
+    fall_silent(&desk);
+    desk.until("the loss is told", |studio| {
+        let told = |text: &Text| text.id() == "hd_lost.silent";
+        !is_open(studio) && studio.services.log.notices().any(|notice| notice.texts.iter().any(told))
+    });
+    desk.settle();
+    assert_eq!(desk.times_told("hd_lost.silent"), 1);
+    assert_eq!(unit(&desk).why_lost().unwrap().id(), "hd_lost.silent");
+    drive(&mut desk, Motor::Step { by: 64 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("it is taken again", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
+    assert_eq!(unit(&desk).why_lost(), None);
+    act(&mut desk, Hiperdrive::Give);
+    desk.until("it is given back", |studio| !is_open(studio));
+    assert_eq!(unit(&desk).why_lost(), None, "nobody has lost it");
+}
+
+#[test]
+fn limits_that_somebody_else_sets_while_control_is_held_are_read_and_hold() {
+    let mut desk = in_control("sim:");
+    set(&desk, 160, 65_536);
+    desk.until("they are read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.limits(ONE) == Some((-33_488_896, 65_536)) && own.session.is_ready()
+    });
+    assert!(unit(&desk).moves.locks(ONE).is_empty());
+    drive(&mut desk, Motor::Move { target: 65_537 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
+}
+
+#[test]
+fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_are_seen() {
+    let mut desk = in_control("sim:");
+    // 400 steps a turn instead of 65536.
+    set(&desk, 154, 400);
+    set(&desk, 156, 256);
+    desk.until("it is locked", |studio| studio.hiperdrive().unwrap().moves.locks(ONE) == [Lock::LimitsUnconfirmed]);
+    // What was read before is no place to confirm.
+    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    desk.until("it is read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && (own.number(ONE, 154), own.number(ONE, 156)) == (Some(400), Some(256))
+    });
+    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
+    drive(&mut desk, Motor::Step { by: 4 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.limits"]);
+    drive(&mut desk, Motor::ConfirmLimits(ONE));
+    assert!(unit(&desk).moves.locks(ONE).is_empty());
+    drive(&mut desk, Motor::Step { by: 4 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().moves.view().drives.iter().any(|own| own.act > 0));
+}
+
+#[test]
+fn a_scale_that_a_save_finds_changed_locks_too() {
+    let mut desk = read("sim:");
+    set(&desk, 154, 100);
+    assert!(unit(&desk).moves.unconfirmed().is_empty());
+    let path = desk.outside.path("drive.ron");
+    act(&mut desk, Hiperdrive::Save(path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    assert!(unit(&desk).moves.unconfirmed().contains(&ONE));
+}
+
+#[test]
+fn nothing_moves_before_everything_was_read_anew_with_the_control() {
+    let mut desk = read("sim:");
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
+    drive(&mut desk, Motor::Step { by: 64 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"]);
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
+    std::thread::sleep(Duration::from_millis(30));
+    desk.settle();
+    assert!(unit(&desk).may_move(ONE).is_ok());
+}
+
+/// 4096 steps are a sixteenth of a turn (reference 4); a step of them ends with 3E37 (reference 9), or its like with another
+/// acknowledge bit.
+#[test]
+fn the_table_shows_what_the_drive_says_now() {
+    let mut desk = in_control("sim:");
+    let shown = |desk: &Desk, of: u16| {
+        let rows = unit(desk).rows(Some(ONE));
+        rows.into_iter().find(|row| row.number == number(of)).unwrap().value.unwrap()
+    };
+    assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(0), Value::Number(0)));
+    drive(&mut desk, Motor::Step { by: 4096 });
+    desk.until("it arrives", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        !studio.moves() && own.actual(ONE).is_some_and(|own| own.position == 4096)
+    });
+    assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(4096), Value::Number(4096)));
+    assert_eq!(unit(&desk).value(number(107)), Some(&Value::Number(0)), "as it was read");
+    let target = unit(&desk).target.clone().unwrap();
+    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+    // Reference 4: blocked forwards is 8301h, 33537.
+    desk.until("its error is read", |studio| {
+        let own = studio.hiperdrive().unwrap().drive_status(ONE);
+        own.is_some_and(|own| own.buffer.first() == Some(&ErrorCode::BLOCK_FORWARD))
+    });
+    assert_eq!(shown(&desk, 108), Value::Number(33_537));
+}
