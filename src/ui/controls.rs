@@ -82,8 +82,10 @@ pub(super) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 
 /// Why an entry cannot be used, below it.
 pub(super) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Text>) {
-    if let Some(problem) = problem {
-        paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad));
+    match problem {
+        Some(problem) => paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad)),
+        // Entries below it are the same ones without it: whoever types in one goes on typing.
+        None => ui.skip_ahead_auto_ids(1),
     }
 }
 

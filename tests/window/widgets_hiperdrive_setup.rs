@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::hiperdrive::axis::Step;
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Tab};
 use encoder_studio::protocol::ethernet_ip::AddressSource;
@@ -106,4 +107,40 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
     screen.click("page.axis");
     screen.click("hd_axis.cancel");
     assert!(screen.shows("Nothing was written."));
+}
+
+/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps a turn; 511 turns either way are 2044 mm, 204400 steps.
+#[test]
+fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
+    let mut screen = page("sim:", "page.parameters");
+    assert!(!screen.is_enabled("hd_scale.set"), "without a pitch there is no scale");
+    screen.put("Spindle pitch", "four");
+    screen.entry("A step is").focus();
+    screen.steps();
+    assert!(screen.shows("\"four\" is no length"));
+    screen.put("Spindle pitch", "4");
+    screen.put("A step is", "0.0000001");
+    let own = screen.studio().hiperdrive().unwrap();
+    assert_eq!(own.pitch(own.drive()).map(|own| own.nanometres), Some(4_000_000));
+    screen.click("hd_scale.set");
+    assert!(screen.studio().hiperdrive().unwrap().staged.differences().is_empty());
+    screen.put("A step is", "0.01");
+    screen.click("hd_scale.set");
+    assert!(screen.shows("400 steps") && screen.shows("-2044.00 … 2044.00 mm"));
+    let own = screen.studio().hiperdrive().unwrap();
+    let wanted = own.staged.wanted().unwrap();
+    assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
+    assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
+    // As numbers they lie 164 times further.
+    let id = own.session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Undo));
+    screen.press(Role::RadioButton, "Limits: keep their numbers");
+    screen.click("hd_scale.set");
+    let own = screen.studio().hiperdrive().unwrap();
+    assert_eq!(own.staged.wanted().unwrap().limits(own.drive()), Some((-33_488_896, 33_488_896)));
+    assert!(matches!(own.marks()[..], [Mark::LimitsMove { .. }]));
+    for language in [Language::German, Language::English] {
+        screen.act(Action::SetLanguage(language));
+        screen.check_language();
+    }
 }

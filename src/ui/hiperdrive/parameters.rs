@@ -22,9 +22,9 @@ pub(super) struct View {
 /// Which parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Shown {
-    #[default]
     All,
-    /// Those that can be written.
+    /// Those that can be written; whatever is looked for by name or number.
+    #[default]
     Written,
     /// Those that are edited or were another value when they were read before.
     Changed,
@@ -34,8 +34,8 @@ enum Shown {
 const NUMBER: f32 = 44.0;
 const VALUE: f32 = 168.0;
 const ENTRY: f32 = 88.0;
-const RANGE: f32 = 112.0;
-const FACTORY: f32 = 88.0;
+const RANGE: f32 = 136.0;
+const FACTORY: f32 = 80.0;
 const KEPT: f32 = 48.0;
 /// Of a line that is read, and of one that is typed into.
 const READ: f32 = 20.0;
@@ -84,7 +84,7 @@ impl View {
             || skin.words(&row.name).to_lowercase().contains(&sought);
         fits && match self.shown {
             Shown::All => true,
-            Shown::Written => row.is_editable,
+            Shown::Written => row.is_editable || !sought.is_empty(),
             Shown::Changed => row.is_edited || row.changed_from.is_some(),
         }
     }
