@@ -14,6 +14,7 @@ mod hiperface;
 pub mod icons;
 mod interbus;
 mod navigation;
+mod page;
 mod panels;
 pub mod plot;
 mod review;

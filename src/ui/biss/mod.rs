@@ -10,10 +10,10 @@ mod run;
 mod sheet;
 mod wiring;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
 use super::controls::paragraph;
-use super::{Skin, backups, icons};
+use super::{Skin, backups, icons, page};
 use crate::app::biss::Encoder;
 use crate::app::{Action, AnyDevice, Studio};
 
@@ -114,8 +114,6 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
     if view.page.is_fixed() {
         // Tables fill what there is.
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
@@ -125,13 +123,9 @@ pub(super) fn page_ui(
         });
         return;
     }
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
-    let frame = egui::Frame::NONE.inner_margin(margin);
-    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        frame.show(ui, |ui| match view.page {
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
-            Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
-            _ => encoder::page_ui(ui, skin, encoder, actions),
-        });
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
+        Page::Backups => backups::page_ui(ui, skin, device, actions),
+        Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
+        _ => encoder::page_ui(ui, skin, encoder, actions),
     });
 }

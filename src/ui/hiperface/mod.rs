@@ -7,9 +7,9 @@ mod setup;
 mod values;
 mod wiring;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
-use super::{Skin, backups, icons};
+use super::{Skin, backups, icons, page};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Studio};
 
@@ -103,24 +103,19 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
     if view.page == Page::Memory {
         // The editor scrolls by itself; its buttons stay where they are.
         egui::Frame::NONE
-            .inner_margin(margin)
+            .inner_margin(page::around(ui, skin))
             .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
         return;
     }
-    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
-            Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
-            Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
-            Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
-            Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
-            Page::Memory => {}
-        });
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
+        Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
+        Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
+        Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
+        Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
+        Page::Backups => backups::page_ui(ui, skin, device, actions),
+        Page::Memory => {}
     });
 }

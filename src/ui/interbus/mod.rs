@@ -8,9 +8,9 @@ mod read_outs;
 mod reader;
 mod standstill;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
-use super::{Skin, backups, foot, icons};
+use super::{Skin, backups, foot, icons, page};
 use crate::app::interbus::Encoder;
 use crate::app::{Action, AnyDevice, Studio};
 
@@ -102,36 +102,31 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
     if view.page.has_foot() {
         // Stays where it is while the rest scrolls.
+        let around = page::sides(ui, skin);
         let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
         egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
             .frame(egui::Frame::NONE.inner_margin(margin))
             .show_separator_line(false)
             .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
     }
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
-    let frame = egui::Frame::NONE.inner_margin(margin);
-    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        frame.show(ui, |ui| {
-            if view.page != Page::Backups {
-                standstill::bar_ui(ui, skin, encoder, actions);
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| {
+        if view.page != Page::Backups {
+            standstill::bar_ui(ui, skin, encoder, actions);
+        }
+        match view.page {
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+            Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
+            Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
+            Page::Diagnosis => {
+                read_outs::cards_ui(ui, skin, encoder, actions);
+                ui.add_space(skin.space.groups);
+                reader::card_ui(ui, skin, &mut view.reader);
+                ui.add_space(skin.space.groups);
+                lamps::cards_ui(ui, skin, &mut view.lamps);
             }
-            match view.page {
-                Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
-                Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
-                Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
-                Page::Diagnosis => {
-                    read_outs::cards_ui(ui, skin, encoder, actions);
-                    ui.add_space(skin.space.groups);
-                    reader::card_ui(ui, skin, &mut view.reader);
-                    ui.add_space(skin.space.groups);
-                    lamps::cards_ui(ui, skin, &mut view.lamps);
-                }
-                Page::Backups => backups::page_ui(ui, skin, device, actions),
-            }
-        });
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+        }
     });
 }

@@ -14,9 +14,9 @@ mod synchronise;
 mod table;
 mod virtual_encoder;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
-use super::{Skin, icons};
+use super::{Skin, icons, page};
 use crate::app::hiperface::Encoder;
 use crate::app::signals::Signals;
 use crate::app::signals::input_circuit::Form as Circuit;
@@ -98,28 +98,23 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
-    ScrollArea::vertical().id_salt(view.page.word()).auto_shrink(false).show(ui, |ui| {
-        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match view.page {
-            Page::Scope => {
-                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                    scope::page_ui(ui, skin, signals, view, actions);
-                }
+    page::scrolling(ui, skin, view.page.word(), |ui| match view.page {
+        Page::Scope => {
+            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
+                scope::page_ui(ui, skin, signals, view, actions);
             }
-            Page::Quality => {
-                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                    quality::page_ui(ui, skin, signals, view, actions);
-                }
+        }
+        Page::Quality => {
+            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
+                quality::page_ui(ui, skin, signals, view, actions);
             }
-            Page::Error => {
-                if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                    error::page_ui(ui, skin, signals, view, actions);
-                }
+        }
+        Page::Error => {
+            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
+                error::page_ui(ui, skin, signals, view, actions);
             }
-            Page::Synchronise => synchronise::page_ui(ui, skin, signals, encoder, actions),
-            Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
-        });
+        }
+        Page::Synchronise => synchronise::page_ui(ui, skin, signals, encoder, actions),
+        Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
     });
 }

@@ -9,9 +9,9 @@ mod timing;
 mod trial;
 mod wiring;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
-use super::{Skin, icons};
+use super::{Skin, icons, page};
 use crate::app::ssi::Encoder;
 use crate::app::{Action, AnyDevice, Studio};
 
@@ -86,17 +86,11 @@ pub(super) fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
-    let margin = egui::Margin { left: around, right: around, top: 16, bottom: around.min(16) };
-    let frame = egui::Frame::NONE.inner_margin(margin);
-    ScrollArea::vertical().id_salt((encoder.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        frame.show(ui, |ui| match view.page {
-            Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
-            Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
-            Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
-            Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
-            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
-        });
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
+        Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
+        Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
+        Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
+        Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
+        Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
     });
 }
