@@ -3,24 +3,22 @@
 
 use std::collections::BTreeMap;
 
+use super::history::History;
+
 /// Edited bytes by their place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Edits<K: Ord + Copy> {
     edits: BTreeMap<K, u8>,
-    undo: Vec<BTreeMap<K, u8>>,
-    redo: Vec<BTreeMap<K, u8>>,
+    history: History<BTreeMap<K, u8>>,
 }
 
 impl<K: Ord + Copy> Default for Edits<K> {
     fn default() -> Self {
-        Edits { edits: BTreeMap::new(), undo: Vec::new(), redo: Vec::new() }
+        Edits { edits: BTreeMap::new(), history: History::default() }
     }
 }
 
 impl<K: Ord + Copy> Edits<K> {
-    /// Steps that can be undone.
-    const UNDO_STEPS: usize = 200;
-
     /// The byte that is wanted here; `None`: as the device has it.
     pub(super) fn get(&self, at: K) -> Option<u8> {
         self.edits.get(&at).copied()
@@ -61,49 +59,37 @@ impl<K: Ord + Copy> Edits<K> {
 
     /// There is a step to undo.
     pub(super) fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
+        self.history.can_undo()
     }
 
     /// There is a step to do again.
     pub(super) fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
+        self.history.can_redo()
     }
 
     /// Undoes the last step. False when there is none.
     pub(super) fn undo(&mut self) -> bool {
-        let Some(before) = self.undo.pop() else { return false };
-        self.redo.push(std::mem::replace(&mut self.edits, before));
-        true
+        self.history.undo(&mut self.edits)
     }
 
     /// Does the last undone step again. False when there is none.
     pub(super) fn redo(&mut self) -> bool {
-        let Some(after) = self.redo.pop() else { return false };
-        self.undo.push(std::mem::replace(&mut self.edits, after));
-        true
+        self.history.redo(&mut self.edits)
     }
 
     /// What was undone belongs to another memory.
     pub(super) fn forget_redo(&mut self) {
-        self.redo.clear();
+        self.history.forget_undone();
     }
 
     /// What led here cannot be undone any more.
     pub(super) fn forget_steps(&mut self) {
-        self.undo.clear();
-        self.redo.clear();
+        self.history.forget();
     }
 
     fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, u8>)) {
-        let before = self.edits.clone();
-        change(&mut self.edits);
-        if self.edits == before {
-            return;
-        }
-        self.redo.clear();
-        self.undo.push(before);
-        if self.undo.len() > Self::UNDO_STEPS {
-            self.undo.remove(0);
-        }
+        let mut after = self.edits.clone();
+        change(&mut after);
+        self.history.step(&mut self.edits, after);
     }
 }

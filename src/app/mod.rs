@@ -13,6 +13,7 @@ pub mod explain;
 mod files;
 pub mod hiperdrive;
 pub mod hiperface;
+mod history;
 pub mod interbus;
 mod keep;
 mod leaving;

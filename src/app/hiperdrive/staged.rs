@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 pub use edit::{Edit, EditError, LimitsStay};
 pub use mark::Mark;
 
+use crate::app::history::History;
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{Access, ParameterNumber, ParameterRow};
 
@@ -37,8 +38,7 @@ pub struct Staged {
     wanted: Option<Image>,
     /// What the device said before it was read the last time.
     earlier: Option<Image>,
-    undo: Vec<Image>,
-    redo: Vec<Image>,
+    history: History<Image>,
     /// Edits of an earlier time whose parameter was not read yet.
     waiting: Vec<Kept>,
 }
@@ -57,9 +57,6 @@ pub struct Differs {
     /// As it is wanted; `None`: a profile is not to say it any more.
     pub to: Option<i64>,
 }
-
-/// Steps that can be undone.
-const UNDO_STEPS: usize = 200;
 
 /// What can be edited as a value: what is kept, and the steps of the drive's own keys, which are not. Setting the position
 /// (198) is a change of its own.
@@ -82,14 +79,7 @@ impl Staged {
     /// Takes what was read from the device: all of it. Edits stay, and so does the way back through them.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
-            (Some(before), Some(wanted)) => {
-                for own in self.undo.iter_mut().chain([&mut *wanted]) {
-                    rebase(own, before, &now);
-                }
-                self.redo.clear();
-                self.undo.dedup();
-                self.undo.pop_if(|last| *last == *wanted);
-            }
+            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| rebase(own, before, &now)),
             _ => self.wanted = Some(now.clone()),
         }
         self.earlier = self.base.replace(now);
@@ -110,8 +100,7 @@ impl Staged {
 
     /// The edits were written: what led to them cannot be undone any more.
     pub fn forget_steps(&mut self) {
-        self.undo.clear();
-        self.redo.clear();
+        self.history.forget();
     }
 
     /// Forgets everything: another device.
@@ -192,36 +181,26 @@ impl Staged {
 
     /// There is a step to undo.
     pub fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
+        self.history.can_undo()
     }
 
     /// There is a step to do again.
     pub fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
+        self.history.can_redo()
     }
 
     /// Undoes the last step. False when there is none.
     pub fn undo(&mut self) -> bool {
-        let Some((before, wanted)) = self.undo.pop().zip(self.wanted.as_mut()) else { return false };
-        self.redo.push(std::mem::replace(wanted, before));
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
     }
 
     /// Does the last undone step again. False when there is none.
     pub fn redo(&mut self) -> bool {
-        let Some((after, wanted)) = self.redo.pop().zip(self.wanted.as_mut()) else { return false };
-        self.undo.push(std::mem::replace(wanted, after));
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
     }
 
     fn step(&mut self, after: Image) -> bool {
-        let Some(wanted) = self.wanted.as_mut().filter(|wanted| **wanted != after) else { return false };
-        self.redo.clear();
-        self.undo.push(std::mem::replace(wanted, after));
-        if self.undo.len() > UNDO_STEPS {
-            self.undo.remove(0);
-        }
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
     }
 
     /// The edits, for a draft on disk; also those that wait for their parameter to be read.

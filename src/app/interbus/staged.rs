@@ -21,6 +21,7 @@ pub use draft::Kept;
 pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
+use crate::app::history::History;
 use crate::profile::interbus::{Image, Names, Parameters};
 use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
@@ -51,14 +52,10 @@ pub struct Staged {
     /// What the encoder or the profile says; both or none.
     base: Option<Wanted>,
     wanted: Option<Wanted>,
-    undo: Vec<Wanted>,
-    redo: Vec<Wanted>,
+    history: History<Wanted>,
     /// Edits of an earlier time whose place was not read yet.
     waiting: Vec<Kept>,
 }
-
-/// Steps that can be undone.
-const UNDO_STEPS: usize = 200;
 
 impl Wanted {
     /// With nothing named.
@@ -135,14 +132,7 @@ impl Staged {
     /// What the encoder or the profile says now.
     fn rebase(&mut self, now: Wanted) {
         match (&self.base, &mut self.wanted) {
-            (Some(before), Some(wanted)) => {
-                for own in self.undo.iter_mut().chain([&mut *wanted]) {
-                    merge::rebase(own, before, &now);
-                }
-                self.redo.clear();
-                self.undo.dedup();
-                self.undo.pop_if(|last| *last == *wanted);
-            }
+            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
             _ => self.wanted = Some(now.clone()),
         }
         self.base = Some(now);
@@ -152,8 +142,7 @@ impl Staged {
 
     /// The edits were written: what led to them cannot be undone any more.
     pub fn forget_steps(&mut self) {
-        self.undo.clear();
-        self.redo.clear();
+        self.history.forget();
     }
 
     /// Forgets everything: another encoder.
@@ -214,35 +203,25 @@ impl Staged {
 
     /// There is a step to undo.
     pub fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
+        self.history.can_undo()
     }
 
     /// There is a step to do again.
     pub fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
+        self.history.can_redo()
     }
 
     /// Undoes the last step. False when there is none.
     pub fn undo(&mut self) -> bool {
-        let Some((before, wanted)) = self.undo.pop().zip(self.wanted.as_mut()) else { return false };
-        self.redo.push(std::mem::replace(wanted, before));
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
     }
 
     /// Does the last undone step again. False when there is none.
     pub fn redo(&mut self) -> bool {
-        let Some((after, wanted)) = self.redo.pop().zip(self.wanted.as_mut()) else { return false };
-        self.undo.push(std::mem::replace(wanted, after));
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
     }
 
     fn step(&mut self, after: Wanted) -> bool {
-        let Some(wanted) = self.wanted.as_mut().filter(|wanted| **wanted != after) else { return false };
-        self.redo.clear();
-        self.undo.push(std::mem::replace(wanted, after));
-        if self.undo.len() > UNDO_STEPS {
-            self.undo.remove(0);
-        }
-        true
+        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
     }
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::strip;
 use crate::app::Text;
 use crate::app::explain;
+use crate::app::history::History;
 use crate::link::{LinkUrl, Scheme};
 use crate::profile::ssi::{ReadingSettings, SsiProfile};
 use crate::protocol::ssi::{
@@ -15,8 +16,6 @@ use crate::protocol::ssi::{
 };
 use crate::sim::bridge::DELIVERED;
 
-/// Steps that can be undone.
-const UNDO_STEPS: usize = 200;
 /// A layout to begin with.
 const TO_BEGIN_WITH: &str = "ahm36";
 
@@ -66,8 +65,7 @@ pub struct Designer {
     families: Arc<Families>,
     now: Design,
     saved: SsiProfile,
-    undo: Vec<SsiProfile>,
-    redo: Vec<SsiProfile>,
+    history: History<SsiProfile>,
     problem: Option<Text>,
 }
 
@@ -107,7 +105,7 @@ impl Designer {
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
-        Designer { families, now, saved, undo: Vec::new(), redo: Vec::new(), problem: None }
+        Designer { families, now, saved, history: History::default(), problem: None }
     }
 
     /// With the layout of a family as delivered.
@@ -185,12 +183,12 @@ impl Designer {
 
     /// There is a step to undo.
     pub fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
+        self.history.can_undo()
     }
 
     /// There is a step to do again.
     pub fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
+        self.history.can_redo()
     }
 
     /// Other families are known: what one makes of the layout is looked at anew.
@@ -216,11 +214,7 @@ impl Designer {
                     return false;
                 }
                 let before = std::mem::replace(&mut self.now, design);
-                self.redo.clear();
-                self.undo.push(before.profile);
-                if self.undo.len() > UNDO_STEPS {
-                    self.undo.remove(0);
-                }
+                self.history.note(before.profile);
                 true
             }
             Err(why) => {
@@ -278,22 +272,23 @@ impl Designer {
 
     /// Undoes the last step.
     pub(super) fn undo(&mut self) -> bool {
-        let Some(before) = self.undo.pop() else { return false };
-        self.step_to(before, |own| &mut own.redo)
+        self.step_by(History::undo)
     }
 
     /// Does the last undone step again.
     pub(super) fn redo(&mut self) -> bool {
-        let Some(after) = self.redo.pop() else { return false };
-        self.step_to(after, |own| &mut own.undo)
+        self.step_by(History::redo)
     }
 
-    fn step_to(&mut self, profile: SsiProfile, other: fn(&mut Self) -> &mut Vec<SsiProfile>) -> bool {
+    fn step_by(&mut self, step: fn(&mut History<SsiProfile>, &mut SsiProfile) -> bool) -> bool {
+        let mut profile = self.now.profile.clone();
+        if !step(&mut self.history, &mut profile) {
+            return false;
+        }
         self.problem = None;
         // It could work when the step was made.
         let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
-        let before = std::mem::replace(&mut self.now, design);
-        other(self).push(before.profile);
+        self.now = design;
         true
     }
 

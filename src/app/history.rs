@@ -1,0 +1,120 @@
+//! Steps that can be undone and done again, whatever it is that changes in them. What is now lies with whoever holds this.
+
+/// What was before each of the last steps, and what was undone of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct History<T> {
+    undo: Vec<T>,
+    redo: Vec<T>,
+}
+
+impl<T> Default for History<T> {
+    fn default() -> Self {
+        History { undo: Vec::new(), redo: Vec::new() }
+    }
+}
+
+impl<T> History<T> {
+    /// Steps that can be undone.
+    const STEPS: usize = 200;
+
+    /// There is a step to undo.
+    pub(super) fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// There is a step to do again.
+    pub(super) fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// A step was made from `before`: what was undone cannot be done again any more.
+    pub(super) fn note(&mut self, before: T) {
+        self.redo.clear();
+        self.undo.push(before);
+        if self.undo.len() > Self::STEPS {
+            self.undo.remove(0);
+        }
+    }
+
+    /// Undoes the last step: `now` is what was before it. False when there is none.
+    pub(super) fn undo(&mut self, now: &mut T) -> bool {
+        let Some(before) = self.undo.pop() else { return false };
+        self.redo.push(std::mem::replace(now, before));
+        true
+    }
+
+    /// Does the last undone step again. False when there is none.
+    pub(super) fn redo(&mut self, now: &mut T) -> bool {
+        let Some(after) = self.redo.pop() else { return false };
+        self.undo.push(std::mem::replace(now, after));
+        true
+    }
+
+    /// What led here cannot be undone any more.
+    pub(super) fn forget(&mut self) {
+        *self = History::default();
+    }
+
+    /// What was undone cannot be done again any more.
+    pub(super) fn forget_undone(&mut self) {
+        self.redo.clear();
+    }
+}
+
+impl<T: PartialEq> History<T> {
+    /// Makes a step from `now` to `after`. False where that is the same.
+    pub(super) fn step(&mut self, now: &mut T, after: T) -> bool {
+        if *now == after {
+            return false;
+        }
+        self.note(std::mem::replace(now, after));
+        true
+    }
+
+    /// The ground has changed under all steps: `follow` changes what is and what was. Steps between which nothing is left
+    /// fall away.
+    pub(super) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
+        self.undo.iter_mut().for_each(&follow);
+        follow(now);
+        self.redo.clear();
+        self.undo.dedup();
+        self.undo.pop_if(|last| *last == *now);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_lead_back_and_forth_until_another_is_made() {
+        let (mut history, mut now) = (History::default(), 1);
+        assert!(history.step(&mut now, 2) && history.step(&mut now, 3) && !history.step(&mut now, 3));
+        assert!(history.undo(&mut now) && now == 2 && history.can_redo());
+        assert!(history.redo(&mut now) && now == 3 && !history.can_redo());
+        assert!(history.undo(&mut now) && history.undo(&mut now) && now == 1 && !history.undo(&mut now));
+        assert!(history.step(&mut now, 4) && !history.redo(&mut now), "another way was taken");
+        history.forget();
+        assert!(!history.can_undo() && now == 4);
+    }
+
+    #[test]
+    fn the_last_two_hundred_steps_can_be_undone() {
+        let (mut history, mut now) = (History::default(), 0);
+        (1..=250).for_each(|after| assert!(history.step(&mut now, after)));
+        while history.undo(&mut now) {}
+        assert_eq!(now, 50);
+    }
+
+    #[test]
+    fn steps_that_the_ground_has_taken_away_are_none() {
+        let (mut history, mut now) = (History::default(), 1);
+        for after in [2, 3, 14] {
+            history.step(&mut now, after);
+        }
+        history.undo(&mut now);
+        // Of 1, 2 and 3 remain 0, 0 and 0.
+        history.rebase(&mut now, |own| *own /= 10);
+        assert!(now == 0 && !history.can_undo() && !history.can_redo());
+    }
+}
