@@ -375,7 +375,7 @@ mod tests {
         let status = DataFieldStatus::from_byte(0xE8);
         profile.fields.push(FieldImage { number: 2, status, bytes: None });
         profile.mark_mounting();
-        assert_eq!(profile.mounting[0].range, FieldRange::new(1, 0, 16));
+        assert_eq!(profile.mounting[0].item, FieldRange::new(1, 0, 16));
         document.note = Some("two\nlines".to_owned());
         assert_eq!(Document::parse(&document.emit()), Ok(document));
     }

@@ -7,6 +7,7 @@ mod document;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
+mod mounting;
 mod plan;
 mod restore;
 mod ron_text;
@@ -15,6 +16,7 @@ mod unique_names;
 
 pub use difference::{Comparison, Difference};
 pub use document::{Body, Document, ProfileError, SCHEMA};
+pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};
 pub use restore::{Restore, RestoreOptions};
 pub use ron_text::Unknown;

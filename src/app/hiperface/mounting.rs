@@ -9,11 +9,11 @@ impl Encoder {
     /// What in a field belongs to the mounting, with its meaning.
     pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
         let own = |profile: &HiperfaceProfile| {
-            let marks = profile.mounting.iter().filter(|mark| mark.range.field == field);
+            let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);
             marks
                 .map(|mark| {
-                    let start = mark.range.start;
-                    (start..start.saturating_add(mark.range.count.unwrap_or(0)), mark.meaning.clone())
+                    let start = mark.item.start;
+                    (start..start.saturating_add(mark.item.count.unwrap_or(0)), mark.meaning.clone())
                 })
                 .collect()
         };

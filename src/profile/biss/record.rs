@@ -1,6 +1,8 @@
 //! What is saved of a BiSS encoder: who it is, its settings, its areas of plain data, and beside them what is only
 //! recorded. Its text is in [`text`](super::text).
 
+use std::fmt;
+
 use super::RegisterRange;
 use crate::profile::ron_text::Unknown;
 use crate::protocol::biss::{Area, Filter, Firmware, Identity, PresetValue, ProfileId, RegisterAddress, WiegandResult};
@@ -72,15 +74,7 @@ pub struct Recorded {
 }
 
 /// Something that is right for one encoder on one motor and no other.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MountingMark {
-    /// What.
-    pub item: MountingItem,
-    /// What it means.
-    pub meaning: String,
-    /// Entries that this program does not know.
-    pub unknown: Unknown,
-}
+pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
 /// What belongs to a mounting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,6 +83,20 @@ pub enum MountingItem {
     Registers(RegisterRange),
     /// The table of the calibration, which lies in the encoder and cannot be read.
     Calibration,
+}
+
+impl MountingItem {
+    /// What stands for the calibration, which has no registers.
+    pub(super) const CALIBRATION: &str = "calibration";
+}
+
+impl fmt::Display for MountingItem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MountingItem::Registers(range) => range.fmt(f),
+            MountingItem::Calibration => f.write_str(Self::CALIBRATION),
+        }
+    }
 }
 
 /// The 64 registers of a bank.

@@ -5,7 +5,8 @@ use super::{
 };
 use crate::bits::hex;
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{BYTE, Entries, Writer, entries_text, quoted};
+use crate::profile::mounting::NEVER_BY_ITSELF;
+use crate::profile::ron_text::{BYTE, Entries, Writer, quoted};
 use crate::protocol::biss::{Filter, Firmware, PresetValue, ProfileId, WiegandResult};
 
 /// Three registers hold a preset value.
@@ -18,7 +19,7 @@ impl BissProfile {
         let filter = entries.optional("filter", BYTE)?.map(Filter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
+        let mounting = MountingMark::read_all(entries, "a text such as \"0x24:0x10+3\"", read_marked)?;
         let mut data: Vec<DataImage> = Vec::new();
         for entries in entries.required_structures("data")? {
             let path = entries.path_of("banks");
@@ -56,20 +57,7 @@ impl BissProfile {
             writer.close(')');
         }
         self.recorded.write(writer);
-        if !self.mounting.is_empty() {
-            writer.comment("belongs to the mounting: never restored onto another encoder by itself");
-            writer.open("mounting", '[');
-            for mark in &self.mounting {
-                let item = match mark.item {
-                    MountingItem::Registers(range) => range.to_string(),
-                    MountingItem::Calibration => CALIBRATION.to_owned(),
-                };
-                let (item, meaning) = (quoted(&item), quoted(&mark.meaning));
-                let unknown = entries_text(&mark.unknown);
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
-            }
-            writer.close(']');
-        }
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
         writer.open("data", '[');
         for image in &self.data {
             image.write(writer);
@@ -98,9 +86,6 @@ impl BissProfile {
         writer.close(')');
     }
 }
-
-/// What stands for the table of the calibration, which has no registers.
-const CALIBRATION: &str = "calibration";
 
 impl Recorded {
     fn write(&self, writer: &mut Writer) {
@@ -223,18 +208,12 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     })
 }
 
-fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
-    let path = entries.path_of("item");
-    let text: String = entries.required("item", "a text such as \"0x24:0x10+3\"")?;
-    let item = match text.as_str() {
-        CALIBRATION => MountingItem::Calibration,
-        text => MountingItem::Registers(text.parse().map_err(|_| ProfileError::Value {
-            path,
-            what: format!("{text:?} is neither calibration nor of the form 0x24:0x10+3"),
-        })?),
-    };
-    let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
-    Ok(MountingMark { item, meaning, unknown: entries.rest() })
+fn read_marked(text: &str) -> Result<MountingItem, String> {
+    if text == MountingItem::CALIBRATION {
+        return Ok(MountingItem::Calibration);
+    }
+    let range = text.parse().map_err(|_| format!("{text:?} is neither calibration nor of the form 0x24:0x10+3"))?;
+    Ok(MountingItem::Registers(range))
 }
 
 fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {

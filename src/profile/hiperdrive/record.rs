@@ -58,15 +58,7 @@ pub struct ProfileDrive {
 }
 
 /// Something that is right for one drive on one machine and no other.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MountingMark {
-    /// What.
-    pub item: Item,
-    /// What it means.
-    pub meaning: String,
-    /// Entries that this program does not know.
-    pub unknown: Unknown,
-}
+pub type MountingMark = crate::profile::MountingMark<Item>;
 
 /// Entries that this program does not know, among the parameters of the device (`None`) and of its drives.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@
 
 use super::{HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{Entries, Writer, entries_text, quoted, value_text};
+use crate::profile::ron_text::{Entries, Writer, value_text};
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Variant};
 
 const TEXT: &str = "a text";
@@ -20,7 +20,7 @@ impl HiperdriveProfile {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
         };
-        let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
+        let mounting = MountingMark::read_all(entries, "a text such as \"198 drive 2\"", read_marked)?;
         let (mut image, mut unknown) = (Image::default(), Kept::default());
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.structures("drives")? {
@@ -42,16 +42,11 @@ impl HiperdriveProfile {
         if !self.identity.is_of_no_device() {
             self.identity.write(writer);
         }
-        if !self.mounting.is_empty() {
-            writer.comment("belongs to the mounting: a reference is never restored, the rest not onto another device");
-            writer.open("mounting", '[');
-            for mark in &self.mounting {
-                let (item, meaning) = (quoted(&mark.item.to_string()), quoted(&mark.meaning));
-                let unknown = entries_text(&mark.unknown);
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
-            }
-            writer.close(']');
-        }
+        MountingMark::write_all(
+            &self.mounting,
+            "belongs to the mounting: a reference is never restored, the rest not onto another device",
+            writer,
+        );
         self.write_parameters(writer, None);
         let mut drives = self.image.drives();
         drives.extend(self.identity.drives.iter().map(|drive| drive.number));
@@ -171,19 +166,12 @@ fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive,
     Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest() })
 }
 
-fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
-    let path = entries.path_of("item");
-    let text: String = entries.required("item", "a text such as \"198 drive 2\"")?;
-    let wrong = |what: String| ProfileError::Value { path, what };
-    let item: Item = match text.parse::<Item>() {
-        Ok(item) => item,
-        Err(error) => return Err(wrong(error.to_string())),
-    };
+fn read_marked(text: &str) -> Result<Item, String> {
+    let item = text.parse::<Item>().map_err(|error| error.to_string())?;
     if item.0.row().is_none_or(|row| !Image::holds(row)) {
-        return Err(wrong(format!("{item} is not kept, and belongs to no mounting")));
+        return Err(format!("{item} is not kept, and belongs to no mounting"));
     }
-    let meaning = entries.optional("meaning", TEXT)?.unwrap_or_default();
-    Ok(MountingMark { item, meaning, unknown: entries.rest() })
+    Ok(item)
 }
 
 /// Parameters of the device, or of a drive by the numbers of drive 1. A number that is none of theirs is a slip; a name is an

@@ -2,7 +2,8 @@
 
 use super::{FieldRange, Item};
 use crate::profile::ProfileError;
-use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::mounting::NEVER_BY_ITSELF;
+use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer};
 use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
@@ -68,15 +69,7 @@ pub struct Recorded {
 }
 
 /// Part of a data field that holds a value of the mounting.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MountingMark {
-    /// Where it stands.
-    pub range: FieldRange,
-    /// What it is.
-    pub meaning: String,
-    /// Entries that this program does not know.
-    pub unknown: Unknown,
-}
+pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -102,12 +95,12 @@ impl HiperfaceProfile {
             let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
             for (_, block) in blocks.filter(|(block, _)| block.starts_with(Self::COMMUTATION_MAGIC)) {
                 let start = block * Self::COMMUTATION_BYTES;
-                let marked = |mark: &MountingMark| mark.range.contains(field.number, start);
+                let marked = |mark: &MountingMark| mark.item.contains(field.number, start);
                 if self.mounting.iter().any(marked) {
                     continue;
                 }
                 self.mounting.push(MountingMark {
-                    range: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
+                    item: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
                     meaning: "commutation offset".to_owned(),
                     unknown: Unknown::new(),
                 });
@@ -117,14 +110,14 @@ impl HiperfaceProfile {
 
     /// A byte of a data field belongs to the mounting.
     pub fn is_mounting(&self, field: u8, address: usize) -> bool {
-        self.mounting.iter().any(|mark| mark.range.contains(field, address))
+        self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }
 
     pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
         let interface = read_interface(entries.structure("interface")?)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
+        let mounting = MountingMark::read_all(entries, "a text such as \"field:0@0+16\"", read_marked)?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
         for entries in entries.required_structures("fields")? {
@@ -160,16 +153,7 @@ impl HiperfaceProfile {
         }
         writer.unknown(&self.recorded.unknown);
         writer.close(')');
-        if !self.mounting.is_empty() {
-            writer.comment("belongs to the mounting: never restored onto another encoder by itself");
-            writer.open("mounting", '[');
-            for mark in &self.mounting {
-                let (item, meaning) = (quoted(&mark.range.to_string()), quoted(&mark.meaning));
-                let unknown = entries_text(&mark.unknown);
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
-            }
-            writer.close(']');
-        }
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
         writer.open("fields", '[');
         for field in &self.fields {
             let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);
@@ -240,14 +224,11 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     })
 }
 
-fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
-    let path = entries.path_of("item");
-    let item: String = entries.required("item", "a text such as \"field:0@0+16\"")?;
-    let Ok(Item::Field(range)) = item.parse::<Item>() else {
-        return Err(ProfileError::Value { path, what: format!("{item:?} is not of the form field:N@ADDR+COUNT") });
-    };
-    let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
-    Ok(MountingMark { range, meaning, unknown: entries.rest() })
+fn read_marked(text: &str) -> Result<FieldRange, String> {
+    match text.parse::<Item>() {
+        Ok(Item::Field(range)) => Ok(range),
+        _ => Err(format!("{text:?} is not of the form field:N@ADDR+COUNT")),
+    }
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {

@@ -53,15 +53,7 @@ pub struct Recorded {
 }
 
 /// Something that is right for one encoder on one machine and no other.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MountingMark {
-    /// What; something that can be written.
-    pub item: Item,
-    /// What it means.
-    pub meaning: String,
-    /// Entries that this program does not know.
-    pub unknown: Unknown,
-}
+pub type MountingMark = crate::profile::MountingMark<Item>;
 
 /// What a person calls programs and cams. What has no name has an empty one.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]

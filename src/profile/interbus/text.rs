@@ -5,6 +5,7 @@ use super::{
     Recorded,
 };
 use crate::profile::ProfileError;
+use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
 use crate::protocol::interbus::{Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift};
 
@@ -35,7 +36,7 @@ impl InterbusProfile {
                 }
             }
         }
-        let mounting = entries.structures("mounting")?.into_iter().map(read_mark).collect::<Result<_, _>>()?;
+        let mounting = MountingMark::read_all(entries, "a text such as \"preset\"", read_marked)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         Ok(InterbusProfile { identity, image, names, mounting, recorded, unknown })
     }
@@ -48,16 +49,7 @@ impl InterbusProfile {
         if self.recorded != Recorded::default() {
             self.recorded.write(writer);
         }
-        if !self.mounting.is_empty() {
-            writer.comment("belongs to the mounting: never restored onto another encoder by itself");
-            writer.open("mounting", '[');
-            for mark in &self.mounting {
-                let (item, meaning) = (quoted(&mark.item.to_string()), quoted(&mark.meaning));
-                let unknown = entries_text(&mark.unknown);
-                writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
-            }
-            writer.close(']');
-        }
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
         self.write_parameters(writer);
         if let Some(shift) = self.image.shift {
             number(writer, "shift", shift.get(), "of the position under its window in cam mode");
@@ -215,17 +207,12 @@ fn keep<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unk
     }
 }
 
-fn read_mark(mut entries: Entries) -> Result<MountingMark, ProfileError> {
-    let path = entries.path_of("item");
-    let text: String = entries.required("item", "a text such as \"preset\"")?;
-    let wrong = |what: String| ProfileError::Value { path, what };
-    let item = match text.parse::<Item>() {
-        Ok(item) if item.is_writable() => item,
-        Ok(item) => return Err(wrong(format!("{item} is measured, and belongs to no mounting"))),
-        Err(error) => return Err(wrong(error.to_string())),
-    };
-    let meaning = entries.optional("meaning", TEXT)?.unwrap_or_default();
-    Ok(MountingMark { item, meaning, unknown: entries.rest() })
+fn read_marked(text: &str) -> Result<Item, String> {
+    match text.parse::<Item>() {
+        Ok(item) if item.is_writable() => Ok(item),
+        Ok(item) => Err(format!("{item} is measured, and belongs to no mounting")),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {

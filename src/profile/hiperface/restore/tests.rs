@@ -141,7 +141,7 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
 fn another_encoder_keeps_its_mounting() {
     let mut wanted = profile("B", vec![field(0, 0xC9, &[(2, 1), (3, 1), (4, 1), (20, 1)])]);
     wanted.mounting.push(MountingMark {
-        range: FieldRange::new(0, 3, 10),
+        item: FieldRange::new(0, 3, 10),
         meaning: String::new(),
         unknown: Default::default(),
     });

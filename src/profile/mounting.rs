@@ -1,0 +1,61 @@
+//! What belongs to the mounting of a device on one machine, as profiles mark it.
+
+use super::ProfileError;
+use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+
+/// Something that is right for one device on one machine and no other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MountingMark<Item> {
+    /// What; something that can be written.
+    pub item: Item,
+    /// What it means.
+    pub meaning: String,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// The entry that lists them.
+const ENTRY: &str = "mounting";
+
+impl<Item> MountingMark<Item> {
+    /// Reads all marks of a profile. `item` reads what is marked, or says why it cannot; `expected` is what stands there.
+    pub(super) fn read_all(
+        entries: &mut Entries,
+        expected: &'static str,
+        item: impl Fn(&str) -> Result<Item, String>,
+    ) -> Result<Vec<Self>, ProfileError> {
+        entries.structures(ENTRY)?.into_iter().map(|entries| Self::read(entries, expected, &item)).collect()
+    }
+
+    fn read(
+        mut entries: Entries,
+        expected: &'static str,
+        item: impl Fn(&str) -> Result<Item, String>,
+    ) -> Result<Self, ProfileError> {
+        let path = entries.path_of("item");
+        let text: String = entries.required("item", expected)?;
+        let item = item(&text).map_err(|what| ProfileError::Value { path, what })?;
+        let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
+        Ok(MountingMark { item, meaning, unknown: entries.rest() })
+    }
+}
+
+impl<Item: ToString> MountingMark<Item> {
+    /// Writes all marks of a profile, with a comment on what they are good for; nothing where there are none.
+    pub(super) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
+        if marks.is_empty() {
+            return;
+        }
+        writer.comment(comment);
+        writer.open(ENTRY, '[');
+        for mark in marks {
+            let (item, meaning) = (quoted(&mark.item.to_string()), quoted(&mark.meaning));
+            let unknown = entries_text(&mark.unknown);
+            writer.entry_in_list(&format!("(item: {item}, meaning: {meaning}{unknown})"));
+        }
+        writer.close(']');
+    }
+}
+
+/// Said beside them where they never go onto another encoder by themselves.
+pub(super) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";
