@@ -13,6 +13,7 @@ mod hiperdrive;
 mod hiperface;
 pub mod icons;
 mod interbus;
+mod motor;
 mod navigation;
 mod page;
 mod panels;
@@ -24,6 +25,7 @@ mod skin;
 mod ssi;
 pub mod widgets;
 mod window;
+mod wires;
 mod workspace;
 
 pub use run::run;

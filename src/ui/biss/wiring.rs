@@ -4,6 +4,7 @@ use egui::Ui;
 
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, two_columns};
+use crate::ui::wires::wires_ui;
 
 /// Width of the column of pins.
 const PIN: f32 = 84.0;
@@ -26,25 +27,14 @@ const BESIDE: f32 = 640.0;
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
         if ui.available_width() < BESIDE {
-            pins(ui, skin, &PINS);
+            wires_ui(ui, skin, PIN, &PINS);
         } else {
             let (left, right) = PINS.split_at(PINS.len() / 2);
-            two_columns(ui, skin, (), |ui, ()| pins(ui, skin, left), |ui, ()| pins(ui, skin, right));
+            two_columns(ui, skin, (), |ui, ()| wires_ui(ui, skin, PIN, left), |ui, ()| wires_ui(ui, skin, PIN, right));
         }
         ui.add_space(skin.space.inside);
         for note in ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"] {
             paragraph(ui, skin.caption(skin.say(note)));
         }
     });
-}
-
-fn pins(ui: &mut Ui, skin: &Skin, pins: &[(&str, &'static str)]) {
-    for (pin, words) in pins {
-        ui.horizontal_top(|ui| {
-            ui.spacing_mut().interact_size.y = 18.0;
-            let name = ui.label(skin.mono(*pin));
-            ui.add_space((PIN - name.rect.width()).max(0.0));
-            paragraph(ui, skin.label(skin.say(words)));
-        });
-    }
 }

@@ -5,6 +5,7 @@ use egui::Ui;
 
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph};
+use crate::ui::wires::wires_ui;
 
 /// Width of the column of names.
 const WIRE: f32 = 56.0;
@@ -23,14 +24,7 @@ const WIRES: [(&str, &str); 8] = [
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        for (wire, words) in WIRES {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().interact_size.y = 18.0;
-                let name = ui.label(skin.mono(wire));
-                ui.add_space((WIRE - name.rect.width()).max(0.0));
-                paragraph(ui, skin.label(skin.say(words)));
-            });
-        }
+        wires_ui(ui, skin, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
         for note in ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"] {
             paragraph(ui, skin.caption(skin.say(note)));

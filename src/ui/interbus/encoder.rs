@@ -6,10 +6,9 @@ use crate::app::Action;
 use crate::app::explain::interbus as explain;
 use crate::app::interbus::{Action as Interbus, Encoder, said, words};
 use crate::protocol::interbus::{ProgramNumber, ReadOutValue, Reply, StartupMode};
-use crate::sim::Motor;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, name, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};
+use crate::ui::{Skin, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_profile = encoder.profile().is_some();
@@ -32,7 +31,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             sends(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
-                turning(ui, skin, encoder, motor, actions);
+                motor::card_ui(ui, skin, motor.rpm(), |rpm| {
+                    actions.push(Action::Interbus(encoder.session.id, Interbus::Turn(rpm)))
+                });
             }
         },
     );
@@ -135,23 +136,6 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
             actions.push(Action::Interbus(encoder.session.id, Interbus::Select(wanted)));
         }
         paragraph(ui, skin.caption(skin.say("ib_sends.mode_words")));
-    });
-}
-
-/// What turns the virtual encoder.
-fn turning(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
-    card(ui, skin, "motor_card.title", |ui| {
-        paragraph(ui, skin.caption(skin.say("motor_card.words")));
-        ui.horizontal_wrapped(|ui| {
-            for rpm in [-60.0, -6.0, 0.0, 6.0, 60.0] {
-                let is_own = (motor.rpm() - rpm).abs() < 1e-9;
-                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
-                let response = ui.add(egui::Button::selectable(is_own, &word));
-                if name(response, true, &word).clicked() {
-                    actions.push(Action::Interbus(encoder.session.id, Interbus::Turn(rpm)));
-                }
-            }
-        });
     });
 }
 

@@ -6,10 +6,9 @@ use super::wiring;
 use crate::app::ssi::{Action as Ssi, Encoder};
 use crate::app::{Action, Text, explain};
 use crate::protocol::ssi::Meaning;
-use crate::sim::biss::Motor;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::{Skin, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     two_columns(
@@ -20,7 +19,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             adapter(ui, skin, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
-                turning(ui, skin, encoder, motor, actions);
+                motor::card_ui(ui, skin, motor.rpm(), |rpm| {
+                    actions.push(Action::Ssi(encoder.session.id, Ssi::Turn(rpm)))
+                });
             }
         },
         |ui, actions| {
@@ -70,23 +71,6 @@ fn adapter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
         });
         let supply = supply.unwrap_or_else(|| Text::new("ssi_adapter.no_supply"));
         row(ui, skin, &skin.say("ssi_adapter.supply"), skin.words(&supply));
-    });
-}
-
-/// What turns the virtual encoder.
-fn turning(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
-    card(ui, skin, "motor_card.title", |ui| {
-        paragraph(ui, skin.caption(skin.say("motor_card.words")));
-        ui.horizontal_wrapped(|ui| {
-            for rpm in [-60.0, -6.0, 0.0, 6.0, 60.0] {
-                let is_own = (motor.rpm() - rpm).abs() < 1e-9;
-                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
-                let response = ui.add(egui::Button::selectable(is_own, &word));
-                if crate::ui::controls::name(response, true, &word).clicked() {
-                    actions.push(Action::Ssi(encoder.session.id, Ssi::Turn(rpm)));
-                }
-            }
-        });
     });
 }
 

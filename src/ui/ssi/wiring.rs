@@ -6,6 +6,7 @@ use crate::app::{Text, explain};
 use crate::protocol::ssi::{Family, Signal};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, row};
+use crate::ui::wires::wires_ui;
 
 /// Width of the column of wires.
 const WIRE: f32 = 84.0;
@@ -22,14 +23,7 @@ const WIRES: [(&str, &str); 6] = [
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
     card(ui, skin, "wiring.title", |ui| {
-        for (wire, words) in WIRES {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().interact_size.y = 18.0;
-                let name = ui.label(skin.mono(wire));
-                ui.add_space((WIRE - name.rect.width()).max(0.0));
-                paragraph(ui, skin.label(skin.say(words)));
-            });
-        }
+        wires_ui(ui, skin, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
         for note in ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"] {
             paragraph(ui, skin.caption(skin.say(note)));
