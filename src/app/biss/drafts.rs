@@ -3,18 +3,15 @@
 use std::path::PathBuf;
 
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, Drafting, Session};
+use crate::app::session::{Drafted, OnDesk, Session};
 use crate::profile::Document;
-use crate::protocol::biss::KIND;
 use crate::worker::biss::Biss;
 
 /// Edited bytes: global address, byte.
 pub(in crate::app) type Edits = Vec<(u16, u8)>;
 
-impl Drafted for Encoder {
-    const KIND: &'static str = KIND;
+impl OnDesk for Encoder {
     type Device = Biss;
-    type Edits = Edits;
 
     fn session(&self) -> &Session<Biss> {
         &self.session
@@ -23,15 +20,9 @@ impl Drafted for Encoder {
     fn session_mut(&mut self) -> &mut Session<Biss> {
         &mut self.session
     }
+}
 
-    fn drafting(&self) -> &Drafting<Edits> {
-        &self.drafting
-    }
-
-    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
-        &mut self.drafting
-    }
-
+impl Drafted for Encoder {
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::drafts::Edits;
 use super::guide::Guide;
 use super::meaning::Meaning;
 use super::memory::Memory;
@@ -13,7 +12,7 @@ use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::biss::{Identity, Status, Survey};
@@ -52,7 +51,6 @@ pub struct Encoder {
     /// What turns the virtual encoder's shaft.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
-    pub(in crate::app) drafting: Drafting<Edits>,
     /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
     pub(super) seen: BTreeSet<Option<u8>>,
     /// Banks that were written, to be read again.
@@ -67,7 +65,6 @@ impl Encoder {
 
     fn with(session: Session<Biss>) -> Self {
         Encoder {
-            drafting: Drafting::new(session.id),
             session,
             survey: None,
             status: None,

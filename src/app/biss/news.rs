@@ -1,5 +1,6 @@
 //! What the line to an encoder tells: results of jobs, live samples, and its loss.
 
+use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::write::told;
@@ -9,11 +10,14 @@ use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
 use crate::device::biss::Error;
+use crate::protocol::biss::KIND;
 use crate::sim::biss::Motor;
 use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
 use crate::worker::{Event, JobId, Session};
 
 impl Kind for Biss {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
     type Aside = Option<Motor>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {

@@ -4,18 +4,15 @@ use std::path::PathBuf;
 
 use super::staged::Kept;
 use super::unit::Unit;
-use crate::app::session::{Drafted, Drafting, Session};
+use crate::app::session::{Drafted, OnDesk, Session};
 use crate::profile::Document;
-use crate::protocol::hiperdrive::KIND;
 use crate::worker::hiperdrive::Hiperdrive;
 
 /// What is edited, each with its number.
 pub(in crate::app) type Edits = Vec<Kept>;
 
-impl Drafted for Unit {
-    const KIND: &'static str = KIND;
+impl OnDesk for Unit {
     type Device = Hiperdrive;
-    type Edits = Edits;
 
     fn session(&self) -> &Session<Hiperdrive> {
         &self.session
@@ -24,15 +21,9 @@ impl Drafted for Unit {
     fn session_mut(&mut self) -> &mut Session<Hiperdrive> {
         &mut self.session
     }
+}
 
-    fn drafting(&self) -> &Drafting<Edits> {
-        &self.drafting
-    }
-
-    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
-        &mut self.drafting
-    }
-
+impl Drafted for Unit {
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }

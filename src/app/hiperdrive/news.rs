@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::drafts::Edits;
 use super::review::Review;
 use super::unit::Unit;
 use super::write::told;
@@ -11,7 +12,7 @@ use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::Ended;
-use crate::protocol::hiperdrive::DriveNumber;
+use crate::protocol::hiperdrive::{DriveNumber, KIND};
 use crate::sim::hiperdrive::Target;
 use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
 use crate::worker::{Event, JobId, Session};
@@ -28,6 +29,8 @@ pub struct Aside {
 }
 
 impl Kind for Hiperdrive {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
     type Aside = Aside;
 
     fn aside(session: &Session<Self>) -> Aside {

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::axis::Axis;
-use super::drafts::Edits;
 use super::moves::Moves;
 use super::record::Record;
 use super::review::Review;
@@ -14,7 +13,7 @@ use super::staged::{Mark, Staged};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Network, Reading, Status, Survey};
 use crate::link::LinkUrl;
@@ -70,7 +69,6 @@ pub struct Unit {
     pub(super) looks_at_errors: bool,
     /// Everything is: somebody else has changed what rules a drive.
     pub(super) looks_at_all: bool,
-    pub(in crate::app) drafting: Drafting<Edits>,
 }
 
 impl Unit {
@@ -81,7 +79,6 @@ impl Unit {
 
     fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
         Unit {
-            drafting: Drafting::new(session.id),
             session,
             survey: None,
             status: None,

@@ -3,18 +3,15 @@
 use std::path::PathBuf;
 
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, Drafting, Session};
+use crate::app::session::{Drafted, OnDesk, Session};
 use crate::profile::Document;
-use crate::protocol::hiperface::KIND;
 use crate::worker::hiperface::Hiperface;
 
 /// Edited bytes: field, address, byte.
 pub(in crate::app) type Edits = Vec<(u8, usize, u8)>;
 
-impl Drafted for Encoder {
-    const KIND: &'static str = KIND;
+impl OnDesk for Encoder {
     type Device = Hiperface;
-    type Edits = Edits;
 
     fn session(&self) -> &Session<Hiperface> {
         &self.session
@@ -23,15 +20,9 @@ impl Drafted for Encoder {
     fn session_mut(&mut self) -> &mut Session<Hiperface> {
         &mut self.session
     }
+}
 
-    fn drafting(&self) -> &Drafting<Edits> {
-        &self.drafting
-    }
-
-    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
-        &mut self.drafting
-    }
-
+impl Drafted for Encoder {
     fn type_and_serial(&self) -> Option<(String, String)> {
         let identity = self.identity.as_ref()?;
         Some((format!("{:02X}", identity.label.encoder_type), identity.serial.serial_number.clone()))

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 
 use super::Staged;
 use super::commutation::Commutation;
-use super::drafts::Edits;
 use super::meaning::Meaning;
 use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
@@ -49,7 +48,6 @@ pub struct Encoder {
     /// A write on its way.
     pub review: Option<Review>,
     pub(super) meaning: Meaning,
-    pub(in crate::app) drafting: Drafting<Edits>,
     /// Access codes that the user gave or changed: the next session with this encoder begins with them.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     /// What was asked for by the job that reads a single value.
@@ -70,7 +68,6 @@ impl Encoder {
 
     fn with(session: Session<Hiperface>) -> Self {
         Encoder {
-            drafting: Drafting::new(session.id),
             session,
             identity: None,
             staged: Staged::default(),

@@ -1,6 +1,7 @@
 //! What the line to an encoder tells: results of jobs, what the encoder says on the way, live samples, and its loss.
 
 use super::act::document_of;
+use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::ReviewState;
 use super::rules;
@@ -11,13 +12,15 @@ use crate::app::session::{Kind, LastWords, Phase, Source};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
 use crate::profile::hiperface::Op;
-use crate::protocol::hiperface::{AccessCode, CodeNumber, StatusCode};
+use crate::protocol::hiperface::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::worker::hiperface::{
     Committed, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
 use crate::worker::{Event, JobId, Session};
 
 impl Kind for Hiperface {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
     type Aside = ();
 
     fn aside(_session: &Session<Self>) {}

@@ -4,18 +4,15 @@ use std::path::PathBuf;
 
 use super::encoder::Encoder;
 use super::staged::Kept;
-use crate::app::session::{Drafted, Drafting, Session};
+use crate::app::session::{Drafted, OnDesk, Session};
 use crate::profile::Document;
-use crate::protocol::interbus::KIND;
 use crate::worker::interbus::Interbus;
 
 /// What is edited, each with its place.
 pub(in crate::app) type Edits = Vec<Kept>;
 
-impl Drafted for Encoder {
-    const KIND: &'static str = KIND;
+impl OnDesk for Encoder {
     type Device = Interbus;
-    type Edits = Edits;
 
     fn session(&self) -> &Session<Interbus> {
         &self.session
@@ -24,15 +21,9 @@ impl Drafted for Encoder {
     fn session_mut(&mut self) -> &mut Session<Interbus> {
         &mut self.session
     }
+}
 
-    fn drafting(&self) -> &Drafting<Edits> {
-        &self.drafting
-    }
-
-    fn drafting_mut(&mut self) -> &mut Drafting<Edits> {
-        &mut self.drafting
-    }
-
+impl Drafted for Encoder {
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }

@@ -4,7 +4,6 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 
-use super::drafts::Edits;
 use super::preview::Preview;
 use super::record::Record;
 use super::review::Review;
@@ -14,7 +13,7 @@ use super::trace::Meaning;
 use super::words;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::interbus::{Handshake, Identity, Reading, Survey};
@@ -67,7 +66,6 @@ pub struct Encoder {
     pub(super) read_after: Vec<ProgramNumber>,
     /// What the frames of the trace say.
     pub(super) trace: Meaning,
-    pub(in crate::app) drafting: Drafting<Edits>,
 }
 
 impl Encoder {
@@ -78,7 +76,6 @@ impl Encoder {
 
     fn with(session: Session<Interbus>, staged: Staged) -> Self {
         Encoder {
-            drafting: Drafting::new(session.id),
             session,
             survey: None,
             check: None,

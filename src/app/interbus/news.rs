@@ -1,5 +1,6 @@
 //! What the line to an encoder tells: results of jobs, live words, and its loss.
 
+use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::trace::Meaning;
@@ -9,11 +10,14 @@ use crate::app::line::Line;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
+use crate::protocol::interbus::KIND;
 use crate::sim::Motor;
 use crate::worker::interbus::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
 use crate::worker::{Event, JobId, Session};
 
 impl Kind for Interbus {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
     type Aside = Option<Motor>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {

@@ -3,42 +3,26 @@
 
 use std::path::PathBuf;
 
-use super::{DraftDone, DraftEdits, DraftKey, Drafting, Kind, Phase, Session, Source};
+use super::{DraftDone, DraftEdits, DraftKey, Kind, OnDesk, Phase, Source};
 use crate::app::Text;
 use crate::app::services::Services;
 use crate::profile::Document;
 use crate::store::FileError;
 
+/// What is kept of a device's edits.
+type Edits<T> = <<T as OnDesk>::Device as Kind>::Edits;
+
 /// Whoever is shown in a session and can be edited.
-pub(in crate::app) trait Drafted {
-    /// The kind of device, as profiles name it.
-    const KIND: &'static str;
-    /// The kind of its session.
-    type Device: Kind;
-    /// What is kept.
-    type Edits: DraftEdits;
-
-    /// What every session has.
-    fn session(&self) -> &Session<Self::Device>;
-
-    /// The same, to be changed.
-    fn session_mut(&mut self) -> &mut Session<Self::Device>;
-
-    /// How it stands with the draft.
-    fn drafting(&self) -> &Drafting<Self::Edits>;
-
-    /// The same, to be changed.
-    fn drafting_mut(&mut self) -> &mut Drafting<Self::Edits>;
-
+pub(in crate::app) trait Drafted: OnDesk {
     /// The type and the serial number of the device that was read: another type may have the same number. An empty number
     /// where the device does not say who it is; `None` where nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)>;
 
     /// What is edited.
-    fn edited(&self) -> Self::Edits;
+    fn edited(&self) -> Edits<Self>;
 
     /// Edits of an earlier time; those that make no sense any more are left out.
-    fn take_edits(&mut self, edits: Self::Edits);
+    fn take_edits(&mut self, edits: Edits<Self>);
 
     /// A profile was read again from its file; edits stay.
     fn take_document(&mut self, path: PathBuf, key: String, document: Document);
@@ -49,13 +33,14 @@ pub(in crate::app) trait Drafted {
     /// Whose draft it is; `None` for a device that does not say who it is.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
-            Source::File { key, .. } => Some(DraftKey::of_file(Self::KIND, key)),
+            Source::File { key, .. } => Some(DraftKey::of_file(Self::Device::KIND, key)),
             // Files are named by 16 hexadecimal digits.
-            Source::New { suggested } => Some(DraftKey::of_file(Self::KIND, &suggested.to_string_lossy())),
+            Source::New { suggested } => Some(DraftKey::of_file(Self::Device::KIND, &suggested.to_string_lossy())),
             Source::Link(_) => {
                 let (device_type, serial) = self.type_and_serial()?;
                 let name = || format!("{device_type}-{serial}");
-                (!serial.is_empty()).then(|| DraftKey::of_device(Self::KIND, self.session().is_virtual(), name()))
+                let is_virtual = self.session().is_virtual();
+                (!serial.is_empty()).then(|| DraftKey::of_device(Self::Device::KIND, is_virtual, name()))
             }
         }
     }
@@ -63,17 +48,17 @@ pub(in crate::app) trait Drafted {
     /// Looks for the edits of an earlier time.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
-            self.drafting_mut().load(key, services);
+            self.session_mut().drafting.load(key, services);
         }
     }
 
     /// Takes what a task comes back with.
     fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
         let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().is_nothing());
-        if let Some(edits) = self.drafting_mut().take(done, key.as_ref(), dirty, &name, services) {
+        if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
             self.take_edits(edits);
             let edits = self.edited();
-            self.drafting_mut().came_back(edits, &name, services);
+            self.session_mut().drafting.came_back(edits, &name, services);
         }
     }
 
@@ -82,20 +67,20 @@ pub(in crate::app) trait Drafted {
         let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
         let nameless = key.is_none() && self.type_and_serial().is_some();
         if nameless && !edits.is_nothing() {
-            self.drafting_mut().tell_of_none(&name, services);
+            self.session_mut().drafting.tell_of_none(&name, services);
         }
-        self.drafting_mut().keep(key, edits, services);
+        self.session_mut().drafting.keep(key, edits, services);
     }
 
     /// Its edits come back after it was closed.
     fn keeps_edits(&self) -> bool {
-        self.drafting().has_looked() && self.draft_key().is_some()
+        self.session().drafting.has_looked() && self.draft_key().is_some()
     }
 
     /// Another device comes, or none: what is edited for this one stays on disk.
     fn leave_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
-        self.drafting_mut().leave(key, edits, services);
+        self.session_mut().drafting.leave(key, edits, services);
     }
 
     /// A profile was written, or not. In another file than before it has no draft of an earlier time, and leaves none.
@@ -117,11 +102,11 @@ pub(in crate::app) trait Drafted {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == key);
         if moves {
             let before = self.draft_key();
-            self.drafting_mut().forget(before, services);
+            self.session_mut().drafting.forget(before, services);
         }
         self.take_document(path, key, document);
         if moves && let Some(key) = self.draft_key() {
-            self.drafting_mut().begin(key, services);
+            self.session_mut().drafting.begin(key, services);
         }
     }
 }

@@ -2,11 +2,18 @@
 
 use crate::app::action::{Attempt, Done};
 use crate::app::services::{JobEnd, Opener, World};
+use crate::app::session::DraftEdits;
 use crate::app::{Severity, Text};
 use crate::worker::{Device, Event, JobId, Session};
 
 /// A kind of device on the desk.
 pub trait Kind: Device + Sized {
+    /// Its name in profiles.
+    const KIND: &'static str;
+
+    /// What is kept of its edits over a crash.
+    type Edits: DraftEdits;
+
     /// What is kept of a session beside its thread.
     type Aside: Send;
 

@@ -4,6 +4,7 @@
 mod drafted;
 mod drafts;
 mod kind;
+mod on_desk;
 
 use std::path::PathBuf;
 
@@ -11,6 +12,7 @@ pub(in crate::app) use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
 pub(in crate::app) use kind::{Kind, LastWords};
+pub(in crate::app) use on_desk::OnDesk;
 
 use super::action::Opened;
 use super::leaving::Leaver;
@@ -100,6 +102,8 @@ pub struct Session<D: Kind> {
     pub(in crate::app) just_connected: bool,
     /// Where the profile goes that is being read.
     pub(in crate::app) save_to: Option<PathBuf>,
+    /// How it stands with the draft of its edits.
+    pub(in crate::app) drafting: Drafting<D::Edits>,
 }
 
 impl<D: Kind> Session<D> {
@@ -139,6 +143,7 @@ impl<D: Kind> Session<D> {
             cycles: None,
             just_connected: false,
             save_to: None,
+            drafting: Drafting::new(id),
         }
     }
 

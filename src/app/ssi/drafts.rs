@@ -4,18 +4,15 @@ use std::path::PathBuf;
 
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, Drafting, Session, Source};
+use crate::app::session::{Drafted, OnDesk, Session, Source};
 use crate::profile::{Body, Document};
-use crate::protocol::ssi::KIND;
 use crate::worker::ssi::Ssi;
 
 /// The layout as a profile's text; none where it is as it was saved.
 pub(in crate::app) type Drafts = Vec<String>;
 
-impl Drafted for Encoder {
-    const KIND: &'static str = KIND;
+impl OnDesk for Encoder {
     type Device = Ssi;
-    type Edits = Drafts;
 
     fn session(&self) -> &Session<Ssi> {
         &self.session
@@ -24,15 +21,9 @@ impl Drafted for Encoder {
     fn session_mut(&mut self) -> &mut Session<Ssi> {
         &mut self.session
     }
+}
 
-    fn drafting(&self) -> &Drafting<Drafts> {
-        &self.drafting
-    }
-
-    fn drafting_mut(&mut self) -> &mut Drafting<Drafts> {
-        &mut self.drafting
-    }
-
+impl Drafted for Encoder {
     /// SSI encoders do not say who they are: a layout belongs to the wire at which it was used; a virtual encoder is the one
     /// that its link describes.
     fn type_and_serial(&self) -> Option<(String, String)> {

@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::design::{Design, Designer, Edit};
-use super::drafts::Drafts;
 use super::record::{Record, Seen, Streamed};
 use super::search::Hunt;
 use super::trial::{Decoded, Trial};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Drafting, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::ssi::{Asking, Identity};
 use crate::link::LinkUrl;
@@ -48,7 +47,6 @@ pub struct Encoder {
     pub(super) clocks: Option<u8>,
     /// How the adapter was last told to take words.
     pub(super) told: Option<Asking>,
-    pub(in crate::app) drafting: Drafting<Drafts>,
 }
 
 impl Encoder {
@@ -89,7 +87,6 @@ impl Encoder {
         // A position whose bits can be told apart.
         trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
         Encoder {
-            drafting: Drafting::new(session.id),
             record: Record::new(designer.layout().clone()),
             session,
             designer,

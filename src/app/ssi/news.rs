@@ -1,5 +1,6 @@
 //! What the line to an SSI encoder tells: who the adapter is, words, and its loss.
 
+use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::trace;
 use crate::app::action::{Attempt, Done, Opened};
@@ -9,11 +10,14 @@ use crate::app::session::{Drafted, Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
 use crate::device::bridge::AdapterError;
 use crate::device::ssi::Identity;
+use crate::protocol::ssi::KIND;
 use crate::sim::biss::Motor;
 use crate::worker::ssi::{JobError, Ssi, SsiJob, SsiOutput};
 use crate::worker::{Event, JobId, Session};
 
 impl Kind for Ssi {
+    const KIND: &'static str = KIND;
+    type Edits = Drafts;
     type Aside = Option<Motor>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {
@@ -55,7 +59,7 @@ impl Encoder {
         self.motor = opened.aside.clone();
         self.told = None;
         self.session.take_line(opened, services);
-        if !self.drafting.has_looked() {
+        if !self.session.drafting.has_looked() {
             self.load_draft(services);
         }
         self.submit(SsiJob::Hello, services);
