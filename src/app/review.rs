@@ -1,33 +1,37 @@
 //! The review of a write, for every kind of device: what it would do, the consent, how far it is, and what came of it.
 
+use std::hash::Hash;
 use std::path::PathBuf;
 
-use super::Text;
-use crate::profile::PlanId;
+use super::{Severity, Text, explain};
+use crate::profile::{Operation, Plan, PlanId};
+use crate::worker::Committed;
 
-/// A write on its way: `C` is what the user wants, `P` what was read and planned for it, `D` what came of it.
-pub struct Review<C, P, D> {
+/// A write on its way.
+pub struct Review<K: Reviewed> {
     /// What the user wants.
     pub what: Text,
     /// How far it is.
-    pub state: ReviewState<P, D>,
+    pub state: ReviewState<K>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
     /// What is wanted was made for another device.
     pub is_for_another: bool,
-    pub(in crate::app) change: C,
+    pub(in crate::app) change: K::Change,
+    /// What is in question beyond the usual, and whether it is allowed.
+    permits: Vec<Toggle>,
 }
 
 /// How far a write is.
-pub enum ReviewState<P, D> {
+pub enum ReviewState<K: Reviewed> {
     /// The device is read and the plan made.
     Planning,
     /// The plan is shown.
-    Ready(Box<P>),
+    Ready(Box<K::Prepared>),
     /// It is being carried out.
-    Writing(Box<P>),
+    Writing(Box<K::Prepared>),
     /// It was carried out and read back.
-    Done(Box<P>, D),
+    Done(Box<K::Prepared>, Committed<K::Written>),
     /// It cannot be done, or ended early: what happened, and what to do.
     Failed {
         /// In words.
@@ -37,13 +41,16 @@ pub enum ReviewState<P, D> {
     },
 }
 
-impl<C, P, D> Review<C, P, D> {
-    pub(in crate::app) fn new(what: Text, change: C, is_for_another: bool) -> Self {
-        Review { what, state: ReviewState::Planning, force_wear: false, is_for_another, change }
+impl<K: Reviewed> Review<K> {
+    pub(in crate::app) fn new(mut change: K::Change, is_for_another: bool) -> Self {
+        let own = |permit| K::permitted(&mut change, permit).map(|own| Toggle { permit, is_on: *own });
+        let permits = Permit::ALL.into_iter().filter_map(own).collect();
+        let what = K::change(&change);
+        Review { what, state: ReviewState::Planning, force_wear: false, is_for_another, change, permits }
     }
 
     /// The plan as it was shown, from then to its end.
-    pub fn prepared(&self) -> Option<&P> {
+    pub fn prepared(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
                 Some(prepared)
@@ -70,6 +77,24 @@ impl<C, P, D> Review<C, P, D> {
     /// It ended early.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool) {
         self.state = ReviewState::Failed { texts, begun };
+    }
+
+    /// What is wanted, with one of the toggles the other way round.
+    pub(in crate::app) fn toggled(&self, permit: Permit) -> Option<K::Change> {
+        let mut change = self.change.clone();
+        let own = K::permitted(&mut change, permit)?;
+        *own = !*own;
+        Some(change)
+    }
+
+    /// What may be allowed beyond the usual: what is, and what would make a difference.
+    fn toggles(&self) -> Vec<Toggle> {
+        let matters = |permit| match permit {
+            Permit::OtherDevice => self.is_for_another,
+            Permit::Mounting => self.prepared().is_some_and(K::leaves_mounting),
+            Permit::Recreate => true,
+        };
+        self.permits.iter().copied().filter(|own| own.is_on || matters(own.permit)).collect()
     }
 }
 
@@ -127,6 +152,9 @@ pub struct Toggle {
 }
 
 impl Permit {
+    /// In the order in which they stand.
+    const ALL: [Permit; 3] = [Permit::OtherDevice, Permit::Mounting, Permit::Recreate];
+
     /// Its words, as a row of the texts.
     pub const fn word(self) -> &'static str {
         match self {
@@ -229,64 +257,102 @@ pub enum Stage {
     },
 }
 
-/// What a kind of device says about its reviews.
+/// What a kind of device with a memory says about its writes.
 pub trait Reviewed {
+    /// What a user wants.
+    type Change: Clone;
+    /// What a plan rests upon.
+    type Base: Hash;
+    /// An operation of a plan.
+    type Op: Operation + Hash;
     /// What was read and planned.
-    type Prepared;
+    type Prepared: Clone;
     /// What came of it.
-    type Done;
+    type Written;
 
-    /// The plan; `None` where there is nothing to do.
-    fn plan(prepared: &Self::Prepared) -> Option<PlanId>;
-    /// Its operations.
-    fn lines(prepared: &Self::Prepared) -> Vec<OpWords>;
+    /// What is wanted, in words.
+    fn change(change: &Self::Change) -> Text;
+    /// Whether this is allowed; `None` where it is not in question.
+    fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
+    /// What would be written.
+    fn plan(prepared: &Self::Prepared) -> &Plan<Self::Base, Self::Op>;
+    /// An operation of it, in words.
+    fn op(prepared: &Self::Prepared, op: &Self::Op) -> OpWords;
+    /// Values of the mounting differ and are left alone.
+    fn leaves_mounting(prepared: &Self::Prepared) -> bool;
     /// What should make somebody stop and look.
-    fn warnings(&self, prepared: &Self::Prepared) -> Vec<Text>;
+    fn warnings(prepared: &Self::Prepared) -> Vec<Text>;
     /// What it needs from the person in front of the device.
-    fn needs(&self, prepared: &Self::Prepared) -> Vec<Text>;
+    fn needs(change: &Self::Change, prepared: &Self::Prepared) -> Vec<Text>;
     /// What it costs.
     fn cost(prepared: &Self::Prepared) -> Text;
-    /// How it is carried out.
-    fn manner(prepared: &Self::Prepared) -> Manner;
     /// The device counts as worn after it.
     fn is_worn(prepared: &Self::Prepared) -> bool;
-    /// What may be allowed beyond the usual.
-    fn toggles(&self) -> Vec<Toggle>;
-    /// That it was read back, the before-image, what the logbook could not take.
-    fn done(done: &Self::Done) -> (Text, Option<PathBuf>, Option<Text>);
+    /// What was written.
+    fn written(written: &Self::Written) -> Text;
+
+    /// The same for the end of a review, which shows each operation.
+    fn verified(written: &Self::Written) -> Text {
+        Self::written(written)
+    }
+
+    /// How it is carried out.
+    fn manner(_prepared: &Self::Prepared) -> Manner {
+        Manner::Writes
+    }
 }
 
-impl<C, P, D> Review<C, P, D>
-where
-    Review<C, P, D>: Reviewed<Prepared = P, Done = D>,
-{
+/// What a write came to, and how much that weighs.
+pub(in crate::app) fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+    let text = K::written(&committed.written);
+    match &committed.logbook_warning {
+        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
+        None => (Severity::Good, vec![text]),
+    }
+}
+
+/// What a restore leaves alone: what only one side has, by the words for it, and what belongs to another mounting.
+pub(in crate::app) fn left_alone(id: &'static str, missing: &[String], mounting: Vec<Text>) -> Vec<Text> {
+    let mut texts = Vec::new();
+    if !missing.is_empty() {
+        texts.push(Text::new(id).with_list("items", missing.iter().map(|item| explain::phrase(item))));
+    }
+    if !mounting.is_empty() {
+        texts.push(Text::new("review.mounting_left").with_list("items", mounting));
+    }
+    texts
+}
+
+impl<K: Reviewed> Review<K> {
     /// The review as a person sees it; `done` operations have been carried out.
-    pub(in crate::app) fn sheet(&self, done: usize) -> Sheet {
+    pub fn sheet(&self, done: usize) -> Sheet {
         let prepared = self.prepared();
         let is_over = matches!(self.state, ReviewState::Done(..));
-        let plan = prepared.and_then(Self::plan);
+        let plan = prepared.map(K::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
         let stage = match &self.state {
             ReviewState::Planning => Stage::Planning,
             ReviewState::Ready(_) => plan.map_or(Stage::Nothing, Stage::Ready),
             ReviewState::Writing(_) => Stage::Writing(done),
-            ReviewState::Done(_, own) => {
-                let (verified, backup, logbook) = Self::done(own);
-                Stage::Done { verified, backup, logbook }
-            }
+            ReviewState::Done(_, own) => Stage::Done {
+                verified: K::verified(&own.written),
+                backup: own.backup.clone(),
+                logbook: own.logbook_warning.as_ref().map(explain::logbook),
+            },
             ReviewState::Failed { texts, begun } => Stage::Failed { texts: texts.clone(), begun: *begun },
         };
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
+        let lines = |own| K::plan(own).ops.iter().map(|op| K::op(own, op)).collect();
         Sheet {
             what: self.what.clone(),
             stage,
-            lines: prepared.map(Self::lines).unwrap_or_default(),
-            warnings: shown.map(|own| self.warnings(own)).unwrap_or_default(),
-            needs: shown.map(|own| self.needs(own)).unwrap_or_default(),
-            cost: costs.map(Self::cost),
-            manner: prepared.map_or(Manner::Writes, Self::manner),
+            lines: prepared.map(lines).unwrap_or_default(),
+            warnings: shown.map(K::warnings).unwrap_or_default(),
+            needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
+            cost: costs.map(K::cost),
+            manner: prepared.map_or(Manner::Writes, K::manner),
             toggles: self.toggles(),
-            force_wear: costs.filter(|own| Self::is_worn(own)).map(|_| self.force_wear),
+            force_wear: costs.filter(|own| K::is_worn(own)).map(|_| self.force_wear),
         }
     }
 }

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use encoder_studio::app::explain::hiperface as words;
-use encoder_studio::app::hiperface::{Encoder, ReviewState, review};
+use encoder_studio::app::hiperface::{Encoder, ReviewState};
+use encoder_studio::app::review::OpWords;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{AnyDevice, JobEnd, Language, Notice, Studio, Text, Texts};
 
@@ -92,14 +93,9 @@ fn check_encoder(encoder: &Encoder) {
     if let ReviewState::Failed { texts, .. } = &review.state {
         texts.iter().for_each(check);
     }
-    let Some(prepared) = review.prepared() else { return };
-    for line in review::lines(&prepared.plan) {
-        line.texts().for_each(check);
-    }
-    let mut texts = review::needs(&prepared.plan);
-    texts.extend(review::warnings(prepared));
-    texts.push(review::cost(prepared));
-    texts.iter().for_each(check);
+    let sheet = review.sheet(0);
+    sheet.lines.iter().flat_map(OpWords::texts).for_each(check);
+    sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
 /// The words are the name of a text: what is shown where the table has no such row.

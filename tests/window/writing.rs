@@ -1,6 +1,6 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, review, rules};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, rules};
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
 use encoder_studio::profile::Document;
@@ -29,7 +29,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     let status = DataFieldStatus::from_byte(0xC9);
     let store = Op::Store { field: 0, address: 19, status, old: Some(vec![0x22]), new: vec![0x23] };
     assert_eq!(prepared.plan.ops, [store]);
-    let line = &review::lines(&prepared.plan)[0];
+    let line = &desk.review().sheet(0).lines[0];
     let words: Vec<String> = line.texts().map(|text| text.words(Language::German)).collect();
     assert_eq!(words, ["Datenfeld 0, Byte 19", "22", "23"]);
     assert_eq!(desk.wire().wear(), 0, "looking is no writing");

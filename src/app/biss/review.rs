@@ -1,90 +1,66 @@
 //! The review of a write into a BiSS encoder: what its plan needs, warns of and costs.
 
-use std::path::PathBuf;
-
-use crate::app::review::{self, Manner, OpWords, Permit, Reviewed, Toggle};
+use crate::app::review::{self, Manner, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
-use crate::profile::PlanId;
-use crate::profile::biss::{Op, RestoreOptions};
-use crate::worker::biss::{Change, Committed, Prepared, WEAR_LIMIT};
+use crate::device::biss::write::Written;
+use crate::profile::Plan;
+use crate::profile::biss::{Base, Op};
+use crate::worker::biss::{Biss, Change, Prepared, WEAR_LIMIT};
 
 /// A write on its way.
-pub type Review = review::Review<Change, Prepared, Committed>;
+pub type Review = review::Review<Biss>;
 /// How far it is.
-pub type ReviewState = review::ReviewState<Prepared, Committed>;
-
-impl Review {
-    /// What is wanted, with one of the review's toggles the other way round.
-    pub(super) fn toggled(&self, permit: Permit) -> Option<Change> {
-        let Change::Restore { profile, options } = &self.change else { return None };
-        let mut options = *options;
-        let own = match permit {
-            Permit::OtherDevice => &mut options.allow_other_device,
-            Permit::Mounting => &mut options.with_mounting,
-            Permit::Recreate => return None,
-        };
-        *own = !*own;
-        Some(Change::Restore { profile: profile.clone(), options })
-    }
-
-    /// What was chosen for a mounting and is not in its plan, because it is so already.
-    fn left_out(&self, ops: &[Op]) -> impl Iterator<Item = Text> {
-        let run = match &self.change {
-            Change::Guided { run, .. } => Some(run),
-            _ => None,
-        };
-        let preset = run.is_some_and(|run| run.preset.is_some());
-        let data = run.is_some_and(|run| run.data.is_some());
-        let stores = ops.iter().any(|op| matches!(op, Op::StorePreset { .. }));
-        let writes = ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::WriteRegister { .. }));
-        let preset = (preset && !stores).then(|| Text::new("biss_review.preset_stored"));
-        preset.into_iter().chain((data && !writes).then(|| Text::new("biss_review.data_equal")))
-    }
-
-    fn options(&self) -> Option<RestoreOptions> {
-        match &self.change {
-            Change::Restore { options, .. } => Some(*options),
-            _ => None,
-        }
-    }
-}
+pub type ReviewState = review::ReviewState<Biss>;
 
 /// A person has to be there for it, or may lead it.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.turns() || matches!(op, Op::FirePreset { .. })
 }
 
-impl Reviewed for Review {
+impl Reviewed for Biss {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
     type Prepared = Prepared;
-    type Done = Committed;
+    type Written = Written;
 
-    fn plan(prepared: &Prepared) -> Option<PlanId> {
-        (!prepared.plan.is_empty()).then(|| prepared.plan.id())
+    fn change(change: &Change) -> Text {
+        explain::biss::change(change)
     }
 
-    fn lines(prepared: &Prepared) -> Vec<OpWords> {
-        let layout = &prepared.identity.layout;
-        prepared.plan.ops.iter().map(|op| explain::biss::op(op, layout)).collect()
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate => None,
+        }
     }
 
-    fn warnings(&self, prepared: &Prepared) -> Vec<Text> {
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
+    }
+
+    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+        explain::biss::op(op, &prepared.identity.layout)
+    }
+
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(explain::biss::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(Text::new("biss_review.table"));
         }
-        if !prepared.missing.is_empty() {
-            let items = prepared.missing.iter().map(|item| explain::phrase(item));
-            warnings.push(Text::new("biss_review.missing").with_list("items", items));
-        }
-        if !prepared.mounting_left.is_empty() {
-            let items = prepared.mounting_left.iter().map(explain::plain);
-            warnings.push(Text::new("review.mounting_left").with_list("items", items));
-        }
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        warnings.extend(review::left_alone("biss_review.missing", &prepared.missing, mounting));
         warnings
     }
 
-    fn needs(&self, prepared: &Prepared) -> Vec<Text> {
+    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
         if ops.iter().any(Op::turns) {
@@ -99,7 +75,7 @@ impl Reviewed for Review {
         if ops.iter().any(restarts) {
             needs.push(Text::new("biss_review.needs_restart"));
         }
-        needs.extend(self.left_out(ops));
+        needs.extend(left_out(change, ops));
         needs
     }
 
@@ -119,17 +95,8 @@ impl Reviewed for Review {
         prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
     }
 
-    fn toggles(&self) -> Vec<Toggle> {
-        let Some(options) = self.options() else { return Vec::new() };
-        let leaves = self.prepared().is_some_and(|prepared| !prepared.mounting_left.is_empty());
-        [
-            (Permit::OtherDevice, options.allow_other_device, self.is_for_another),
-            (Permit::Mounting, options.with_mounting, leaves),
-        ]
-        .into_iter()
-        .filter(|(_, is_on, matters)| *is_on || *matters)
-        .map(|(permit, is_on, _)| Toggle { permit, is_on })
-        .collect()
+    fn written(written: &Written) -> Text {
+        explain::biss::written(written)
     }
 
     fn manner(prepared: &Prepared) -> Manner {
@@ -139,9 +106,18 @@ impl Reviewed for Review {
             true => Manner::Leads,
         }
     }
+}
 
-    fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {
-        let logbook = done.logbook_warning.as_ref().map(explain::logbook);
-        (explain::biss::written(&done.written), done.backup.clone(), logbook)
-    }
+/// What was chosen for a mounting and is not in its plan, because it is so already.
+fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
+    let run = match change {
+        Change::Guided { run, .. } => Some(run),
+        _ => None,
+    };
+    let preset = run.is_some_and(|run| run.preset.is_some());
+    let data = run.is_some_and(|run| run.data.is_some());
+    let stores = ops.iter().any(|op| matches!(op, Op::StorePreset { .. }));
+    let writes = ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::WriteRegister { .. }));
+    let preset = (preset && !stores).then(|| Text::new("biss_review.preset_stored"));
+    preset.into_iter().chain((data && !writes).then(|| Text::new("biss_review.data_equal")))
 }

@@ -6,15 +6,15 @@ use std::time::Duration;
 use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
-use crate::app::review::Permit;
+use crate::app::review::{Permit, told};
 use crate::app::services::Services;
-use crate::app::{Severity, Text, explain};
+use crate::app::{Severity, Text};
 use crate::device::biss::Error;
 use crate::device::biss::procedure::{Answer, Failure, Task, Unattended};
 use crate::device::biss::write::Left;
 use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
-use crate::worker::biss::{Attendance, BissJob, Change, Commit, Committed, JobError, Prepared};
+use crate::worker::biss::{Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared};
 
 /// How long a shaft that has to stand, with nobody asked to stop it, is waited for.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
@@ -47,7 +47,7 @@ impl Encoder {
             return;
         }
         let is_for_another = self.is_for_another(&change);
-        self.review = Some(Review::new(explain::biss::change(&change), change.clone(), is_for_another));
+        self.review = Some(Review::new(change.clone(), is_for_another));
         if !self.try_submit(BissJob::Prepare(change), services) {
             self.review = None;
         }
@@ -143,7 +143,7 @@ impl Encoder {
     /// A plan was carried out.
     pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
         self.log_outcomes(&committed.written.outcomes, services);
-        let (severity, texts) = told(&committed);
+        let (severity, texts) = told::<Biss>(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         self.memory.forget_steps();
         self.read_what_was_written();
@@ -213,14 +213,5 @@ impl Encoder {
             let (texts, before) = (vec![why.clone()], Vec::new());
             guide.end = Some(End::Failed { texts, before, may_lead_back: true, cancelled: false });
         }
-    }
-}
-
-/// What a write came to.
-pub(super) fn told(committed: &Committed) -> (Severity, Vec<Text>) {
-    let text = explain::biss::written(&committed.written);
-    match &committed.logbook_warning {
-        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
-        None => (Severity::Good, vec![text]),
     }
 }

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::drafts::Edits;
 use super::review::Review;
 use super::unit::Unit;
-use super::write::told;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
+use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
@@ -49,7 +49,7 @@ impl Kind for Hiperdrive {
         let (job, end, severity, texts) = match event {
             Event::Finished(job, output) => match &**output {
                 HiperdriveOutput::Committed(committed) => {
-                    let (severity, texts) = told(committed);
+                    let (severity, texts) = told::<Hiperdrive>(committed);
                     (job, JobEnd::Done, severity, texts)
                 }
                 _ => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),

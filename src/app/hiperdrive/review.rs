@@ -1,70 +1,61 @@
 //! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
 
-use std::path::PathBuf;
-
-use crate::app::review::{self, Manner, OpWords, Permit, Reviewed, Toggle};
+use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
-use crate::profile::PlanId;
-use crate::profile::hiperdrive::{Op, RestoreOptions, Service, warnings};
-use crate::worker::hiperdrive::{Change, Committed, Prepared};
+use crate::device::hiperdrive::write::Written;
+use crate::profile::Plan;
+use crate::profile::hiperdrive::{Base, Op, Service, warnings};
+use crate::worker::hiperdrive::{Change, Hiperdrive, Prepared};
 
 /// A write on its way.
-pub type Review = review::Review<Change, Prepared, Committed>;
+pub type Review = review::Review<Hiperdrive>;
 /// How far it is.
-pub type ReviewState = review::ReviewState<Prepared, Committed>;
+pub type ReviewState = review::ReviewState<Hiperdrive>;
 
-impl Review {
-    /// What is wanted, with one of the review's toggles the other way round.
-    pub(super) fn toggled(&self, permit: Permit) -> Option<Change> {
-        let Change::Restore { profile, options } = &self.change else { return None };
-        let mut options = *options;
-        let own = match permit {
-            Permit::OtherDevice => &mut options.allow_other_device,
-            Permit::Mounting => &mut options.with_mounting,
-            Permit::Recreate => return None,
-        };
-        *own = !*own;
-        Some(Change::Restore { profile: profile.clone(), options })
+impl Reviewed for Hiperdrive {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        explain::hiperdrive::change(change)
     }
 
-    fn options(&self) -> Option<RestoreOptions> {
-        match &self.change {
-            Change::Restore { options, .. } => Some(*options),
-            _ => None,
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate => None,
         }
     }
-}
 
-impl Reviewed for Review {
-    type Prepared = Prepared;
-    type Done = Committed;
-
-    fn plan(prepared: &Prepared) -> Option<PlanId> {
-        (!prepared.plan.is_empty()).then(|| prepared.plan.id())
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
     }
 
-    fn lines(prepared: &Prepared) -> Vec<OpWords> {
-        prepared.plan.ops.iter().map(explain::hiperdrive::op).collect()
+    fn op(_: &Prepared, op: &Op) -> OpWords {
+        explain::hiperdrive::op(op)
     }
 
-    fn warnings(&self, prepared: &Prepared) -> Vec<Text> {
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut texts: Vec<Text> = warnings(&prepared.plan).iter().map(explain::hiperdrive::warning).collect();
         texts.extend(prepared.wear().map(|after| Text::new("hd_review.wear").with("after", after)));
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
             texts.push(Text::new("hd_review.factory_all"));
         }
-        if !prepared.missing.is_empty() {
-            let items = prepared.missing.iter().map(|item| explain::phrase(item));
-            texts.push(Text::new("hd_review.missing").with_list("items", items));
-        }
-        if !prepared.mounting_left.is_empty() {
-            let items = prepared.mounting_left.iter().map(explain::plain);
-            texts.push(Text::new("review.mounting_left").with_list("items", items));
-        }
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        texts.extend(review::left_alone("hd_review.missing", &prepared.missing, mounting));
         texts
     }
 
-    fn needs(&self, prepared: &Prepared) -> Vec<Text> {
+    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
         let mut needs = vec![Text::new("hd_review.needs_stop")];
         let resets = |op: &Op| {
             matches!(op, Op::Service(Service::Reset | Service::Factory | Service::FactoryAll | Service::Acknowledge(_)))
@@ -72,7 +63,7 @@ impl Reviewed for Review {
         if prepared.plan.ops.iter().any(resets) {
             needs.push(Text::new("hd_review.may_move"));
         }
-        if matches!(self.change, Change::Restore { .. } | Change::Write(_) | Change::Try(_)) {
+        if matches!(change, Change::Restore { .. } | Change::Write(_) | Change::Try(_)) {
             needs.push(Text::new("hd_review.controller"));
         }
         needs
@@ -94,25 +85,7 @@ impl Reviewed for Review {
         false
     }
 
-    fn toggles(&self) -> Vec<Toggle> {
-        let Some(options) = self.options() else { return Vec::new() };
-        let leaves = self.prepared().is_some_and(|prepared| !prepared.mounting_left.is_empty());
-        [
-            (Permit::OtherDevice, options.allow_other_device, self.is_for_another),
-            (Permit::Mounting, options.with_mounting, leaves),
-        ]
-        .into_iter()
-        .filter(|(_, is_on, matters)| *is_on || *matters)
-        .map(|(permit, is_on, _)| Toggle { permit, is_on })
-        .collect()
-    }
-
-    fn manner(_: &Prepared) -> Manner {
-        Manner::Writes
-    }
-
-    fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {
-        let logbook = done.logbook_warning.as_ref().map(explain::logbook);
-        (explain::hiperdrive::written(&done.written), done.backup.clone(), logbook)
+    fn written(written: &Written) -> Text {
+        explain::hiperdrive::written(written)
     }
 }

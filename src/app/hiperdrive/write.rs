@@ -2,12 +2,12 @@
 
 use super::review::{Review, ReviewState};
 use super::unit::Unit;
-use crate::app::review::Permit;
+use crate::app::review::{Permit, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::profile::hiperdrive::{HiperdriveProfile, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
-use crate::worker::hiperdrive::{Change, Commit, Committed, HiperdriveJob, JobError, Prepared};
+use crate::worker::hiperdrive::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, JobError, Prepared};
 
 impl Unit {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -32,7 +32,7 @@ impl Unit {
             return;
         }
         let is_for_another = self.is_for_another(&change);
-        self.review = Some(Review::new(explain::hiperdrive::change(&change), change.clone(), is_for_another));
+        self.review = Some(Review::new(change.clone(), is_for_another));
         if !self.submit(HiperdriveJob::Prepare(change), services) {
             self.review = None;
         }
@@ -114,7 +114,7 @@ impl Unit {
 
     /// A plan was carried out: what it changed is read again.
     pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
-        let (severity, texts) = told(&committed);
+        let (severity, texts) = told::<Hiperdrive>(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         if let Some(review) = &mut self.review
             && let ReviewState::Writing(prepared) = &review.state
@@ -142,14 +142,5 @@ impl Unit {
         if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
             review.fail(vec![why.clone()], true);
         }
-    }
-}
-
-/// What a write came to.
-pub(super) fn told(committed: &Committed) -> (Severity, Vec<Text>) {
-    let text = explain::hiperdrive::written(&committed.written);
-    match &committed.logbook_warning {
-        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
-        None => (Severity::Good, vec![text]),
     }
 }

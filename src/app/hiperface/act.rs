@@ -72,7 +72,11 @@ impl Encoder {
             Action::Revert(range) => self.staged.revert_range(range),
             Action::Review => self.review_edits(services),
             Action::Plan(change) => self.plan(change, services),
-            Action::PlanAgain(options) => self.plan_again(options, services),
+            Action::PlanAgain(options) => {
+                if let Some(review) = &self.review {
+                    self.plan_again(with_options(&review.change, options), services);
+                }
+            }
             Action::ForceWear(force) => self.force_wear(force),
             Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
@@ -173,7 +177,7 @@ impl Encoder {
             return;
         }
         let is_for_another = self.is_for_another(&change);
-        let mut review = Review::new(explain::hiperface::change(&change), change.clone(), is_for_another);
+        let mut review = Review::new(change.clone(), is_for_another);
         if let Err(why) = rules::change(&self.staged, &change) {
             review.fail(vec![why], false);
             self.review = Some(review);
@@ -191,15 +195,13 @@ impl Encoder {
         check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
     }
 
-    fn plan_again(&mut self, options: RestoreOptions, services: &mut Services) {
+    /// Makes the plan of the review anew; an encoder that did not answer is asked again.
+    fn plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
         }
         let Some(review) = &mut self.review else { return };
-        review.set_options(options);
-        review.force_wear = false;
-        review.state = ReviewState::Planning;
-        let change = review.change.clone();
+        *review = Review::new(change.clone(), review.is_for_another);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.review = None;
         }
@@ -212,8 +214,8 @@ impl Encoder {
 
     /// Makes the plan again with one of the review's toggles the other way round.
     pub(in crate::app) fn plan_with(&mut self, permit: Permit, services: &mut Services) {
-        if let Some(options) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
-            self.plan_again(options, services);
+        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
+            self.plan_again(change, services);
         }
     }
 
@@ -326,6 +328,14 @@ impl Encoder {
         if self.review.as_ref().is_some_and(Review::is_plan) {
             self.review = None;
         }
+    }
+}
+
+/// A restore with other options; any other change as it is.
+fn with_options(change: &Change, options: RestoreOptions) -> Change {
+    match change {
+        Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },
+        other => other.clone(),
     }
 }
 

@@ -11,7 +11,7 @@ mod mounting;
 mod news;
 mod record;
 mod rest;
-pub mod review;
+mod review;
 pub mod rules;
 mod staged;
 

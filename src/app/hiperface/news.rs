@@ -7,6 +7,7 @@ use super::review::ReviewState;
 use super::rules;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
+use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase, Source};
 use crate::app::{Severity, Text, explain};
@@ -14,7 +15,7 @@ use crate::device::hiperface::{Error, Sample, Station};
 use crate::profile::hiperface::Op;
 use crate::protocol::hiperface::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::worker::hiperface::{
-    Committed, Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+    Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
 use crate::worker::{Event, JobId, Session};
 
@@ -174,7 +175,7 @@ impl Encoder {
                 }
             }
             HiperfaceOutput::Committed(committed) => {
-                let (severity, texts) = written(&committed);
+                let (severity, texts) = told::<Hiperface>(&committed);
                 services.tell(severity, texts, Some(&self.session.name()));
                 self.staged.forget_steps();
                 if let Some(review) = &mut self.review
@@ -355,20 +356,11 @@ impl Encoder {
     }
 }
 
-/// What a write came to.
-fn written(committed: &Committed) -> (Severity, Vec<Text>) {
-    let text = explain::hiperface::written(&committed.written);
-    match &committed.logbook_warning {
-        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
-        None => (Severity::Good, vec![text]),
-    }
-}
-
 /// What an event of a session that was let go says about the end of its job.
 fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
     let (job, end, (severity, texts)) = match event {
         Event::Finished(job, output) => match &**output {
-            HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, written(committed)),
+            HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, told::<Hiperface>(committed)),
             _ => (job, JobEnd::Done, (Severity::Note, vec![Text::new("session.ended")])),
         },
         Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, explain::hiperface::job(error))),

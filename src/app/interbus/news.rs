@@ -4,9 +4,9 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::trace::Meaning;
-use super::write::told;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::line::Line;
+use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Kind, LastWords, Phase};
 use crate::app::{Severity, Text, explain};
@@ -36,7 +36,7 @@ impl Kind for Interbus {
         let (job, end, severity, texts) = match event {
             Event::Finished(job, output) => match &**output {
                 InterbusOutput::Committed(committed) => {
-                    let (severity, texts) = told(committed);
+                    let (severity, texts) = told::<Interbus>(committed);
                     (job, JobEnd::Done, severity, texts)
                 }
                 _ => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),

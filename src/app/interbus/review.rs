@@ -1,70 +1,61 @@
 //! The review of a write into an INTERBUS encoder: what its plan needs, warns of and costs.
 
-use std::path::PathBuf;
-
-use crate::app::review::{self, Manner, OpWords, Permit, Reviewed, Toggle};
+use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
-use crate::profile::PlanId;
-use crate::profile::interbus::{Op, RestoreOptions};
-use crate::worker::interbus::{Change, Committed, Prepared, Wear};
+use crate::device::interbus::write::Written;
+use crate::profile::Plan;
+use crate::profile::interbus::{Base, Op};
+use crate::worker::interbus::{Change, Interbus, Prepared, Wear};
 
 /// A write on its way.
-pub type Review = review::Review<Change, Prepared, Committed>;
+pub type Review = review::Review<Interbus>;
 /// How far it is.
-pub type ReviewState = review::ReviewState<Prepared, Committed>;
+pub type ReviewState = review::ReviewState<Interbus>;
 
-impl Review {
-    /// What is wanted, with one of the review's toggles the other way round.
-    pub(super) fn toggled(&self, permit: Permit) -> Option<Change> {
-        let Change::Restore { profile, options } = &self.change else { return None };
-        let mut options = *options;
-        let own = match permit {
-            Permit::OtherDevice => &mut options.allow_other_device,
-            Permit::Mounting => &mut options.with_mounting,
-            Permit::Recreate => return None,
-        };
-        *own = !*own;
-        Some(Change::Restore { profile: profile.clone(), options })
+impl Reviewed for Interbus {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        explain::interbus::change(change)
     }
 
-    fn options(&self) -> Option<RestoreOptions> {
-        match &self.change {
-            Change::Restore { options, .. } => Some(*options),
-            _ => None,
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate => None,
         }
     }
-}
 
-impl Reviewed for Review {
-    type Prepared = Prepared;
-    type Done = Committed;
-
-    fn plan(prepared: &Prepared) -> Option<PlanId> {
-        (!prepared.plan.is_empty()).then(|| prepared.plan.id())
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
     }
 
-    fn lines(prepared: &Prepared) -> Vec<OpWords> {
-        prepared.plan.ops.iter().map(explain::interbus::op).collect()
+    fn op(_: &Prepared, op: &Op) -> OpWords {
+        explain::interbus::op(op)
     }
 
-    fn warnings(&self, prepared: &Prepared) -> Vec<Text> {
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
         warnings.extend(explain::interbus::wear(prepared));
         if prepared.plan.ops.contains(&Op::Default) {
             warnings.push(Text::new("ib_review.experimental"));
         }
-        if !prepared.missing.is_empty() {
-            let items = prepared.missing.iter().map(|item| explain::phrase(item));
-            warnings.push(Text::new("ib_review.missing").with_list("items", items));
-        }
-        if !prepared.mounting_left.is_empty() {
-            let items = prepared.mounting_left.iter().map(explain::plain);
-            warnings.push(Text::new("review.mounting_left").with_list("items", items));
-        }
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        warnings.extend(review::left_alone("ib_review.missing", &prepared.missing, mounting));
         warnings
     }
 
-    fn needs(&self, prepared: &Prepared) -> Vec<Text> {
+    fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
         let mut needs = vec![Text::new("ib_review.needs_stop")];
         if ops.iter().any(|op| matches!(op, Op::Program(_))) {
@@ -92,25 +83,7 @@ impl Reviewed for Review {
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_)))
     }
 
-    fn toggles(&self) -> Vec<Toggle> {
-        let Some(options) = self.options() else { return Vec::new() };
-        let leaves = self.prepared().is_some_and(|prepared| !prepared.mounting_left.is_empty());
-        [
-            (Permit::OtherDevice, options.allow_other_device, self.is_for_another),
-            (Permit::Mounting, options.with_mounting, leaves),
-        ]
-        .into_iter()
-        .filter(|(_, is_on, matters)| *is_on || *matters)
-        .map(|(permit, is_on, _)| Toggle { permit, is_on })
-        .collect()
-    }
-
-    fn manner(_: &Prepared) -> Manner {
-        Manner::Writes
-    }
-
-    fn done(done: &Committed) -> (Text, Option<PathBuf>, Option<Text>) {
-        let logbook = done.logbook_warning.as_ref().map(explain::logbook);
-        (explain::interbus::written(&done.written), done.backup.clone(), logbook)
+    fn written(written: &Written) -> Text {
+        explain::interbus::written(written)
     }
 }

@@ -2,13 +2,13 @@
 
 use super::encoder::Encoder;
 use super::review::{Review, ReviewState};
-use crate::app::review::Permit;
+use crate::app::review::{Permit, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
 use crate::profile::{Consent, PlanId};
 use crate::protocol::interbus::ProgramNumber;
-use crate::worker::interbus::{Change, Commit, Committed, InterbusJob, JobError, Prepared};
+use crate::worker::interbus::{Change, Commit, Committed, Interbus, InterbusJob, JobError, Prepared};
 
 impl Encoder {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -47,7 +47,7 @@ impl Encoder {
             return;
         }
         let is_for_another = self.is_for_another(&change);
-        self.review = Some(Review::new(explain::interbus::change(&change), change.clone(), is_for_another));
+        self.review = Some(Review::new(change.clone(), is_for_another));
         if !self.try_submit(InterbusJob::Prepare(change), services) {
             self.review = None;
         }
@@ -127,7 +127,7 @@ impl Encoder {
 
     /// A plan was carried out: what it changed is read again.
     pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
-        let (severity, texts) = told(&committed);
+        let (severity, texts) = told::<Interbus>(&committed);
         services.tell(severity, texts, Some(&self.session.name()));
         self.staged.forget_steps();
         let mut programs = None;
@@ -172,13 +172,4 @@ impl Encoder {
 fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
     let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
     (!plan.ops.contains(&Op::Default)).then_some(of_programs)
-}
-
-/// What a write came to.
-pub(super) fn told(committed: &Committed) -> (Severity, Vec<Text>) {
-    let text = explain::interbus::written(&committed.written);
-    match &committed.logbook_warning {
-        Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
-        None => (Severity::Good, vec![text]),
-    }
 }
