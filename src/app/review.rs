@@ -59,6 +59,11 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
+    /// The plan that is being carried out.
+    pub(in crate::app) fn writing(&self) -> Option<&K::Prepared> {
+        self.prepared().filter(|_| self.is_writing())
+    }
+
     /// The plan is being made.
     pub fn is_planning(&self) -> bool {
         matches!(self.state, ReviewState::Planning)

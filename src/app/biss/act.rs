@@ -7,11 +7,10 @@ use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
-use super::review::Review;
 use super::words;
 use crate::app::action::{FileQuestion, ReadError};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Phase, Source};
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Source, WithMemory};
 use crate::app::{Severity, Text};
 use crate::profile::biss::{BissProfile, RegisterRange};
 use crate::profile::{Body, Document};
@@ -83,20 +82,6 @@ impl Encoder {
 
     fn refuse(&self, text: Text, services: &mut Services) {
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
-    }
-
-    /// Starts a job, or says why not.
-    pub(super) fn submit(&mut self, job: BissJob, services: &mut Services) {
-        self.try_submit(job, services);
-    }
-
-    /// Starts a job, or says why not and gives false.
-    pub(super) fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // What is wanted next decides anew.
-        self.refusal = None;
-        let what = words::job(&job);
-        let writes = matches!(job, BissJob::Commit(_) | BissJob::LeadBack);
-        self.session.submit(job, what, writes, services)
     }
 
     /// Watches a register beside the position, or no more.
@@ -204,31 +189,6 @@ impl Encoder {
         match result.and_then(|document| document.body.into_biss().map_err(ReadError::Profile)) {
             Ok(profile) => self.plan_restore(profile, services),
             Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
-    }
-
-    /// The connection is gone; what is known and edited stays.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        // What passed at last says most about why it was the last.
-        self.take_samples_and_frames();
-        self.forget_asked();
-        self.write_lost(&why);
-        self.session.lose(why, services);
-    }
-
-    /// Lets its thread go; what runs ends as `end` says.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        self.forget_asked();
-        self.motor = None;
-        self.session.let_go(end, services);
-    }
-
-    /// What was asked for on the line does not come any more.
-    fn forget_asked(&mut self) {
-        self.seen.clear();
-        self.read_after.clear();
-        if self.review.as_ref().is_some_and(Review::is_plan) {
-            self.review = None;
         }
     }
 }

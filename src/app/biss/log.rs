@@ -19,7 +19,7 @@ impl Encoder {
     }
 
     /// A write has begun: what it changes, old and new.
-    pub(super) fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
+    pub(super) fn log_operations(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         let identity = &prepared.identity;
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
             // Of long runs the first registers.

@@ -6,14 +6,12 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 
 use super::action::{Action, Motor};
-use super::job;
-use super::review::Review;
 use super::staged::Edit;
 use super::unit::Unit;
 use super::words;
 use crate::app::action::{FileQuestion, ReadError};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::Source;
+use crate::app::services::Services;
+use crate::app::session::{Source, WithMemory};
 use crate::app::{Severity, Text};
 use crate::device::hiperdrive::dead_man::Wish;
 use crate::profile::hiperdrive::HiperdriveProfile;
@@ -162,8 +160,7 @@ impl Unit {
 
     /// Starts a job, or says why not and gives false.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
-        let (what, writes) = (job::words(&job), matches!(job, HiperdriveJob::Commit(_)));
-        self.session.submit(job, what, writes, services)
+        self.session.submit(job, services)
     }
 
     /// A connected device is read again for it; a profile is written as it is edited.
@@ -210,32 +207,6 @@ impl Unit {
         match result.and_then(|document| document.body.into_hiperdrive().map_err(ReadError::Profile)) {
             Ok(profile) => self.plan_restore(profile, services),
             Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
-    }
-
-    /// The connection is gone; what is known and edited stays.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        self.moves.end();
-        // What passed at last says most about why it was the last.
-        self.take_samples_and_frames();
-        self.forget_asked();
-        self.write_lost(&why);
-        self.session.lose(why, services);
-    }
-
-    /// Lets its thread go, every motion first; what runs ends as `end` says.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        self.moves.end();
-        self.forget_asked();
-        self.session.let_go(end, services);
-    }
-
-    /// What was asked for on the line does not come any more.
-    fn forget_asked(&mut self) {
-        self.forget_readings();
-        self.target = None;
-        if self.review.as_ref().is_some_and(Review::is_plan) {
-            self.review = None;
         }
     }
 }

@@ -6,7 +6,7 @@ use super::axis::{Action, Ask, Axis, Button, Seen};
 use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::services::Services;
-use crate::app::session::{Phase, Source};
+use crate::app::session::{Phase, Source, WithMemory};
 use crate::app::{Severity, Text};
 use crate::device::hiperdrive::dead_man::{Effort, Motive, Phase as Doing, Wish};
 use crate::profile::hiperdrive::{Image, NetworkSettings, Service};

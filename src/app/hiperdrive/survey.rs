@@ -3,9 +3,9 @@
 use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
+use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::Drafted;
-use crate::app::{Severity, Text};
 use crate::device::hiperdrive::dead_man::Lock;
 use crate::device::hiperdrive::{Identity, Reading, Survey};
 use crate::profile::hiperdrive::Image;
@@ -16,8 +16,7 @@ impl Unit {
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             if self.staged.is_dirty() {
-                let text = Text::new("session.other_encoder").with("serial", &survey.identity.serial_number);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+                self.session.tell_of_another(&survey.identity.serial_number, services);
             }
             self.forget_device(services);
         }

@@ -7,19 +7,17 @@ use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
-use super::review::{Review, ReviewState};
 use super::rules;
+use super::write::with_options;
 use crate::app::action::{FileQuestion, ReadError};
-use crate::app::review::Permit;
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Phase, Source};
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Source, WithMemory};
 use crate::app::{Severity, Text, explain};
-use crate::bits::hex;
 use crate::device::hiperface::{SaveOptions, Watch};
-use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Item, RestoreOptions, check_device};
-use crate::profile::{Body, Consent, Document, PlanId};
+use crate::profile::hiperface::{HiperfaceProfile, Item};
+use crate::profile::{Body, Document};
 use crate::protocol::hiperface::LineSettings;
-use crate::worker::hiperface::{Change, Commit, HiperfaceJob};
+use crate::worker::hiperface::HiperfaceJob;
 
 /// How often a watched value is read: what is watched changes slowly, and the position has to wait for it.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
@@ -108,11 +106,6 @@ impl Encoder {
         }
     }
 
-    /// Starts a job, or says why not.
-    pub(super) fn submit(&mut self, job: HiperfaceJob, services: &mut Services) {
-        self.try_submit(job, services);
-    }
-
     fn stored_settings(&self) -> Option<LineSettings> {
         self.identity.as_ref().map(|identity| identity.label.settings)
     }
@@ -122,22 +115,6 @@ impl Encoder {
         if self.try_submit(job, services) {
             self.settings_then = then;
         }
-    }
-
-    /// Starts a job, or says why not and gives false.
-    pub(super) fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
-        let what = what(&job);
-        let writes = matches!(job, HiperfaceJob::Commit(_));
-        let asked = match &job {
-            HiperfaceJob::Read(item) => Some(*item),
-            _ => None,
-        };
-        let begun = self.session.submit(job, what, writes, services);
-        if begun {
-            self.asked = asked;
-            self.settings_then = None;
-        }
-        begun
     }
 
     fn read_again(&mut self, services: &mut Services) {
@@ -160,104 +137,6 @@ impl Encoder {
         if let Err(text) = allowed {
             services.tell(Severity::Error, vec![text], Some(&self.session.name()));
         }
-    }
-
-    fn review_edits(&mut self, services: &mut Services) {
-        if !self.staged.is_dirty() {
-            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
-            return;
-        }
-        let edits: Vec<(FieldRange, Vec<u8>)> = self.staged.changed_runs();
-        self.plan(Change::Store(edits), services);
-    }
-
-    pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
-        if let Some(why) = self.session.why_not_ready() {
-            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
-            return;
-        }
-        let is_for_another = self.is_for_another(&change);
-        let mut review = Review::new(change.clone(), is_for_another);
-        if let Err(why) = rules::change(&self.staged, &change) {
-            review.fail(vec![why], false);
-            self.review = Some(review);
-            return;
-        }
-        self.review = Some(review);
-        if !self.try_submit(HiperfaceJob::Prepare(change), services) {
-            self.review = None;
-        }
-    }
-
-    /// It is a profile of another encoder than this one.
-    fn is_for_another(&self, change: &Change) -> bool {
-        let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
-        check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
-    }
-
-    /// Makes the plan of the review anew; an encoder that did not answer is asked again.
-    fn plan_again(&mut self, change: Change, services: &mut Services) {
-        if self.session.is_busy() {
-            return;
-        }
-        let Some(review) = &mut self.review else { return };
-        *review = Review::new(change.clone(), review.is_for_another);
-        if !self.try_submit(HiperfaceJob::Prepare(change), services) {
-            self.review = None;
-        }
-    }
-
-    pub(in crate::app) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
-        let options = RestoreOptions::default();
-        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
-    }
-
-    /// Makes the plan again with one of the review's toggles the other way round.
-    pub(in crate::app) fn plan_with(&mut self, permit: Permit, services: &mut Services) {
-        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
-            self.plan_again(change, services);
-        }
-    }
-
-    pub(in crate::app) fn force_wear(&mut self, force: bool) {
-        if let Some(review) = &mut self.review {
-            review.force_wear = force;
-        }
-    }
-
-    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
-    pub(in crate::app) fn write(&mut self, shown: PlanId, services: &mut Services) {
-        if !self.session.is_ready() {
-            return;
-        }
-        let Some(review) = &mut self.review else { return };
-        let ReviewState::Ready(prepared) = &review.state else { return };
-        if prepared.plan.id() != shown {
-            return;
-        }
-        let prepared = prepared.clone();
-        let commit =
-            Commit { prepared: (*prepared).clone(), consent: Consent::to(shown), force_wear: review.force_wear };
-        review.state = ReviewState::Writing(prepared.clone());
-        if !self.try_submit(HiperfaceJob::Commit(Box::new(commit)), services)
-            && let Some(review) = &mut self.review
-        {
-            review.state = ReviewState::Ready(prepared);
-        }
-    }
-
-    /// Closes the review; what is being written goes on, and its review stays.
-    pub(in crate::app) fn close_review(&mut self) {
-        let Some(review) = &self.review else { return };
-        if review.is_writing() {
-            return;
-        }
-        if matches!(review.state, ReviewState::Planning)
-            && let Some(line) = &mut self.session.line
-        {
-            line.stop();
-        }
-        self.review = None;
     }
 
     /// A connected encoder is read again for it; a profile is written as it is edited.
@@ -303,40 +182,6 @@ impl Encoder {
             }
         }
     }
-
-    /// The connection is gone; what is known and edited stays.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        // What passed at last says most about why it was the last.
-        self.take_samples_and_frames();
-        self.forget_asked();
-        self.session.lose(why.clone(), services);
-        if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
-            review.fail(vec![why], true);
-        }
-    }
-
-    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        self.forget_asked();
-        self.session.let_go(end, services);
-    }
-
-    /// What was asked for on the line does not come any more.
-    fn forget_asked(&mut self) {
-        self.asked = None;
-        self.give_up_rest();
-        if self.review.as_ref().is_some_and(Review::is_plan) {
-            self.review = None;
-        }
-    }
-}
-
-/// A restore with other options; any other change as it is.
-fn with_options(change: &Change, options: RestoreOptions) -> Change {
-    match change {
-        Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },
-        other => other.clone(),
-    }
 }
 
 /// A profile of now.
@@ -344,27 +189,4 @@ pub(super) fn document_of(profile: HiperfaceProfile) -> Document {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
     Document::new(seconds.to_string(), Body::Hiperface(profile))
-}
-
-/// A job in words.
-fn what(job: &HiperfaceJob) -> Text {
-    match job {
-        HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
-        HiperfaceJob::Status => Text::new("job.status"),
-        HiperfaceJob::Position(_) => Text::new("job.position"),
-        HiperfaceJob::Rest => Text::new("job.rest"),
-        HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
-        HiperfaceJob::Save(_) => Text::new("job.save"),
-        HiperfaceJob::Check { .. } => Text::new("job.check"),
-        HiperfaceJob::Reset => Text::new("job.reset"),
-        HiperfaceJob::Find(_) => Text::new("job.find"),
-        HiperfaceJob::ConfigureForNow(settings) => {
-            Text::new("job.configure_for_now").with("settings", hex(&[settings.byte()]))
-        }
-        HiperfaceJob::UseCode { number, .. } => Text::new("job.use_code").with("number", number),
-        HiperfaceJob::Prepare(change) => {
-            Text::new("job.prepare").with_text("change", explain::hiperface::change(change))
-        }
-        HiperfaceJob::Commit(_) => Text::new("job.write"),
-    }
 }

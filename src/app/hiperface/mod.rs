@@ -14,6 +14,8 @@ mod rest;
 mod review;
 pub mod rules;
 mod staged;
+mod words;
+mod write;
 
 pub use action::Action;
 pub use encoder::Encoder;

@@ -3,21 +3,20 @@
 use super::act::document_of;
 use super::drafts::Edits;
 use super::encoder::Encoder;
-use super::review::ReviewState;
-use super::rules;
+use super::review::Review;
+use super::words;
 use crate::app::action::{Attempt, Done, Opened};
-use crate::app::line::Line;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
-use crate::app::session::{Kind, LastWords, Phase, Source};
+use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
-use crate::profile::hiperface::Op;
+use crate::profile::hiperface::{Item, Op};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::worker::hiperface::{
     Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
-use crate::worker::{Event, JobId, Session};
+use crate::worker::{JobId, Session};
 
 impl Kind for Hiperface {
     const KIND: &'static str = KIND;
@@ -34,12 +33,39 @@ impl Kind for Hiperface {
         Done::OpenedHiperface(attempt)
     }
 
-    fn last_words(event: &Event<Self>) -> Option<LastWords> {
-        last_words(event)
+    fn job(job: &HiperfaceJob) -> Text {
+        words::job(job)
+    }
+
+    fn writes(job: &HiperfaceJob) -> bool {
+        matches!(job, HiperfaceJob::Commit(_))
+    }
+
+    fn survey() -> HiperfaceJob {
+        HiperfaceJob::Survey
     }
 
     fn doing(what: &Doing) -> Text {
         explain::hiperface::doing(what)
+    }
+
+    fn told(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            HiperfaceOutput::Committed(committed) => Some(told::<Hiperface>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        explain::hiperface::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        explain::hiperface::loss(error)
+    }
+
+    fn has_begun(error: &JobError) -> bool {
+        matches!(error, JobError::Interrupted { .. })
     }
 }
 
@@ -70,131 +96,15 @@ impl Encoder {
         }
     }
 
-    /// Takes what has come over the line since the last time.
-    pub(in crate::app) fn pump(&mut self, services: &mut Services) {
-        // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
-        self.take_samples_and_frames();
-        while let Some(event) = self.session.line.as_mut().and_then(Line::next) {
-            self.take(event, services);
-        }
-        if self.session.line.as_ref().is_some_and(Line::is_dead) {
-            self.lose(Text::new("session.ended"), services);
-        }
-    }
-
-    pub(super) fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
-        if !samples.is_empty() || dropped > 0 {
-            self.add_samples(samples, dropped);
-            self.session.answers();
-        }
-        if !frames.is_empty() {
-            let meaning = &mut self.meaning;
-            self.session.trace.add(frames, missed, |entry| meaning.of(entry));
-        }
-    }
-
-    fn take(&mut self, event: Event<Hiperface>, services: &mut Services) {
-        match event {
-            Event::Started(_) | Event::Progress(..) => {}
-            Event::Remark(Remark::Codes(codes)) => self.announced(codes, services),
-            Event::Remark(Remark::Found(_)) => {}
-            Event::Finished(id, output) => {
-                services.job_ends(self.session.id, id, JobEnd::Done);
-                if !matches!(*output, HiperfaceOutput::CodeNoted) {
-                    self.session.answers();
-                }
-                self.finished(*output, services);
-            }
-            Event::Failed(id, error) => self.failed(id, &error, services),
-            Event::Cancelled(id, error) => self.cancelled(id, &error, services),
-            Event::PollFailed(error) => match explain::hiperface::loss(&error) {
-                Some(why) => self.lose(why, services),
-                None => {
-                    let is_silent = self.is_silence(&error);
-                    self.session.polling_failed(explain::hiperface::job(&error), is_silent, services);
-                }
-            },
-            Event::Lost(error) => self.lose(explain::link(&error), services),
-        }
-    }
-
     fn announced(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
         let texts = codes.iter().map(|code| explain::hiperface::status(*code)).collect();
         services.tell(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
-        match output {
-            HiperfaceOutput::Surveyed(survey) => self.take_survey(*survey, services),
-            HiperfaceOutput::Identity(identity) => {
-                let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
-                if proven {
-                    self.codes_due.clone_from(&self.access_codes);
-                } else {
-                    self.access_codes.clear();
-                }
-                self.give_codes(services);
-            }
-            HiperfaceOutput::Status(codes) => self.codes = Some(codes),
-            HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
-            HiperfaceOutput::Rest(rest) => self.take_rest(rest),
-            HiperfaceOutput::Value(value) => self.take_value(value),
-            HiperfaceOutput::Check(lines) => {
-                self.check = Some(lines);
-                self.follow_settings();
-            }
-            HiperfaceOutput::Reset(codes) => {
-                self.codes = Some(codes);
-                self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
-                self.submit(HiperfaceJob::Survey, services);
-            }
-            HiperfaceOutput::Configured => {
-                self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
-                self.submit(HiperfaceJob::Survey, services);
-            }
-            HiperfaceOutput::CodeNoted => self.give_codes(services),
-            HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
-            HiperfaceOutput::Prepared(prepared) if self.is_another(&prepared.identity) => {
-                // Exchanged behind our adapter: what was edited for the one before is not for it.
-                self.review = None;
-                self.submit(HiperfaceJob::Survey, services);
-            }
-            HiperfaceOutput::Prepared(prepared) => {
-                let allowed = rules::keeps_edits(&self.staged, &prepared.plan);
-                if let Some(review) = &mut self.review {
-                    review.state = match allowed {
-                        Ok(()) => ReviewState::Ready(prepared),
-                        Err(why) => ReviewState::Failed { texts: vec![why], begun: false },
-                    };
-                }
-            }
-            HiperfaceOutput::Committed(committed) => {
-                let (severity, texts) = told::<Hiperface>(&committed);
-                services.tell(severity, texts, Some(&self.session.name()));
-                self.staged.forget_steps();
-                if let Some(review) = &mut self.review
-                    && let ReviewState::Writing(prepared) = &review.state
-                {
-                    let prepared = prepared.clone();
-                    review.state = ReviewState::Done(prepared.clone(), committed);
-                    self.follow(&prepared.plan.ops, services);
-                }
-                self.submit(HiperfaceJob::Survey, services);
-            }
-            // A search has a session of its own.
-            HiperfaceOutput::Found(_) => {}
-        }
-    }
-
     /// After a write, the session talks to another address or with other codes: so will the next one. What a position was
     /// before it was set is nowhere but here: the encoder does not tell its offset.
-    fn follow(&mut self, ops: &[Op], services: &mut Services) {
+    pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
                 Op::ChangeCode { number, new, .. } => self.know_code(*number, *new),
@@ -243,10 +153,10 @@ impl Encoder {
 
     fn take_value(&mut self, value: Value) {
         match (value, self.asked.take()) {
-            (Value::Analogue { value, limit }, Some(crate::profile::hiperface::Item::Analogue(channel))) => {
+            (Value::Analogue { value, limit }, Some(Item::Analogue(channel))) => {
                 self.analogue.insert(channel, Ok((value, limit)));
             }
-            (Value::Number(number), Some(crate::profile::hiperface::Item::Counter)) => {
+            (Value::Number(number), Some(Item::Counter)) => {
                 self.counter = u32::try_from(number).ok();
             }
             _ => {}
@@ -268,47 +178,78 @@ impl Encoder {
         self.session.write_document(path, document_of(saved.profile), remarks, services);
     }
 
-    fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        let texts = explain::hiperface::job(error);
-        let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
-        services.job_ends(self.session.id, id, JobEnd::Failed(first.clone()));
-        let stands_there = self.rest_failed(&first);
-        if let (Some(crate::profile::hiperface::Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) =
-            (self.asked.take(), error)
-        {
-            // The encoder has no such channel: that is an answer, and stands where it was asked for.
-            self.analogue.insert(channel, Err(first));
-            self.session.answers();
-            return;
-        }
-        self.session.save_to = None;
-        let gone = explain::hiperface::loss(error);
-        let begun = matches!(error, JobError::Interrupted { .. });
-        self.follow_what_was_done(error, services);
-        let silent = gone.is_none() && self.is_silence(error);
-        let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
-        if gone.is_none() && !silent && !garbled {
+    /// After a write that ended early, the session follows those operations that were carried out.
+    fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
+        let JobError::Interrupted { interrupted, .. } = error else { return };
+        let Some(prepared) = self.review.as_ref().and_then(Review::writing) else { return };
+        let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
+        self.follow(&done, services);
+    }
+}
+
+impl OnLine for Encoder {
+    fn take_samples_and_frames(&mut self) {
+        let Some(line) = &mut self.session.line else { return };
+        let (samples, dropped) = line.samples();
+        let (frames, missed) = line.frames();
+        if !samples.is_empty() || dropped > 0 {
+            self.add_samples(samples, dropped);
             self.session.answers();
         }
-        if silent {
-            self.session.phase = Phase::Silent(first.clone());
-            services.log.settle("session.not_connected", Some(&self.session.name()));
+        if !frames.is_empty() {
+            let meaning = &mut self.meaning;
+            self.session.trace.add(frames, missed, |entry| meaning.of(entry));
         }
-        match &mut self.review {
-            Some(review) if matches!(review.state, ReviewState::Planning | ReviewState::Writing(_)) => {
-                review.state = ReviewState::Failed { texts: texts.clone(), begun };
-                services.note(Severity::Error, texts, Some(&self.session.name()));
+    }
+
+    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+        match remark {
+            Remark::Codes(codes) => self.announced(codes, services),
+            Remark::Found(_) => {}
+        }
+    }
+
+    fn is_answer(output: &HiperfaceOutput) -> bool {
+        !matches!(output, HiperfaceOutput::CodeNoted)
+    }
+
+    fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
+        match output {
+            HiperfaceOutput::Surveyed(survey) => self.take_survey(*survey, services),
+            HiperfaceOutput::Identity(identity) => {
+                let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
+                if proven {
+                    self.codes_due.clone_from(&self.access_codes);
+                } else {
+                    self.access_codes.clear();
+                }
+                self.give_codes(services);
             }
-            // That is told below.
-            _ if gone.is_some() => {}
-            // It stands where the session is shown.
-            _ if silent || stands_there => services.note(Severity::Error, texts, Some(&self.session.name())),
-            _ => services.tell(Severity::Error, texts, Some(&self.session.name())),
-        }
-        if let Some(why) = gone {
-            self.lose(why, services);
-        } else if begun && !silent {
-            self.submit(HiperfaceJob::Survey, services);
+            HiperfaceOutput::Status(codes) => self.codes = Some(codes),
+            HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
+            HiperfaceOutput::Rest(rest) => self.take_rest(rest),
+            HiperfaceOutput::Value(value) => self.take_value(value),
+            HiperfaceOutput::Check(lines) => {
+                self.check = Some(lines);
+                self.follow_settings();
+            }
+            HiperfaceOutput::Reset(codes) => {
+                self.codes = Some(codes);
+                self.follow_settings();
+                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
+                self.submit(HiperfaceJob::Survey, services);
+            }
+            HiperfaceOutput::Configured => {
+                self.follow_settings();
+                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
+                self.submit(HiperfaceJob::Survey, services);
+            }
+            HiperfaceOutput::CodeNoted => self.give_codes(services),
+            HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
+            HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
+            HiperfaceOutput::Committed(committed) => self.committed(committed, services),
+            // A search has a session of its own.
+            HiperfaceOutput::Found(_) => {}
         }
     }
 
@@ -323,53 +264,71 @@ impl Encoder {
         cause.is_lost() || (self.session.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
     }
 
-    /// After a write that ended early, the session follows those operations that were carried out.
-    fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
-        let JobError::Interrupted { interrupted, .. } = error else { return };
-        let Some(ReviewState::Writing(prepared)) = self.review.as_ref().map(|review| &review.state) else { return };
-        let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
-        self.follow(&done, services);
-    }
-
-    fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        services.job_ends(self.session.id, id, JobEnd::Cancelled);
-        self.follow_what_was_done(error, services);
+    fn forget_asked(&mut self) {
         self.asked = None;
         self.give_up_rest();
-        self.session.save_to = None;
-        let texts = explain::hiperface::job(error);
-        let begun = matches!(error, JobError::Interrupted { .. });
-        // As the user wished; what was written until then is to be looked at.
-        let severity = if begun { Severity::Warning } else { Severity::Note };
-        services.tell(severity, texts.clone(), Some(&self.session.name()));
-        if self.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Planning)) {
-            self.review = None;
+        self.forget_plan();
+    }
+
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], services: &mut Services) -> bool {
+        if let Cut::Cancelled(error) = how {
+            self.follow_what_was_done(error, services);
+            self.asked = None;
+            self.give_up_rest();
         }
-        if let Some(review) = &mut self.review
-            && review.is_writing()
-        {
-            review.state = ReviewState::Failed { texts, begun };
-        }
+        self.cut_write(how, texts);
+        // It is told as well.
+        false
+    }
+
+    fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
+        let asked = match &job {
+            HiperfaceJob::Read(item) => Some(*item),
+            _ => None,
+        };
+        let begun = self.session.submit(job, services);
         if begun {
-            self.submit(HiperfaceJob::Survey, services);
+            self.asked = asked;
+            self.settings_then = None;
+        }
+        begun
+    }
+
+    /// What an encoder lacks is an answer; what makes no sense is none.
+    fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
+        let texts = Hiperface::why(error);
+        let why = first(&texts);
+        services.job_ends(self.session.id, id, JobEnd::Failed(why.clone()));
+        let stands_there = self.rest_failed(&why);
+        if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
+            // The encoder has no such channel: that is an answer, and stands where it was asked for.
+            self.analogue.insert(channel, Err(why));
+            self.session.answers();
+            return;
+        }
+        self.session.save_to = None;
+        let gone = Hiperface::loss(error);
+        self.follow_what_was_done(error, services);
+        let silent = gone.is_none() && self.is_silence(error);
+        let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
+        if gone.is_none() && !silent && !garbled {
+            self.session.answers();
+        }
+        let is_shown = self.cut_write(Cut::Failed(error), &texts);
+        match gone {
+            Some(why) => {
+                if is_shown {
+                    services.note(Severity::Error, texts, Some(&self.session.name()));
+                }
+                self.lose(why, services);
+            }
+            None if silent => self.session.fall_silent(texts, services),
+            None => {
+                self.session.say(Severity::Error, texts, is_shown || stands_there, services);
+                if Hiperface::has_begun(error) {
+                    self.submit(HiperfaceJob::Survey, services);
+                }
+            }
         }
     }
-}
-
-/// What an event of a session that was let go says about the end of its job.
-fn last_words(event: &Event<Hiperface>) -> Option<LastWords> {
-    let (job, end, (severity, texts)) = match event {
-        Event::Finished(job, output) => match &**output {
-            HiperfaceOutput::Committed(committed) => (job, JobEnd::Done, told::<Hiperface>(committed)),
-            _ => (job, JobEnd::Done, (Severity::Note, vec![Text::new("session.ended")])),
-        },
-        Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, explain::hiperface::job(error))),
-        Event::Failed(job, error) => {
-            let texts = explain::hiperface::job(error);
-            let why = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
-            (job, JobEnd::Failed(why), (Severity::Error, texts))
-        }
-        _ => return None,
-    };
-    Some(LastWords { job: *job, end, severity, texts })
 }

@@ -4,6 +4,7 @@
 use super::Encoder;
 use crate::app::Text;
 use crate::app::services::Services;
+use crate::app::session::OnLine;
 use crate::device::hiperface::Rest;
 use crate::protocol::hiperface::Geometry;
 use crate::worker::hiperface::HiperfaceJob;

@@ -6,12 +6,10 @@ use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
-use super::job;
-use super::review::Review;
 use super::staged::Edit;
 use crate::app::action::{FileQuestion, ReadError};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Phase, Source};
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Source, WithMemory};
 use crate::app::{Severity, Text};
 use crate::profile::interbus::InterbusProfile;
 use crate::profile::{Body, Document};
@@ -103,25 +101,6 @@ impl Encoder {
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Starts a job, or says why not.
-    pub(super) fn submit(&mut self, job: InterbusJob, services: &mut Services) {
-        self.try_submit(job, services);
-    }
-
-    /// Starts a job, or says why not and gives false. What takes the position away or switches outputs is done only where
-    /// the machine stands.
-    pub(super) fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
-        if job::disturbs(&job) && !self.is_stopped() {
-            services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
-            return false;
-        }
-        let (what, writes) = (job::words(&job), matches!(job, InterbusJob::Commit(_)));
-        if job::disturbs(&job) && self.session.is_ready() {
-            self.handshake.clear();
-        }
-        self.session.submit(job, what, writes, services)
-    }
-
     /// A connected encoder is read again for it; a profile is written as it is edited.
     pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
         match &self.session.source {
@@ -170,30 +149,6 @@ impl Encoder {
         match result.and_then(|document| document.body.into_interbus().map_err(ReadError::Profile)) {
             Ok(profile) => self.plan_restore(profile, services),
             Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
-    }
-
-    /// The connection is gone; what is known and edited stays.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        // What passed at last says most about why it was the last.
-        self.take_samples_and_frames();
-        self.forget_asked();
-        self.write_lost(&why);
-        self.session.lose(why, services);
-    }
-
-    /// Lets its thread go; what runs ends as `end` says.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        self.forget_asked();
-        self.motor = None;
-        self.session.let_go(end, services);
-    }
-
-    /// What was asked for on the line does not come any more, and nobody knows whether the machine still stands.
-    fn forget_asked(&mut self) {
-        self.say_stopped(false);
-        if self.review.as_ref().is_some_and(Review::is_plan) {
-            self.review = None;
         }
     }
 

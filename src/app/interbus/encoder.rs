@@ -243,8 +243,7 @@ impl Encoder {
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             if self.staged.is_dirty() {
-                let text = Text::new("session.other_encoder").with("serial", &survey.identity.serial_number);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+                self.session.tell_of_another(&survey.identity.serial_number, services);
             }
             self.forget_encoder(services);
         }

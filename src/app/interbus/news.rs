@@ -2,18 +2,17 @@
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
-use super::review::Review;
+use super::job;
 use super::trace::Meaning;
 use crate::app::action::{Attempt, Done, Opened};
-use crate::app::line::Line;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
-use crate::app::session::{Kind, LastWords, Phase};
+use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text, explain};
 use crate::protocol::interbus::KIND;
 use crate::sim::Motor;
+use crate::worker::Session;
 use crate::worker::interbus::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
-use crate::worker::{Event, JobId, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
@@ -32,28 +31,39 @@ impl Kind for Interbus {
         Done::OpenedInterbus(attempt)
     }
 
-    fn last_words(event: &Event<Self>) -> Option<LastWords> {
-        let (job, end, severity, texts) = match event {
-            Event::Finished(job, output) => match &**output {
-                InterbusOutput::Committed(committed) => {
-                    let (severity, texts) = told::<Interbus>(committed);
-                    (job, JobEnd::Done, severity, texts)
-                }
-                _ => (job, JobEnd::Done, Severity::Note, vec![Text::new("session.ended")]),
-            },
-            Event::Cancelled(job, error) => (job, JobEnd::Cancelled, Severity::Warning, explain::interbus::job(error)),
-            Event::Failed(job, error) => {
-                let texts = explain::interbus::job(error);
-                let why = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
-                (job, JobEnd::Failed(why), Severity::Error, texts)
-            }
-            _ => return None,
-        };
-        Some(LastWords { job: *job, end, severity, texts })
+    fn job(job: &InterbusJob) -> Text {
+        job::words(job)
+    }
+
+    fn writes(job: &InterbusJob) -> bool {
+        matches!(job, InterbusJob::Commit(_))
+    }
+
+    fn survey() -> InterbusJob {
+        InterbusJob::Survey
     }
 
     fn doing(what: &Doing) -> Text {
         explain::interbus::doing(what)
+    }
+
+    fn told(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            InterbusOutput::Committed(committed) => Some(told::<Interbus>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        explain::interbus::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        explain::interbus::loss(error)
+    }
+
+    fn has_begun(error: &JobError) -> bool {
+        matches!(error, JobError::Interrupted { .. })
     }
 }
 
@@ -68,19 +78,16 @@ impl Encoder {
         self.submit(InterbusJob::Hello, services);
     }
 
-    /// Takes what has come over the line since the last time.
-    pub(in crate::app) fn pump(&mut self, services: &mut Services) {
-        // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
-        self.take_samples_and_frames();
-        while let Some(event) = self.session.line.as_mut().and_then(Line::next) {
-            self.take(event, services);
-        }
-        if self.session.line.as_ref().is_some_and(Line::is_dead) {
-            self.lose(Text::new("session.ended"), services);
+    /// What comes is to be seen with what is known by now, unless it comes anyway.
+    fn see_a_word(&mut self, services: &mut Services) {
+        if !self.session.is_polling() {
+            self.submit(InterbusJob::Position, services);
         }
     }
+}
 
-    pub(super) fn take_samples_and_frames(&mut self) {
+impl OnLine for Encoder {
+    fn take_samples_and_frames(&mut self) {
         self.trace.shift = self.shift();
         let Some(line) = &mut self.session.line else { return };
         let (samples, dropped) = line.samples();
@@ -99,45 +106,8 @@ impl Encoder {
         }
     }
 
-    fn take(&mut self, event: Event<Interbus>, services: &mut Services) {
-        match event {
-            Event::Started(_) => {}
-            Event::Progress(..) => {}
-            Event::Remark(Remark::Handshake(step)) => self.shake(step),
-            Event::Finished(id, output) => {
-                services.job_ends(self.session.id, id, JobEnd::Done);
-                self.session.answers();
-                self.finished(*output, services);
-            }
-            Event::Failed(id, error) => self.failed(id, &error, services),
-            Event::Cancelled(id, error) => {
-                services.job_ends(self.session.id, id, JobEnd::Cancelled);
-                self.session.save_to = None;
-                let texts = explain::interbus::job(&error);
-                let begun = matches!(*error, JobError::Interrupted { .. });
-                // As the user wished; what was written until then is to be looked at.
-                let severity = if begun { Severity::Warning } else { Severity::Note };
-                if self.review.as_ref().is_some_and(Review::is_planning) {
-                    self.review = None;
-                    services.tell(severity, texts, Some(&self.session.name()));
-                } else if self.write_failed(&error, &texts) {
-                    services.note(severity, texts, Some(&self.session.name()));
-                } else {
-                    services.tell(severity, texts, Some(&self.session.name()));
-                }
-                if begun {
-                    self.submit(InterbusJob::Survey, services);
-                }
-            }
-            Event::PollFailed(error) => {
-                let texts = explain::interbus::job(&error);
-                match explain::interbus::loss(&error) {
-                    Some(why) => self.lose(why, services),
-                    None => self.session.polling_failed(texts, is_silence(&error), services),
-                }
-            }
-            Event::Lost(error) => self.lose(explain::link(&error), services),
-        }
+    fn remarked(&mut self, Remark::Handshake(step): Remark, _: &mut Services) {
+        self.shake(step);
     }
 
     fn finished(&mut self, output: InterbusOutput, services: &mut Services) {
@@ -175,57 +145,42 @@ impl Encoder {
             }
             InterbusOutput::Check(lines) => self.check = Some(explain::interbus::check(&lines)),
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
-            InterbusOutput::Prepared(prepared) if self.is_another(&prepared.identity) => {
-                // Exchanged behind our gateway: what was wanted for the one before is not for it.
-                self.review = None;
-                if !self.is_dirty() {
-                    let text = Text::new("session.other_encoder").with("serial", &prepared.identity.serial_number);
-                    services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
-                }
-                self.submit(InterbusJob::Survey, services);
-            }
-            InterbusOutput::Prepared(prepared) => self.planned(prepared),
+            InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
             InterbusOutput::Committed(committed) => self.committed(*committed, services),
             // The command line asks for these.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
         }
     }
 
-    /// What comes is to be seen with what is known by now, unless it comes anyway.
-    fn see_a_word(&mut self, services: &mut Services) {
-        if !self.session.is_polling() {
-            self.submit(InterbusJob::Position, services);
-        }
+    fn is_silence(&self, error: &JobError) -> bool {
+        explain::interbus::is_silence(error)
     }
 
-    fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        let texts = explain::interbus::job(error);
-        let first = texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"));
-        services.job_ends(self.session.id, id, JobEnd::Failed(first.clone()));
-        self.session.save_to = None;
-        let is_shown = self.write_failed(error, &texts);
-        match explain::interbus::loss(error) {
-            Some(why) => self.lose(why, services),
-            None if is_silence(error) || self.session.just_connected => {
-                self.session.phase = Phase::Silent(first);
-                services.log.settle("session.not_connected", Some(&self.session.name()));
-                services.note(Severity::Error, texts, Some(&self.session.name()));
-            }
-            None => {
-                self.session.answers();
-                match is_shown {
-                    true => services.note(Severity::Error, texts, Some(&self.session.name())),
-                    false => services.tell(Severity::Error, texts, Some(&self.session.name())),
-                }
-                if matches!(error, JobError::Interrupted { .. }) {
-                    self.submit(InterbusJob::Survey, services);
-                }
-            }
-        }
+    /// Nobody knows any more whether the machine still stands, either.
+    fn forget_asked(&mut self) {
+        self.say_stopped(false);
+        self.forget_plan();
     }
-}
 
-/// The link is open, and the gateway does not answer.
-fn is_silence(error: &JobError) -> bool {
-    explain::interbus::is_silence(error)
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        self.cut_write(how, texts)
+    }
+
+    /// What takes the position away or switches outputs is done only where the machine stands.
+    fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
+        if job::disturbs(&job) && !self.is_stopped() {
+            services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
+            return false;
+        }
+        if job::disturbs(&job) && self.session.is_ready() {
+            self.handshake.clear();
+        }
+        self.session.submit(job, services)
+    }
+
+    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.motor = None;
+        self.forget_asked();
+        self.session.let_go(end, services);
+    }
 }

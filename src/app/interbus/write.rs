@@ -1,14 +1,13 @@
-//! The way to a write: from a wish to a plan, from the plan and the consent to it to the job that carries it out.
+//! What is written into an encoder: the edits or a profile as a wish, its jobs, and what is read again after it.
 
 use super::encoder::Encoder;
-use super::review::{Review, ReviewState};
-use crate::app::review::{Permit, told};
+use super::review::Review;
 use crate::app::services::Services;
-use crate::app::{Severity, Text, explain};
+use crate::app::session::{Agreed, WithMemory};
+use crate::app::{Severity, Text};
 use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
-use crate::profile::{Consent, PlanId};
 use crate::protocol::interbus::ProgramNumber;
-use crate::worker::interbus::{Change, Commit, Committed, Interbus, InterbusJob, JobError, Prepared};
+use crate::worker::interbus::{Change, Commit, Interbus, InterbusJob, Prepared};
 
 impl Encoder {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -39,132 +38,47 @@ impl Encoder {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
+}
 
-    /// Makes the plan of a change, to be looked at.
-    pub(super) fn plan(&mut self, change: Change, services: &mut Services) {
-        if let Some(why) = self.session.why_not_ready() {
-            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
-            return;
-        }
-        let is_for_another = self.is_for_another(&change);
-        self.review = Some(Review::new(change.clone(), is_for_another));
-        if !self.try_submit(InterbusJob::Prepare(change), services) {
-            self.review = None;
-        }
+impl WithMemory for Encoder {
+    fn review(&self) -> Option<&Review> {
+        self.review.as_ref()
     }
 
-    /// It is a profile of another encoder than this one.
+    fn review_mut(&mut self) -> &mut Option<Review> {
+        &mut self.review
+    }
+
     fn is_for_another(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         check_device(profile, &own.profile()).is_err()
     }
 
-    /// Makes the plan again with one of the review's toggles the other way round.
-    pub(in crate::app) fn plan_with(&mut self, permit: Permit, services: &mut Services) {
-        if self.session.is_busy() {
-            return;
-        }
-        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
-            self.plan(change, services);
-        }
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.is_another(&prepared.identity)
     }
 
-    pub(in crate::app) fn force_wear(&mut self, force: bool) {
-        if let Some(review) = &mut self.review {
-            review.force_wear = force;
-        }
+    fn prepare(change: Change) -> InterbusJob {
+        InterbusJob::Prepare(change)
     }
 
-    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
-    pub(in crate::app) fn write(&mut self, shown: PlanId, services: &mut Services) {
-        if !self.session.is_ready() {
-            return;
-        }
-        let Some(review) = &mut self.review else { return };
-        let ReviewState::Ready(prepared) = &review.state else { return };
-        if prepared.plan.id() != shown {
-            return;
-        }
-        let prepared = prepared.clone();
-        let (consent, force_wear, what) = (Consent::to(shown), review.force_wear, review.what.clone());
-        let commit = Commit { prepared: (*prepared).clone(), consent, force_wear };
-        review.state = ReviewState::Writing(prepared.clone());
-        if !self.try_submit(InterbusJob::Commit(Box::new(commit)), services) {
-            if let Some(review) = &mut self.review {
-                review.state = ReviewState::Ready(prepared);
-            }
-            return;
-        }
-        self.log_begin(&what, &prepared, services);
+    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Interbus>) -> InterbusJob {
+        InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
     }
 
-    fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
-        let operations = prepared.plan.ops.iter().map(|op| explain::interbus::op(op).item);
-        let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
-        services.note(Severity::Note, vec![text], Some(&self.session.name()));
-    }
-
-    /// Closes the review; what is being written goes on, and its review stays.
-    pub(in crate::app) fn close_review(&mut self) {
-        let Some(review) = &self.review else { return };
-        if review.is_writing() {
-            return;
-        }
-        if review.is_planning()
-            && let Some(line) = &mut self.session.line
-        {
-            line.stop();
-        }
-        self.review = None;
-    }
-
-    /// A plan is there.
-    pub(super) fn planned(&mut self, prepared: Box<Prepared>) {
-        if let Some(review) = &mut self.review {
-            review.state = ReviewState::Ready(prepared);
-        }
-    }
-
-    /// A plan was carried out: what it changed is read again.
-    pub(super) fn committed(&mut self, committed: Committed, services: &mut Services) {
-        let (severity, texts) = told::<Interbus>(&committed);
-        services.tell(severity, texts, Some(&self.session.name()));
+    fn forget_steps(&mut self) {
         self.staged.forget_steps();
-        let mut programs = None;
-        if let Some(review) = &mut self.review
-            && let ReviewState::Writing(prepared) = &review.state
-        {
-            programs = changed_by(&prepared.plan);
-            review.state = ReviewState::Done(prepared.clone(), committed);
+    }
+
+    fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
+        if !self.is_dirty() {
+            self.session.tell_of_another(&prepared.identity.serial_number, services);
         }
+    }
+
+    fn reads_again(&mut self) {
+        let programs = self.review.as_ref().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
-        self.submit(InterbusJob::Survey, services);
-    }
-
-    /// A plan, or carrying it out, has failed or was ended; true where that stands where it was asked for.
-    pub(super) fn write_failed(&mut self, error: &JobError, texts: &[Text]) -> bool {
-        let begun = matches!(error, JobError::Interrupted { .. });
-        match &mut self.review {
-            Some(review) if review.is_planning() || review.is_writing() => {
-                let programs = match &review.state {
-                    ReviewState::Writing(prepared) if begun => Some(changed_by(&prepared.plan)),
-                    _ => None,
-                };
-                review.fail(texts.to_vec(), begun);
-                if let Some(programs) = programs {
-                    self.read_after = programs.unwrap_or_else(|| self.known_programs());
-                }
-                true
-            }
-            _ => false,
-        }
-    }
-
-    /// The link is gone while something was written.
-    pub(super) fn write_lost(&mut self, why: &Text) {
-        if let Some(review) = self.review.as_mut().filter(|review| review.is_writing()) {
-            review.fail(vec![why.clone()], true);
-        }
     }
 }
 

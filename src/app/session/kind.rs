@@ -2,7 +2,7 @@
 
 use crate::app::action::{Attempt, Done};
 use crate::app::services::{JobEnd, Opener, World};
-use crate::app::session::DraftEdits;
+use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text};
 use crate::worker::{Device, Event, JobId, Session};
 
@@ -26,11 +26,52 @@ pub trait Kind: Device + Sized {
     /// What a task that opened a link, or could not, comes back with.
     fn opened(attempt: Attempt<Self>) -> Done;
 
-    /// What an event of a session that was let go says about the end of its job.
-    fn last_words(event: &Event<Self>) -> Option<LastWords>;
+    /// A job in words.
+    fn job(job: &Self::Job) -> Text;
+
+    /// A job changes the device's memory.
+    fn writes(_job: &Self::Job) -> bool {
+        false
+    }
+
+    /// The job that reads what there is to be seen of the device.
+    fn survey() -> Self::Job;
 
     /// A step of a job in words.
     fn doing(what: &Self::Doing) -> Text;
+
+    /// What a job that writes came to; `None` of any other.
+    fn told(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
+        None
+    }
+
+    /// Why a job ended early, and what to do.
+    fn why(error: &Self::Error) -> Vec<Text>;
+
+    /// The wire itself failed, so that nothing more can be asked over it: why.
+    fn loss(error: &Self::Error) -> Option<Text>;
+
+    /// Something was written before it ended.
+    fn has_begun(_error: &Self::Error) -> bool {
+        false
+    }
+
+    /// What an event of a session that was let go says about the end of its job.
+    fn last_words(event: &Event<Self>) -> Option<LastWords> {
+        let (job, end, (severity, texts)) = match event {
+            Event::Finished(job, output) => {
+                let told = Self::told(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
+                (job, JobEnd::Done, told)
+            }
+            Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::why(error))),
+            Event::Failed(job, error) => {
+                let texts = Self::why(error);
+                (job, JobEnd::Failed(first(&texts)), (Severity::Error, texts))
+            }
+            _ => return None,
+        };
+        Some(LastWords { job: *job, end, severity, texts })
+    }
 }
 
 /// How the last job of a session that was let go ended.

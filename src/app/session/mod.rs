@@ -4,7 +4,9 @@
 mod drafted;
 mod drafts;
 mod kind;
+mod memory;
 mod on_desk;
+mod on_line;
 
 use std::path::PathBuf;
 
@@ -12,7 +14,9 @@ pub(in crate::app) use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
 pub(in crate::app) use kind::{Kind, LastWords};
+pub(in crate::app) use memory::{Agreed, WithMemory};
 pub(in crate::app) use on_desk::OnDesk;
+pub(in crate::app) use on_line::{Cut, OnLine, first};
 
 use super::action::Opened;
 use super::leaving::Leaver;
@@ -248,6 +252,33 @@ impl<D: Kind> Session<D> {
         }
     }
 
+    /// The link is open, and the device does not answer: why, and what to do.
+    pub(in crate::app) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
+        self.phase = Phase::Silent(first(&why));
+        services.log.settle("session.not_connected", Some(&self.name()));
+        services.note(Severity::Error, why, Some(&self.name()));
+    }
+
+    /// Tells of this device; in the log alone what stands where it was asked for.
+    pub(in crate::app) fn say(
+        &self,
+        severity: Severity,
+        texts: Vec<Text>,
+        stands_there: bool,
+        services: &mut Services,
+    ) {
+        match stands_there {
+            true => services.note(severity, texts, Some(&self.name())),
+            false => services.tell(severity, texts, Some(&self.name())),
+        }
+    }
+
+    /// Another device was read than the one before.
+    pub(in crate::app) fn tell_of_another(&self, serial: &str, services: &mut Services) {
+        let text = Text::new("session.other_encoder").with("serial", serial);
+        services.tell(Severity::Warning, vec![text], Some(&self.name()));
+    }
+
     /// Polling has ended by itself: why, and whether the device says nothing at all. One that was wished since goes on.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
@@ -261,8 +292,8 @@ impl<D: Kind> Session<D> {
     }
 
     /// Starts a job, or says why not and gives false.
-    pub(in crate::app) fn submit(&mut self, job: D::Job, what: Text, writes: bool, services: &mut Services) -> bool {
-        let name = self.name();
+    pub(in crate::app) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
+        let (name, what, writes) = (self.name(), D::job(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
             services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
             return false;

@@ -9,10 +9,10 @@ use super::action::{Action, Try};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
-use super::{Done, strip, words};
+use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
-use crate::app::services::{JobEnd, Services};
-use crate::app::session::Source;
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Source};
 use crate::app::{Severity, Text, explain};
 use crate::profile::{Body, Document};
 use crate::protocol::ssi::{find, frame_bits};
@@ -156,12 +156,6 @@ impl Encoder {
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Starts a job, or says why not.
-    pub(super) fn submit(&mut self, job: SsiJob, services: &mut Services) {
-        let what = words::job(&job);
-        self.session.submit(job, what, false, services);
-    }
-
     /// Looks for the layout of the words that were read last.
     fn find_live(&mut self, services: &mut Services) {
         let clocks = self.clocks();
@@ -244,22 +238,5 @@ impl Encoder {
             }
         };
         self.session.write_document(path, document, Vec::new(), services);
-    }
-
-    /// The connection is gone; what is known and designed stays.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
-        self.take_samples_and_frames();
-        self.forget_line();
-        self.session.lose(why, services);
-    }
-
-    /// Lets its thread go; what runs ends as `end` says.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        self.forget_line();
-        self.session.let_go(end, services);
-    }
-
-    fn forget_line(&mut self) {
-        (self.motor, self.told, self.identity) = (None, None, None);
     }
 }

@@ -4,6 +4,7 @@ use super::outcome::may_read;
 use super::{Action, Slot};
 use crate::app::hiperface::Encoder;
 use crate::app::services::Services;
+use crate::app::session::{OnLine, WithMemory};
 use crate::app::{Severity, Text};
 use crate::worker::hiperface::{Change, HiperfaceJob};
 

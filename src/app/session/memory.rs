@@ -1,0 +1,221 @@
+//! A device whose memory is written through a review: from a wish to a plan, from the plan and the consent to it to the job
+//! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
+
+use super::{Cut, Kind, OnDesk, OnLine};
+use crate::app::review::{Permit, Review, ReviewState, Reviewed, told};
+use crate::app::services::Services;
+use crate::app::{Severity, Text};
+use crate::profile::{Consent, PlanId};
+use crate::worker::{self, Device};
+
+type Job<T> = <<T as OnDesk>::Device as Device>::Job;
+type Error<T> = <<T as OnDesk>::Device as Device>::Error;
+type Change<T> = <<T as OnDesk>::Device as Reviewed>::Change;
+type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
+type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
+
+/// A plan that a person consented to.
+pub(in crate::app) struct Agreed<K: Reviewed> {
+    /// As it was shown.
+    pub(in crate::app) prepared: K::Prepared,
+    /// The consent to it.
+    pub(in crate::app) consent: Consent,
+    /// Write although the device counts as worn.
+    pub(in crate::app) force_wear: bool,
+}
+
+/// Whoever has a memory.
+pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
+    /// A write on its way.
+    fn review(&self) -> Option<&Review<Self::Device>>;
+
+    /// The same, to be changed.
+    fn review_mut(&mut self) -> &mut Option<Review<Self::Device>>;
+
+    /// What is wanted was made for another device than this one.
+    fn is_for_another(&self, change: &Change<Self>) -> bool;
+
+    /// A plan was made for another device than the one that was read before.
+    fn is_of_another(&self, prepared: &Prepared<Self>) -> bool;
+
+    /// The job that makes a plan.
+    fn prepare(change: Change<Self>) -> Job<Self>;
+
+    /// The job that carries a plan out.
+    fn commit(&mut self, agreed: Agreed<Self::Device>) -> Job<Self>;
+
+    /// The edits were written: what led to them cannot be undone any more.
+    fn forget_steps(&mut self);
+
+    /// A review is about to stand over it.
+    fn hands_off(&mut self) {}
+
+    /// Why a change cannot be, as far as that is known before the device is asked.
+    fn objection(&self, _change: &Change<Self>) -> Option<Text> {
+        None
+    }
+
+    /// Why a plan cannot be carried out.
+    fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
+        None
+    }
+
+    /// A plan was made for another device, and is given up.
+    fn tell_of_another(&self, _prepared: &Prepared<Self>, _services: &mut Services) {}
+
+    /// What the plan that is being carried out changes is to be read again, however that ends.
+    fn reads_again(&mut self) {}
+
+    /// The plan that is being carried out is done.
+    fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
+
+    /// A write has begun: what it changes.
+    fn log_begin(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
+        let ops = &Self::Device::plan(prepared).ops;
+        let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
+        let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
+        services.note(Severity::Note, vec![text], Some(&self.session().name()));
+    }
+
+    /// Makes the plan of a change, to be looked at.
+    fn plan(&mut self, change: Change<Self>, services: &mut Services) {
+        self.hands_off();
+        if let Some(why) = self.session().why_not_ready() {
+            return services.tell(Severity::Warning, vec![why], Some(&self.session().name()));
+        }
+        let review = Review::new(change.clone(), self.is_for_another(&change));
+        let objection = self.objection(&change);
+        let review = self.review_mut().insert(review);
+        if let Some(why) = objection {
+            return review.fail(vec![why], false);
+        }
+        if !self.try_submit(Self::prepare(change), services) {
+            *self.review_mut() = None;
+        }
+    }
+
+    /// Makes the plan again with one of the review's toggles the other way round.
+    fn plan_with(&mut self, permit: Permit, services: &mut Services) {
+        if self.session().is_busy() {
+            return;
+        }
+        if let Some(change) = self.review().and_then(|review| review.toggled(permit)) {
+            self.plan(change, services);
+        }
+    }
+
+    /// Whether it is written although the device counts as worn.
+    fn force_wear(&mut self, force: bool) {
+        if let Some(review) = self.review_mut() {
+            review.force_wear = force;
+        }
+    }
+
+    /// A plan is there. For a device that was exchanged behind the line it is none: what was wanted for the one before is
+    /// not for it.
+    fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
+        if self.is_of_another(&prepared) {
+            *self.review_mut() = None;
+            self.tell_of_another(&prepared, services);
+            return self.submit(Self::Device::survey(), services);
+        }
+        let objection = self.objection_to(&prepared);
+        let Some(review) = self.review_mut() else { return };
+        match objection {
+            None => review.state = ReviewState::Ready(prepared),
+            Some(why) => review.fail(vec![why], false),
+        }
+    }
+
+    /// Carries out the plan that was drawn.
+    fn write(&mut self, shown: PlanId, services: &mut Services) {
+        if let Some(agreed) = self.agree(shown) {
+            let job = self.commit(agreed);
+            self.begin_write(job, services);
+        }
+    }
+
+    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
+    fn agree(&self, shown: PlanId) -> Option<Agreed<Self::Device>> {
+        let review = self.review().filter(|_| self.session().is_ready())?;
+        let ReviewState::Ready(prepared) = &review.state else { return None };
+        let is_shown = Self::Device::plan(prepared).id() == shown;
+        is_shown.then(|| Agreed {
+            prepared: (**prepared).clone(),
+            consent: Consent::to(shown),
+            force_wear: review.force_wear,
+        })
+    }
+
+    /// Starts the job that carries the plan in the review out; false where it cannot be started.
+    fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
+        let Some(review) = self.review_mut() else { return false };
+        let ReviewState::Ready(prepared) = &review.state else { return false };
+        let (prepared, what) = (prepared.clone(), review.what.clone());
+        review.state = ReviewState::Writing(prepared.clone());
+        let begins = self.try_submit(job, services);
+        if begins {
+            self.log_begin(&what, &prepared, services);
+        } else if let Some(review) = self.review_mut() {
+            review.state = ReviewState::Ready(prepared);
+        }
+        begins
+    }
+
+    /// Closes the review; what is being written goes on, and its review stays.
+    fn close_review(&mut self) {
+        let Some(review) = self.review().filter(|review| !review.is_writing()) else { return };
+        let is_planning = review.is_planning();
+        if let Some(line) = self.session_mut().line.as_mut().filter(|_| is_planning) {
+            line.stop();
+        }
+        *self.review_mut() = None;
+    }
+
+    /// A plan was carried out: the device is read again.
+    fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
+        let (severity, texts) = told::<Self::Device>(&committed);
+        services.tell(severity, texts, Some(&self.session().name()));
+        self.forget_steps();
+        self.reads_again();
+        self.carried_out(&committed, services);
+        if let Some(review) = self.review_mut()
+            && let ReviewState::Writing(prepared) = &review.state
+        {
+            review.state = ReviewState::Done(prepared.clone(), committed);
+        }
+        self.submit(Self::Device::survey(), services);
+    }
+
+    /// A plan, or carrying it out, has ended early; true where the review says so. One that was given up while it was made
+    /// is no review any more.
+    fn cut_write(&mut self, how: Cut<Error<Self>>, texts: &[Text]) -> bool {
+        let Some(review) = self.review() else { return false };
+        let begun = match (how, review.is_planning(), review.is_writing()) {
+            (_, false, false) | (Cut::Lost, _, false) => return false,
+            (Cut::Cancelled(_), true, _) => {
+                *self.review_mut() = None;
+                return false;
+            }
+            (Cut::Lost, ..) => true,
+            (Cut::Failed(error) | Cut::Cancelled(error), ..) => {
+                let begun = Self::Device::has_begun(error);
+                if begun {
+                    self.reads_again();
+                }
+                begun
+            }
+        };
+        if let Some(review) = self.review_mut() {
+            review.fail(texts.to_vec(), begun);
+        }
+        true
+    }
+
+    /// A plan that was not begun is none any more.
+    fn forget_plan(&mut self) {
+        if self.review().is_some_and(Review::is_plan) {
+            *self.review_mut() = None;
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! What a line tells: samples, results of jobs, why one ended early, and its loss. What is made of a result is a kind's own
+//! matter; how the end of a job is told is the same for all.
+
+use super::{Kind, OnDesk};
+use crate::app::line::Line;
+use crate::app::services::{JobEnd, Services};
+use crate::app::{Severity, Text, explain};
+use crate::worker::{Device, Event, JobId};
+
+type Job<T> = <<T as OnDesk>::Device as Device>::Job;
+type Output<T> = <<T as OnDesk>::Device as Device>::Output;
+type Error<T> = <<T as OnDesk>::Device as Device>::Error;
+type Remark<T> = <<T as OnDesk>::Device as Device>::Remark;
+type Doing<T> = <<T as OnDesk>::Device as Device>::Doing;
+
+/// How what was asked for on a line came to an early end.
+pub(in crate::app) enum Cut<'e, E> {
+    /// As the user wished.
+    Cancelled(&'e E),
+    /// It failed.
+    Failed(&'e E),
+    /// The line is gone.
+    Lost,
+}
+
+/// Whoever is at the end of a line.
+pub(in crate::app) trait OnLine: OnDesk {
+    /// Takes what was sampled and what has passed since the last time.
+    fn take_samples_and_frames(&mut self);
+
+    /// What the device says on the way.
+    fn remarked(&mut self, remark: Remark<Self>, services: &mut Services);
+
+    /// A job is done.
+    fn finished(&mut self, output: Output<Self>, services: &mut Services);
+
+    /// The link is open, and nobody answers.
+    fn is_silence(&self, error: &Error<Self>) -> bool;
+
+    /// What was asked for on the line does not come any more.
+    fn forget_asked(&mut self);
+
+    /// The line is about to be let go.
+    fn line_ends(&mut self) {}
+
+    /// The job that runs tells a step.
+    fn progressed(&mut self, _what: Doing<Self>) {}
+
+    /// The result of a job is an answer of the device.
+    fn is_answer(_output: &Output<Self>) -> bool {
+        true
+    }
+
+    /// What was asked for has ended early; true where that stands where it was asked for.
+    fn cut_off(&mut self, _how: Cut<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
+        false
+    }
+
+    /// Polling has ended by itself.
+    fn polling_ends(&mut self) {}
+
+    /// Starts a job, or says why not and gives false.
+    fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
+        self.session_mut().submit(job, services)
+    }
+
+    /// Starts a job, or says why not.
+    fn submit(&mut self, job: Job<Self>, services: &mut Services) {
+        self.try_submit(job, services);
+    }
+
+    /// Takes what has come over the line since the last time.
+    fn pump(&mut self, services: &mut Services) {
+        self.hear(services);
+    }
+
+    /// The same, for a kind that does more at such a time.
+    fn hear(&mut self, services: &mut Services) {
+        // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
+        self.take_samples_and_frames();
+        while let Some(event) = self.session_mut().line.as_mut().and_then(Line::next) {
+            self.take(event, services);
+        }
+        if self.session().line.as_ref().is_some_and(Line::is_dead) {
+            self.lose(Text::new("session.ended"), services);
+        }
+    }
+
+    /// Takes one thing that the line tells.
+    fn take(&mut self, event: Event<Self::Device>, services: &mut Services) {
+        match event {
+            Event::Started(_) => {}
+            Event::Progress(_, progress) => self.progressed(progress.what),
+            Event::Remark(remark) => self.remarked(remark, services),
+            Event::Finished(id, output) => {
+                services.job_ends(self.session().id, id, JobEnd::Done);
+                if Self::is_answer(&output) {
+                    self.session_mut().answers();
+                }
+                self.finished(*output, services);
+            }
+            Event::Failed(id, error) => self.failed(id, &error, services),
+            Event::Cancelled(id, error) => self.cancelled(id, &error, services),
+            Event::PollFailed(error) => self.poll_failed(&error, services),
+            Event::Lost(error) => self.lose(explain::link(&error), services),
+        }
+    }
+
+    /// A sample failed, and polling is off.
+    fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
+        self.polling_ends();
+        match Self::Device::loss(error) {
+            Some(why) => self.lose(why, services),
+            None => {
+                let is_silent = self.is_silence(error);
+                self.session_mut().polling_failed(Self::Device::why(error), is_silent, services);
+            }
+        }
+    }
+
+    /// A job ended as the user wished; what was written until then is to be looked at.
+    fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
+        services.job_ends(self.session().id, id, JobEnd::Cancelled);
+        self.session_mut().save_to = None;
+        let (texts, begun) = (Self::Device::why(error), Self::Device::has_begun(error));
+        let stands_there = self.cut_off(Cut::Cancelled(error), &texts, services);
+        let severity = if begun { Severity::Warning } else { Severity::Note };
+        self.session().say(severity, texts, stands_there, services);
+        if begun {
+            self.submit(Self::Device::survey(), services);
+        }
+    }
+
+    /// A job failed.
+    fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
+        let texts = Self::Device::why(error);
+        services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
+        let stands_there = self.cut_off(Cut::Failed(error), &texts, services);
+        self.session_mut().save_to = None;
+        match Self::Device::loss(error) {
+            Some(why) => self.lose(why, services),
+            None if self.is_silence(error) || self.session().just_connected => {
+                self.session_mut().fall_silent(texts, services);
+            }
+            None => {
+                self.session_mut().answers();
+                self.session().say(Severity::Error, texts, stands_there, services);
+                if Self::Device::has_begun(error) {
+                    self.submit(Self::Device::survey(), services);
+                }
+            }
+        }
+    }
+
+    /// The connection is gone; what is known and edited stays.
+    fn lose(&mut self, why: Text, services: &mut Services) {
+        self.line_ends();
+        // What passed at last says most about why it was the last.
+        self.take_samples_and_frames();
+        self.forget_asked();
+        self.cut_off(Cut::Lost, std::slice::from_ref(&why), services);
+        self.session_mut().lose(why, services);
+    }
+
+    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.
+    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.line_ends();
+        self.forget_asked();
+        self.session_mut().let_go(end, services);
+    }
+}
+
+/// The one sentence that stands where there is room for one.
+pub(in crate::app) fn first(texts: &[Text]) -> Text {
+    texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
+}
