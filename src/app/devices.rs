@@ -18,7 +18,7 @@ use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
 use super::services::{JobEnd, Services};
-use super::session::{DraftDone, Drafted, Listed, OnLine, Opening, Phase, Source, WithMemory};
+use super::session::{DraftDone, Drafted, Listed, OnLine, Opening, Phase, Saved, Source, WithMemory};
 use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use jiff::Timestamp;
+
 use super::action::{Action, Done, Known, ReadError};
 use super::session::{Source, file_key};
 use super::studio::Studio;
 use super::{AnyDevice, Severity, Text, explain};
-use crate::profile::Document;
+use crate::profile::{Body, Document};
 use crate::protocol::biss::Descriptions;
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{Store, read_file};
@@ -42,6 +44,13 @@ impl Studio {
 /// A table, and no profile.
 pub(super) fn is_capture(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+}
+
+/// What was read just now, as a profile.
+pub(super) fn document_of(body: Body) -> Document {
+    let now = Timestamp::now();
+    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
+    Document::new(seconds.to_string(), body)
 }
 
 /// Reads a profile, as a task.

@@ -1,19 +1,15 @@
 //! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
 
-use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::action::{FileQuestion, ReadError};
+use crate::app::Text;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Source, WithMemory};
-use crate::app::{Severity, Text};
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::profile::Body;
 use crate::profile::biss::{BissProfile, RegisterRange};
-use crate::profile::{Body, Document};
 use crate::protocol::biss::{Area, Register, RegisterAddress};
 use crate::worker::biss::BissJob;
 
@@ -38,9 +34,7 @@ impl Encoder {
             Action::Check => self.submit(BissJob::Check, services),
             Action::ReadPosition => self.submit(BissJob::Position, services),
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.session.line {
-                    let begins = line.polling().is_none();
-                    line.poll(interval);
+                if let Some(begins) = self.session.poll(interval) {
                     self.record.poll(interval, begins);
                 }
             }
@@ -68,20 +62,10 @@ impl Encoder {
                     motor.set_rpm(rpm);
                 }
             }
-            Action::AskSave => {
-                let suggested = self.session.suggested_file();
-                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
-            }
+            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => match self.key() {
-                Some(of) => self.session.read_backup(of, path, services),
-                None => self.refuse(Text::new("session.not_connected"), services),
-            },
+            Action::Restore(path) => self.read_backup(path, services),
         }
-    }
-
-    fn refuse(&self, text: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
     /// Watches a register beside the position, or no more.
@@ -141,61 +125,17 @@ impl Encoder {
 
     fn put(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
         if self.session.is_writing() {
-            return self.refuse(Text::new("session.busy"), services);
+            return self.session.refuse(Text::new("session.busy"), services);
         }
         let Some(description) = self.description.clone() else { return };
         if let Err(error) = self.memory.put(&description, start, bytes) {
-            self.refuse(words::not_edited(error), services);
-        }
-    }
-
-    /// A connected encoder is read again for it; a profile is written as it is edited.
-    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
-        match &self.session.source {
-            Source::Link(_) | Source::New { .. } => {
-                if self.try_submit(BissJob::Save, services) {
-                    self.session.save_to = Some(path);
-                }
-            }
-            Source::File { document, .. } => {
-                let mut document = (**document).clone();
-                if let Some(profile) = self.wanted_profile() {
-                    document.body = Body::Biss(profile);
-                }
-                self.session.write_document(path, document, Vec::new(), services);
-            }
+            self.session.refuse(words::not_edited(error), services);
         }
     }
 
     /// A profile was read for a file.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
-        let Some(path) = self.session.save_to.take() else { return };
-        let mut remarks = Vec::new();
-        // The profile holds what the encoder has.
-        let edits = self.memory.edits().len();
-        if edits > 0 {
-            remarks.push(Text::new("session.saved_without").with("count", edits));
-        }
-        self.session.write_document(path, document_of(profile), remarks, services);
+        let edits = self.is_dirty().then(|| self.edits());
+        self.session.write_read(Body::Biss(profile), edits, Vec::new(), services);
     }
-
-    /// A backup was read, or not.
-    pub(in crate::app) fn take_backup(
-        &mut self,
-        path: &Path,
-        result: Result<Box<Document>, ReadError>,
-        services: &mut Services,
-    ) {
-        match result.and_then(|document| document.body.into_biss().map_err(ReadError::Profile)) {
-            Ok(profile) => self.plan_restore(profile, services),
-            Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
-    }
-}
-
-/// A profile of now.
-pub(super) fn document_of(profile: BissProfile) -> Document {
-    let now = Timestamp::now();
-    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    Document::new(seconds.to_string(), Body::Biss(profile))
 }

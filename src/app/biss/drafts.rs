@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, OnDesk, Session};
+use crate::app::session::{Drafted, OnDesk, Saved, Session};
 use crate::profile::Document;
 use crate::worker::biss::Biss;
 

@@ -12,7 +12,7 @@ use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Session, Source};
+use crate::app::session::{Drafted, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::biss::{Identity, Status, Survey};
@@ -21,8 +21,7 @@ use crate::profile::biss::{BissProfile, ProfileIdentity};
 use crate::profile::{Body, Document};
 use crate::protocol::biss::{Description, Descriptions, Eds, EdsBank, EdsError};
 use crate::sim::biss::Motor;
-use crate::store::DeviceKey;
-use crate::worker::biss::{Biss, device_key};
+use crate::worker::biss::Biss;
 
 /// A BiSS encoder, or a profile of one.
 pub struct Encoder {
@@ -246,17 +245,6 @@ impl Encoder {
         self.review = None;
         self.guide = None;
         self.refusal = None;
-    }
-
-    /// Reads the list of backups and writes again, on a thread.
-    pub(super) fn list_backups(&mut self, services: &Services) {
-        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
-        self.session.list_backups(key, services);
-    }
-
-    /// How the logbook knows it.
-    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 }
 

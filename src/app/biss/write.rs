@@ -7,14 +7,15 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Cut, Kind, WithMemory};
+use crate::app::session::{Agreed, Cut, Kind, Saved, WithMemory};
 use crate::app::{Severity, Text};
 use crate::device::biss::Error;
 use crate::device::biss::procedure::{Answer, Failure, Task, Unattended};
 use crate::device::biss::write::Left;
-use crate::profile::PlanId;
 use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device};
-use crate::worker::biss::{Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared};
+use crate::profile::{Body, PlanId, ProfileError};
+use crate::store::DeviceKey;
+use crate::worker::biss::{Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key};
 
 /// How long a shaft that has to stand, with nobody asked to stop it, is waited for.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
@@ -152,6 +153,25 @@ impl WithMemory for Encoder {
 
     fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         self.log_operations(what, prepared, services);
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> BissJob {
+        BissJob::Save
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        self.wanted_profile().map(Body::Biss)
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_biss()?, services);
+        Ok(())
     }
 }
 

@@ -1,21 +1,16 @@
 //! What the user asks of a device and its drives, carried out: edits and motion at once, everything else as a job on its line
 //! or a task.
 
-use std::path::{Path, PathBuf};
-
-use jiff::Timestamp;
-
 use super::action::{Action, Motor};
 use super::staged::Edit;
 use super::unit::Unit;
 use super::words;
-use crate::app::action::{FileQuestion, ReadError};
 use crate::app::services::Services;
-use crate::app::session::{Source, WithMemory};
+use crate::app::session::{Saved, WithMemory};
 use crate::app::{Severity, Text};
 use crate::device::hiperdrive::dead_man::Wish;
+use crate::profile::Body;
 use crate::profile::hiperdrive::HiperdriveProfile;
-use crate::profile::{Body, Document};
 use crate::worker::hiperdrive::HiperdriveJob;
 
 impl Unit {
@@ -39,9 +34,7 @@ impl Unit {
                 self.submit(HiperdriveJob::Position(self.drive()), services);
             }
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.session.line {
-                    let begins = line.polling().is_none();
-                    line.poll(interval);
+                if let Some(begins) = self.session.poll(interval) {
                     self.record.poll(interval, begins);
                 }
             }
@@ -84,15 +77,9 @@ impl Unit {
             }
             Action::Drive(motor) => self.drive_by(motor, services),
             Action::Axis(action) => self.act_axis(action, services),
-            Action::AskSave => {
-                let suggested = self.session.suggested_file();
-                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
-            }
+            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => match self.key() {
-                Some(of) => self.session.read_backup(of, path, services),
-                None => self.refuse(Text::new("session.not_connected"), services),
-            },
+            Action::Restore(path) => self.read_backup(path, services),
         }
     }
 
@@ -154,59 +141,16 @@ impl Unit {
         };
     }
 
-    pub(super) fn refuse(&self, text: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
-    }
-
     /// Starts a job, or says why not and gives false.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
         self.session.submit(job, services)
-    }
-
-    /// A connected device is read again for it; a profile is written as it is edited.
-    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
-        match &self.session.source {
-            Source::Link(_) | Source::New { .. } => {
-                if self.submit(HiperdriveJob::Save, services) {
-                    self.session.save_to = Some(path);
-                }
-            }
-            Source::File { document, .. } => {
-                let mut document = (**document).clone();
-                if let Some(profile) = self.wanted_profile() {
-                    document.body = Body::Hiperdrive(Box::new(profile));
-                }
-                self.session.write_document(path, document, Vec::new(), services);
-            }
-        }
     }
 
     /// A profile was read for a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);
-        let Some(path) = self.session.save_to.take() else { return };
-        let mut remarks = Vec::new();
-        // The profile holds what the device has.
-        if self.is_dirty() {
-            remarks.push(Text::new("session.saved_without").with("count", self.edits()));
-        }
-        let now = Timestamp::now();
-        let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-        let document = Document::new(seconds.to_string(), Body::Hiperdrive(Box::new(profile)));
-        self.session.write_document(path, document, remarks, services);
-    }
-
-    /// A backup was read, or not.
-    pub(in crate::app) fn take_backup(
-        &mut self,
-        path: &Path,
-        result: Result<Box<Document>, ReadError>,
-        services: &mut Services,
-    ) {
-        match result.and_then(|document| document.body.into_hiperdrive().map_err(ReadError::Profile)) {
-            Ok(profile) => self.plan_restore(profile, services),
-            Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
+        let edits = self.is_dirty().then(|| self.edits());
+        self.session.write_read(Body::Hiperdrive(Box::new(profile)), edits, Vec::new(), services);
     }
 }

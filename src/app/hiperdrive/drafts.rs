@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::staged::Kept;
 use super::unit::Unit;
-use crate::app::session::{Drafted, OnDesk, Session};
+use crate::app::session::{Drafted, OnDesk, Saved, Session};
 use crate::profile::Document;
 use crate::worker::hiperdrive::Hiperdrive;
 

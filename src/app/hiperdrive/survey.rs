@@ -5,7 +5,7 @@ use super::staged::is_editable;
 use super::unit::Unit;
 use crate::app::Text;
 use crate::app::services::Services;
-use crate::app::session::Drafted;
+use crate::app::session::{Drafted, Saved};
 use crate::device::hiperdrive::dead_man::Lock;
 use crate::device::hiperdrive::{Identity, Reading, Survey};
 use crate::profile::hiperdrive::Image;

@@ -23,8 +23,7 @@ use crate::protocol::hiperdrive::{
     Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
 use crate::sim::hiperdrive::Target;
-use crate::store::DeviceKey;
-use crate::worker::hiperdrive::{Hiperdrive, device_key};
+use crate::worker::hiperdrive::Hiperdrive;
 
 /// An adapter or a hub with its drives, or a profile of one.
 pub struct Unit {
@@ -295,16 +294,5 @@ impl Unit {
     pub(in crate::app) fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
         self.session.stop(services);
-    }
-
-    /// Reads the list of backups and writes again, on a thread.
-    pub(super) fn list_backups(&mut self, services: &Services) {
-        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
-        self.session.list_backups(key, services);
-    }
-
-    /// How the logbook knows it.
-    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 }

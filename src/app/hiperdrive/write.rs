@@ -3,10 +3,12 @@
 use super::review::Review;
 use super::unit::Unit;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, WithMemory};
+use crate::app::session::{Agreed, Saved, WithMemory};
 use crate::app::{Severity, Text};
 use crate::profile::hiperdrive::{HiperdriveProfile, RestoreOptions, check_device};
-use crate::worker::hiperdrive::{Change, Commit, Hiperdrive, HiperdriveJob, Prepared};
+use crate::profile::{Body, ProfileError};
+use crate::store::DeviceKey;
+use crate::worker::hiperdrive::{Change, Commit, Hiperdrive, HiperdriveJob, Prepared, device_key};
 
 impl Unit {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -65,5 +67,24 @@ impl WithMemory for Unit {
         if !self.is_dirty() {
             self.session.tell_of_another(&prepared.identity.serial_number, services);
         }
+    }
+}
+
+impl Saved for Unit {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> HiperdriveJob {
+        HiperdriveJob::Save
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::Hiperdrive(Box::new(self.wanted_profile()?)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_hiperdrive()?, services);
+        Ok(())
     }
 }

@@ -1,21 +1,16 @@
 //! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
 
-use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-use jiff::Timestamp;
 
 use super::action::Action;
 use super::encoder::Encoder;
 use super::rules;
 use super::write::with_options;
-use crate::app::action::{FileQuestion, ReadError};
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Source, WithMemory};
-use crate::app::{Severity, Text, explain};
-use crate::device::hiperface::{SaveOptions, Watch};
-use crate::profile::hiperface::{HiperfaceProfile, Item};
-use crate::profile::{Body, Document};
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::{Text, explain};
+use crate::device::hiperface::Watch;
+use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::LineSettings;
 use crate::worker::hiperface::HiperfaceJob;
 
@@ -35,9 +30,7 @@ impl Encoder {
                 self.submit(HiperfaceJob::Position(geometry), services);
             }
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.session.line {
-                    let begins = line.polling().is_none();
-                    line.poll(interval);
+                if let Some(begins) = self.session.poll(interval) {
                     self.record.poll(interval, begins);
                 }
             }
@@ -78,10 +71,7 @@ impl Encoder {
             Action::ForceWear(force) => self.force_wear(force),
             Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
-            Action::AskSave => {
-                services.file_question =
-                    Some(FileQuestion::Save { session: self.session.id, suggested: self.session.suggested_file() })
-            }
+            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
             Action::Commutation(action) => self.act_commutation(action, services),
             Action::Restore(path) => self.read_backup(path, services),
@@ -135,58 +125,7 @@ impl Encoder {
             put.map_err(|error| explain::hiperface::staged(&error, bytes.len(), address))
         });
         if let Err(text) = allowed {
-            services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+            self.session.refuse(text, services);
         }
     }
-
-    /// A connected encoder is read again for it; a profile is written as it is edited.
-    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
-        match &self.session.source {
-            Source::Link(_) | Source::New { .. } => {
-                if self.try_submit(HiperfaceJob::Save(SaveOptions::default()), services) {
-                    self.session.save_to = Some(path);
-                }
-            }
-            Source::File { document, .. } => {
-                let mut document = (**document).clone();
-                let Body::Hiperface(profile) = &mut document.body else { return };
-                profile.fields = self.staged.wanted();
-                profile.mark_mounting();
-                self.session.write_document(path, document, Vec::new(), services);
-            }
-        }
-    }
-
-    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
-        match self.key() {
-            Some(of) => self.session.read_backup(of, path, services),
-            None => {
-                let text = Text::new("session.not_connected");
-                services.tell(Severity::Error, vec![text], Some(&self.session.name()));
-            }
-        }
-    }
-
-    /// A backup was read, or not.
-    pub(in crate::app) fn take_backup(
-        &mut self,
-        path: &Path,
-        result: Result<Box<Document>, ReadError>,
-        services: &mut Services,
-    ) {
-        match result.and_then(|document| document.body.into_hiperface().map_err(ReadError::Profile)) {
-            Ok(profile) => self.plan_restore(profile, services),
-            Err(error) => {
-                let text = crate::app::documents::read_error(path, &error);
-                services.tell(Severity::Error, vec![text], Some(&self.session.name()));
-            }
-        }
-    }
-}
-
-/// A profile of now.
-pub(super) fn document_of(profile: HiperfaceProfile) -> Document {
-    let now = Timestamp::now();
-    let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-    Document::new(seconds.to_string(), Body::Hiperface(profile))
 }

@@ -10,7 +10,7 @@ use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Session, Source};
+use crate::app::session::{Drafted, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
@@ -19,8 +19,7 @@ use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
-use crate::store::DeviceKey;
-use crate::worker::hiperface::{Hiperface, device_key};
+use crate::worker::hiperface::Hiperface;
 
 /// An encoder, or a profile of one.
 pub struct Encoder {
@@ -242,16 +241,5 @@ impl Encoder {
         self.tried_code = None;
         self.commutation = Commutation::default();
         self.review = None;
-    }
-
-    /// Reads the list of backups and writes again, on a thread.
-    pub(super) fn list_backups(&mut self, services: &Services) {
-        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
-        self.session.list_backups(key, services);
-    }
-
-    /// How the logbook knows it.
-    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
-        self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 }

@@ -1,6 +1,5 @@
 //! What the line to an encoder tells: results of jobs, what the encoder says on the way, live samples, and its loss.
 
-use super::act::document_of;
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
@@ -11,6 +10,7 @@ use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
+use crate::profile::Body;
 use crate::profile::hiperface::{Item, Op};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::worker::hiperface::{
@@ -164,18 +164,12 @@ impl Encoder {
     }
 
     fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
-        let Some(path) = self.session.save_to.take() else { return };
-        let mut remarks = Vec::new();
-        // The profile holds what the encoder has.
-        let edits = self.staged.edits().count();
-        if edits > 0 {
-            remarks.push(Text::new("session.saved_without").with("count", edits));
-        }
+        let edits = self.is_dirty().then(|| self.edits());
         let locked = saved.locked.iter();
-        remarks.extend(
-            locked.map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number)),
-        );
-        self.session.write_document(path, document_of(saved.profile), remarks, services);
+        let remarks = locked
+            .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))
+            .collect();
+        self.session.write_read(Body::Hiperface(saved.profile), edits, remarks, services);
     }
 
     /// After a write that ended early, the session follows those operations that were carried out.

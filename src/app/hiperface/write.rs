@@ -5,10 +5,13 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, OnLine, WithMemory};
+use crate::app::session::{Agreed, OnLine, Saved, WithMemory};
 use crate::app::{Severity, Text};
+use crate::device::hiperface::SaveOptions;
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions, check_device};
-use crate::worker::hiperface::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared};
+use crate::profile::{Body, ProfileError};
+use crate::store::DeviceKey;
+use crate::worker::hiperface::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
 
 impl Encoder {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -89,6 +92,27 @@ impl WithMemory for Encoder {
         if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
             self.plan_again(change, services);
         }
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> HiperfaceJob {
+        HiperfaceJob::Save(SaveOptions::default())
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        let mut profile = self.wanted_profile()?;
+        profile.mark_mounting();
+        Some(Body::Hiperface(profile))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_hiperface()?, services);
+        Ok(())
     }
 }
 

@@ -1,18 +1,14 @@
 //! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
 
-use std::path::{Path, PathBuf};
-
-use jiff::Timestamp;
-
 use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
-use crate::app::action::{FileQuestion, ReadError};
+use crate::app::Text;
+use crate::app::action::FileQuestion;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Source, WithMemory};
-use crate::app::{Severity, Text};
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::profile::Body;
 use crate::profile::interbus::InterbusProfile;
-use crate::profile::{Body, Document};
 use crate::protocol::interbus::ProgramNumber;
 use crate::worker::interbus::InterbusJob;
 
@@ -34,9 +30,7 @@ impl Encoder {
             Action::Check => self.submit(InterbusJob::Check, services),
             Action::ReadPosition => self.submit(InterbusJob::Position, services),
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.session.line {
-                    let begins = line.polling().is_none();
-                    line.poll(interval);
+                if let Some(begins) = self.session.poll(interval) {
                     self.record.poll(interval, begins);
                 }
             }
@@ -78,15 +72,9 @@ impl Encoder {
                     motor.set_rpm(rpm);
                 }
             }
-            Action::AskSave => {
-                let suggested = self.session.suggested_file();
-                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
-            }
+            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => match self.key() {
-                Some(of) => self.session.read_backup(of, path, services),
-                None => self.refuse(Text::new("session.not_connected"), services),
-            },
+            Action::Restore(path) => self.read_backup(path, services),
         }
     }
 
@@ -97,59 +85,16 @@ impl Encoder {
         };
     }
 
-    pub(super) fn refuse(&self, text: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
-    }
-
-    /// A connected encoder is read again for it; a profile is written as it is edited.
-    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
-        match &self.session.source {
-            Source::Link(_) | Source::New { .. } => {
-                if self.try_submit(InterbusJob::Save { programs: true }, services) {
-                    self.session.save_to = Some(path);
-                }
-            }
-            Source::File { document, .. } => {
-                let mut document = (**document).clone();
-                if let Some(profile) = self.wanted_profile() {
-                    document.body = Body::Interbus(Box::new(profile));
-                }
-                self.session.write_document(path, document, Vec::new(), services);
-            }
-        }
-    }
-
     /// A profile was read for a file: with the names that its cams have here.
     pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
         let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
         self.staged.refresh_programs(&programs, profile.image.shift);
-        let Some(path) = self.session.save_to.take() else { return };
         if let Some(wanted) = self.staged.wanted() {
             profile.names = wanted.names.clone();
         }
-        let mut remarks = Vec::new();
-        // The profile holds what the encoder has.
-        if self.is_dirty() {
-            remarks.push(Text::new("session.saved_without").with("count", self.edits()));
-        }
-        let now = Timestamp::now();
-        let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-        let document = Document::new(seconds.to_string(), Body::Interbus(Box::new(profile)));
-        self.session.write_document(path, document, remarks, services);
-    }
-
-    /// A backup was read, or not.
-    pub(in crate::app) fn take_backup(
-        &mut self,
-        path: &Path,
-        result: Result<Box<Document>, ReadError>,
-        services: &mut Services,
-    ) {
-        match result.and_then(|document| document.body.into_interbus().map_err(ReadError::Profile)) {
-            Ok(profile) => self.plan_restore(profile, services),
-            Err(error) => self.refuse(crate::app::documents::read_error(path, &error), services),
-        }
+        let edits = self.is_dirty().then(|| self.edits());
+        self.session.write_read(Body::Interbus(Box::new(profile)), edits, Vec::new(), services);
     }
 
     /// Everything that there is to be read of a virtual encoder is read by itself; false where there is nothing more.

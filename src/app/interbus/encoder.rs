@@ -13,7 +13,7 @@ use super::trace::Meaning;
 use super::words;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::interbus::{Handshake, Identity, Reading, Survey};
@@ -22,8 +22,7 @@ use crate::profile::interbus::{InterbusProfile, ProfileIdentity, Scale};
 use crate::profile::{Body, Document};
 use crate::protocol::interbus::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
 use crate::sim::Motor;
-use crate::store::DeviceKey;
-use crate::worker::interbus::{Interbus, device_key};
+use crate::worker::interbus::Interbus;
 
 use super::said::Known;
 
@@ -292,17 +291,6 @@ impl Encoder {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);
         self.handshake.drain(..surplus);
-    }
-
-    /// Reads the list of backups and writes again, on a thread.
-    pub(super) fn list_backups(&mut self, services: &Services) {
-        let Some(key) = self.key().filter(|_| self.session.phase != Phase::Offline) else { return };
-        self.session.list_backups(key, services);
-    }
-
-    /// How the logbook knows it.
-    pub(in crate::app) fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 }
 

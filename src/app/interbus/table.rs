@@ -90,7 +90,9 @@ impl Encoder {
                 let text = Text::new("session.saved").with("path", path.display());
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
             }
-            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => self.refuse(explain::file(&error), services),
+            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
+                self.session.refuse(explain::file(&error), services)
+            }
         }
     }
 }

@@ -3,11 +3,13 @@
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, WithMemory};
+use crate::app::session::{Agreed, Saved, WithMemory};
 use crate::app::{Severity, Text};
 use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
+use crate::profile::{Body, ProfileError};
 use crate::protocol::interbus::ProgramNumber;
-use crate::worker::interbus::{Change, Commit, Interbus, InterbusJob, Prepared};
+use crate::store::DeviceKey;
+use crate::worker::interbus::{Change, Commit, Interbus, InterbusJob, Prepared, device_key};
 
 impl Encoder {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -79,6 +81,25 @@ impl WithMemory for Encoder {
     fn reads_again(&mut self) {
         let programs = self.review.as_ref().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> InterbusJob {
+        InterbusJob::Save { programs: true }
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::Interbus(Box::new(self.wanted_profile()?)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_interbus()?, services);
+        Ok(())
     }
 }
 

@@ -7,8 +7,11 @@ mod kind;
 mod memory;
 mod on_desk;
 mod on_line;
+mod profiles;
+mod saved;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 pub(in crate::app) use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
@@ -17,6 +20,8 @@ pub(in crate::app) use kind::{Kind, LastWords};
 pub(in crate::app) use memory::{Agreed, WithMemory};
 pub(in crate::app) use on_desk::OnDesk;
 pub(in crate::app) use on_line::{Cut, OnLine, first};
+pub use profiles::Listed;
+pub(in crate::app) use saved::Saved;
 
 use super::action::Opened;
 use super::leaving::Leaver;
@@ -24,10 +29,10 @@ use super::line::Line;
 use super::services::{JobEnd, Services};
 use super::studio::SessionId;
 use super::trace::TraceLog;
-use super::{Severity, Text, explain};
+use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
 use crate::profile::Document;
-use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store, write_atomically};
+use crate::store::{Backup, Entry};
 use crate::worker::SubmitError;
 
 /// Where the data come from.
@@ -223,18 +228,6 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// A name for a profile of it.
-    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
-        if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
-            return path.clone();
-        }
-        let words = self.title.as_ref().map(|title| {
-            let name = title.replace(" · ", "-");
-            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect::<String>()
-        });
-        PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
-    }
-
     /// Its link is open.
     pub(in crate::app) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
@@ -277,6 +270,19 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn tell_of_another(&self, serial: &str, services: &mut Services) {
         let text = Text::new("session.other_encoder").with("serial", serial);
         services.tell(Severity::Warning, vec![text], Some(&self.name()));
+    }
+
+    /// What was asked for cannot be.
+    pub(in crate::app) fn refuse(&self, why: Text, services: &mut Services) {
+        services.tell(Severity::Error, vec![why], Some(&self.name()));
+    }
+
+    /// Samples are wished at this interval, or none any more. Whether they begin with that; `None` without a line.
+    pub(in crate::app) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
+        let line = self.line.as_mut()?;
+        let begins = line.polling().is_none();
+        line.poll(interval);
+        Some(begins)
     }
 
     /// Polling has ended by itself: why, and whether the device says nothing at all. One that was wished since goes on.
@@ -358,116 +364,5 @@ impl<D: Kind> Session<D> {
         self.let_go(JobEnd::Failed(why.clone()), services);
         self.opening = None;
         self.phase = Phase::Lost(why);
-    }
-
-    /// A profile was read again from its file, or saved into another one.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        self.source = Source::File { path, key, document: Box::new(document) };
-    }
-
-    /// Reads the profile again, as a task. False: it is none.
-    pub(in crate::app) fn read_file_again(&self, services: &mut Services) -> bool {
-        let Source::File { path, .. } = &self.source else { return false };
-        services.opening_files.push(path.clone());
-        let (path, store) = (path.clone(), services.world.store.clone());
-        services.tasks.run("read", move || super::documents::read_document(path, &store));
-        true
-    }
-
-    /// Writes a profile on a thread; `remarks` say what is not in it.
-    pub(in crate::app) fn write_document(
-        &self,
-        path: PathBuf,
-        document: Document,
-        remarks: Vec<Text>,
-        services: &Services,
-    ) {
-        let session = self.id;
-        services.tasks.run("save", move || {
-            let result = write_atomically(&path, document.emit().as_bytes());
-            let key = file_key(&path);
-            let document = Box::new(document);
-            super::Action::Done(super::action::Done::Written { session, path, key, document, remarks, result })
-        });
-    }
-
-    /// A profile was written, or not; true where it was.
-    pub(in crate::app) fn tell_of_profile(
-        &self,
-        path: &std::path::Path,
-        remarks: Vec<Text>,
-        result: Result<(), FileError>,
-        services: &mut Services,
-    ) -> bool {
-        match result {
-            Ok(()) => {
-                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
-                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
-                texts.extend(remarks);
-                services.tell(severity, texts, Some(&self.name()));
-                true
-            }
-            Err(error) => {
-                services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name()));
-                false
-            }
-        }
-    }
-
-    /// Lists backups and writes of a device, as a task.
-    pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
-        let (store, id) = (services.world.store.clone(), self.id);
-        services.tasks.run("backups", move || {
-            let listed = Box::new(Listed::of(&of, &store));
-            super::Action::Done(super::action::Done::Listed(id, of, listed))
-        });
-    }
-
-    /// Reads a backup of a device, as a task.
-    pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
-        let session = self.id;
-        services.tasks.run("backup", move || {
-            let result = super::documents::read_profile(&path).map(Box::new);
-            super::Action::Done(super::action::Done::Backup { session, of, path, result })
-        });
-    }
-
-    /// Takes the lists of backups and writes.
-    pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
-        self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
-        self.cycles = listed.cycles;
-        self.writes = Some(
-            listed
-                .writes
-                .map_err(|error| Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))),
-        );
-    }
-}
-
-/// Backups and writes of a device, as a task found them.
-pub struct Listed {
-    /// Backups, the newest first.
-    pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes, the newest first, or why the logbook does not tell.
-    pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Write cycles in all; `None` where the logbook does not tell.
-    pub cycles: Option<u64>,
-}
-
-impl Listed {
-    /// Entries of the logbook that are shown.
-    const WRITES: u32 = 200;
-
-    /// Asks the disk.
-    pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
-        let backups = store.backups().list(&key.kind, &key.serial_number);
-        let (writes, cycles) = match store.logbook_path() {
-            path if !path.exists() => (Ok(Vec::new()), Some(0)),
-            path => match Logbook::open(&path) {
-                Ok(logbook) => (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok()),
-                Err(error) => (Err(error), None),
-            },
-        };
-        Listed { backups, writes, cycles }
     }
 }

@@ -3,14 +3,13 @@
 
 use std::path::PathBuf;
 
-use jiff::Timestamp;
-
 use super::action::{Action, Try};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
+use crate::app::documents::document_of;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Source};
 use crate::app::{Severity, Text, explain};
@@ -36,9 +35,7 @@ impl Encoder {
             Action::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
             Action::ReadPosition => self.submit(SsiJob::Read, services),
             Action::Poll(interval) => {
-                if let Some(line) = &mut self.session.line {
-                    let begins = line.polling().is_none();
-                    line.poll(interval);
+                if let Some(begins) = self.session.poll(interval) {
                     self.record.poll(interval, begins);
                 }
             }
@@ -86,7 +83,7 @@ impl Encoder {
             }
             Action::Export(format, path) => match self.designer.export(format) {
                 Ok(text) => self.write_text(path, text, services),
-                Err(why) => self.refuse(why, services),
+                Err(why) => self.session.refuse(why, services),
             },
             Action::AskSaveFrames => {
                 let suggested = self.suggested("txt");
@@ -96,7 +93,7 @@ impl Encoder {
                 let clocks = self.clocks();
                 let words = self.record.words(clocks);
                 if words.is_empty() {
-                    return self.refuse(Text::new("ssi_find.nothing_read"), services);
+                    return self.session.refuse(Text::new("ssi_find.nothing_read"), services);
                 }
                 let lines: Vec<String> = words.iter().map(|word| frame_bits(*word, clocks)).collect();
                 self.write_text(path, lines.join("\n") + "\n", services);
@@ -150,10 +147,6 @@ impl Encoder {
                 PathBuf::from(format!("{}.{ending}", name.collect::<String>()))
             }
         }
-    }
-
-    fn refuse(&self, text: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
     /// Looks for the layout of the words that were read last.
@@ -214,7 +207,7 @@ impl Encoder {
                 let text = Text::new("session.saved").with("path", path.display());
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
             }
-            Done::Written(_, Err(error)) => self.refuse(explain::file(&error), services),
+            Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
         }
     }
 
@@ -231,11 +224,7 @@ impl Encoder {
         let body = Body::Ssi(self.wanted_profile());
         let document = match &self.session.source {
             Source::File { document, .. } => Document { body, ..(**document).clone() },
-            Source::Link(_) | Source::New { .. } => {
-                let now = Timestamp::now();
-                let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
-                Document::new(seconds.to_string(), body)
-            }
+            Source::Link(_) | Source::New { .. } => document_of(body),
         };
         self.session.write_document(path, document, Vec::new(), services);
     }

@@ -1,0 +1,155 @@
+//! Profiles and backups of a device on the desk, as files: each is read and written as a task.
+
+use std::path::PathBuf;
+
+use super::{Kind, Session, Source, file_key};
+use crate::app::action::{Done, FileQuestion};
+use crate::app::documents::{document_of, read_document, read_profile};
+use crate::app::services::Services;
+use crate::app::{Action, Severity, Text, explain};
+use crate::profile::{Body, Document};
+use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store, write_atomically};
+
+impl<D: Kind> Session<D> {
+    /// A name for a profile of it.
+    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
+        if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
+            return path.clone();
+        }
+        let words = self.title.as_ref().map(|title| {
+            let name = title.replace(" · ", "-");
+            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect::<String>()
+        });
+        PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
+    }
+
+    /// Asks the user for a file for it.
+    pub(in crate::app) fn ask_where_to_save(&self, services: &mut Services) {
+        services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
+    }
+
+    /// What the device has was read for a file; `edits` are not written to it, and `remarks` say what else is not in there.
+    pub(in crate::app) fn write_read(
+        &mut self,
+        body: Body,
+        edits: Option<usize>,
+        remarks: Vec<Text>,
+        services: &Services,
+    ) {
+        let Some(path) = self.save_to.take() else { return };
+        let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
+        let remarks = without.into_iter().chain(remarks).collect();
+        self.write_document(path, document_of(body), remarks, services);
+    }
+
+    /// A profile was read again from its file, or saved into another one.
+    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+        self.source = Source::File { path, key, document: Box::new(document) };
+    }
+
+    /// Reads the profile again, as a task. False: it is none.
+    pub(in crate::app) fn read_file_again(&self, services: &mut Services) -> bool {
+        let Source::File { path, .. } = &self.source else { return false };
+        services.opening_files.push(path.clone());
+        let (path, store) = (path.clone(), services.world.store.clone());
+        services.tasks.run("read", move || read_document(path, &store));
+        true
+    }
+
+    /// Writes a profile on a thread; `remarks` say what is not in it.
+    pub(in crate::app) fn write_document(
+        &self,
+        path: PathBuf,
+        document: Document,
+        remarks: Vec<Text>,
+        services: &Services,
+    ) {
+        let session = self.id;
+        services.tasks.run("save", move || {
+            let result = write_atomically(&path, document.emit().as_bytes());
+            let key = file_key(&path);
+            let document = Box::new(document);
+            Action::Done(Done::Written { session, path, key, document, remarks, result })
+        });
+    }
+
+    /// A profile was written, or not; true where it was.
+    pub(in crate::app) fn tell_of_profile(
+        &self,
+        path: &std::path::Path,
+        remarks: Vec<Text>,
+        result: Result<(), FileError>,
+        services: &mut Services,
+    ) -> bool {
+        match result {
+            Ok(()) => {
+                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
+                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
+                texts.extend(remarks);
+                services.tell(severity, texts, Some(&self.name()));
+                true
+            }
+            Err(error) => {
+                services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name()));
+                false
+            }
+        }
+    }
+
+    /// Lists backups and writes of a device, as a task.
+    pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
+        let (store, id) = (services.world.store.clone(), self.id);
+        services.tasks.run("backups", move || {
+            let listed = Box::new(Listed::of(&of, &store));
+            Action::Done(Done::Listed(id, of, listed))
+        });
+    }
+
+    /// Reads a backup of a device, as a task.
+    pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
+        let session = self.id;
+        services.tasks.run("backup", move || {
+            let result = read_profile(&path).map(Box::new);
+            Action::Done(Done::Backup { session, of, path, result })
+        });
+    }
+
+    /// Takes the lists of backups and writes.
+    pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
+        self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
+        self.cycles = listed.cycles;
+        self.writes = Some(
+            listed
+                .writes
+                .map_err(|error| Text::new("backups.no_logbook").with_text("why", explain::logbook_problem(&error))),
+        );
+    }
+}
+
+/// Backups and writes of a device, as a task found them.
+pub struct Listed {
+    /// Backups, the newest first.
+    pub backups: Result<Vec<Backup>, FileError>,
+    /// Writes, the newest first, or why the logbook does not tell.
+    pub writes: Result<Vec<Entry>, LogbookError>,
+    /// Write cycles in all; `None` where the logbook does not tell.
+    pub cycles: Option<u64>,
+}
+
+impl Listed {
+    /// Entries of the logbook that are shown.
+    const WRITES: u32 = 200;
+
+    /// Asks the disk.
+    pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
+        let backups = store.backups().list(&key.kind, &key.serial_number);
+        let (writes, cycles) = match store.logbook_path() {
+            path if !path.exists() => (Ok(Vec::new()), Some(0)),
+            path => match Logbook::open(&path) {
+                Ok(logbook) => (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok()),
+                Err(error) => (Err(error), None),
+            },
+        };
+        Listed { backups, writes, cycles }
+    }
+}

@@ -1,0 +1,68 @@
+//! What a memory holds, as profiles: saved, restored, and kept as backups.
+
+use std::path::{Path, PathBuf};
+
+use super::{OnDesk, Phase, Source, WithMemory};
+use crate::app::Text;
+use crate::app::action::ReadError;
+use crate::app::documents::read_error;
+use crate::app::services::Services;
+use crate::profile::{Body, Document, ProfileError};
+use crate::store::DeviceKey;
+use crate::worker::Device;
+
+type Job<T> = <<T as OnDesk>::Device as Device>::Job;
+
+/// Whoever can be saved and restored.
+pub(in crate::app) trait Saved: WithMemory {
+    /// How the logbook knows it; `None` before it was read.
+    fn key(&self) -> Option<DeviceKey>;
+
+    /// The job that reads everything that can be restored.
+    fn read_all() -> Job<Self>;
+
+    /// The profile as the user wants it, where this is one.
+    fn wanted_body(&self) -> Option<Body>;
+
+    /// Makes the plan of restoring a profile, to be looked at.
+    ///
+    /// # Errors
+    /// It is of another kind of device.
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+
+    /// A connected device is read again for it; a profile is written as it is edited.
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        if let Source::File { document, .. } = &self.session().source {
+            let mut document = (**document).clone();
+            if let Some(body) = self.wanted_body() {
+                document.body = body;
+            }
+            self.session().write_document(path, document, Vec::new(), services);
+        } else if self.try_submit(Self::read_all(), services) {
+            self.session_mut().save_to = Some(path);
+        }
+    }
+
+    /// Reads a backup, as a task.
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
+        match self.key() {
+            Some(of) => self.session().read_backup(of, path, services),
+            None => self.session().refuse(Text::new("session.not_connected"), services),
+        }
+    }
+
+    /// A backup was read, or not.
+    fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
+        let restored = result.and_then(|own| self.restore(own.body, services).map_err(ReadError::Profile));
+        if let Err(error) = restored {
+            self.session().refuse(read_error(path, &error), services);
+        }
+    }
+
+    /// Reads the list of backups and writes again, on a thread.
+    fn list_backups(&self, services: &Services) {
+        if let Some(key) = self.key().filter(|_| self.session().phase != Phase::Offline) {
+            self.session().list_backups(key, services);
+        }
+    }
+}
