@@ -8,7 +8,8 @@ use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
 use crate::app::{Severity, Text, explain};
-use crate::device::biss::Error;
+use crate::device::biss::{Error, Sample};
+use crate::link::TraceEntry;
 use crate::protocol::biss::KIND;
 use crate::sim::biss::Motor;
 use crate::worker::Session;
@@ -87,18 +88,13 @@ impl Encoder {
 }
 
 impl OnLine for Encoder {
-    fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
-        if !samples.is_empty() || dropped > 0 {
-            self.record.add(samples, dropped);
-            self.session.answers();
-        }
-        if !frames.is_empty() {
-            let meaning = &mut self.meaning;
-            self.session.trace.add(frames, missed, |entry| meaning.of(entry));
-        }
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        let meaning = &mut self.meaning;
+        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
     }
 
     fn progressed(&mut self, what: Doing) {

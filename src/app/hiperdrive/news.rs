@@ -10,7 +10,9 @@ use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text, explain};
+use crate::device::hiperdrive::Reading;
 use crate::device::hiperdrive::dead_man::Ended;
+use crate::link::TraceEntry;
 use crate::protocol::hiperdrive::{DriveNumber, KIND};
 use crate::sim::hiperdrive::Target;
 use crate::worker::Session;
@@ -126,7 +128,7 @@ impl Unit {
     }
 
     /// Where a drive is: recorded where it is the one that is shown.
-    fn see(&mut self, reading: crate::device::hiperdrive::Reading) {
+    fn see(&mut self, reading: Reading) {
         self.take_reading(reading);
         let drive = reading.drive;
         if drive == self.drive() {
@@ -144,22 +146,17 @@ impl Unit {
 }
 
 impl OnLine for Unit {
-    fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
+    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
         if dropped > 0 {
             self.record.lose(dropped);
-        }
-        if !samples.is_empty() {
-            self.session.answers();
         }
         for reading in samples {
             self.see(reading);
         }
-        if !frames.is_empty() {
-            self.session.trace.add(frames, missed, super::trace::meaning);
-        }
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.session.trace.add(frames, missed, super::trace::meaning);
     }
 
     /// Takes what has come over the line since the last time, and keeps alive what pictures keep alive.

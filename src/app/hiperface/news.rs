@@ -10,6 +10,7 @@ use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::{Error, Sample, Station};
+use crate::link::TraceEntry;
 use crate::profile::Body;
 use crate::profile::hiperface::{Item, Op};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, KIND, StatusCode};
@@ -182,18 +183,13 @@ impl Encoder {
 }
 
 impl OnLine for Encoder {
-    fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
-        if !samples.is_empty() || dropped > 0 {
-            self.add_samples(samples, dropped);
-            self.session.answers();
-        }
-        if !frames.is_empty() {
-            let meaning = &mut self.meaning;
-            self.session.trace.add(frames, missed, |entry| meaning.of(entry));
-        }
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.add_samples(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        let meaning = &mut self.meaning;
+        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
     }
 
     fn remarked(&mut self, remark: Remark, services: &mut Services) {

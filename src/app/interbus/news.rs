@@ -9,6 +9,8 @@ use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text, explain};
+use crate::device::interbus::Reading;
+use crate::link::TraceEntry;
 use crate::protocol::interbus::KIND;
 use crate::sim::Motor;
 use crate::worker::Session;
@@ -87,23 +89,18 @@ impl Encoder {
 }
 
 impl OnLine for Encoder {
-    fn take_samples_and_frames(&mut self) {
+    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
+        if let Some(image) = self.staged.device() {
+            self.preview.follow(&image.programs);
+        }
+        samples.iter().for_each(|reading| self.preview.compare(reading));
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
         self.trace.shift = self.shift();
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
-        if !samples.is_empty() || dropped > 0 {
-            if let Some(image) = self.staged.device() {
-                self.preview.follow(&image.programs);
-            }
-            samples.iter().for_each(|reading| self.preview.compare(reading));
-            self.record.add(samples, dropped);
-            self.session.answers();
-        }
-        if !frames.is_empty() {
-            let trace = &mut self.trace;
-            self.session.trace.add(frames, missed, |entry| trace.of(entry));
-        }
+        let trace = &mut self.trace;
+        self.session.trace.add(frames, missed, |entry| trace.of(entry));
     }
 
     fn remarked(&mut self, Remark::Handshake(step): Remark, _: &mut Services) {

@@ -5,12 +5,14 @@ use super::{Kind, OnDesk};
 use crate::app::line::Line;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
+use crate::link::TraceEntry;
 use crate::worker::{Device, Event, JobId};
 
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 type Output<T> = <<T as OnDesk>::Device as Device>::Output;
 type Error<T> = <<T as OnDesk>::Device as Device>::Error;
 type Remark<T> = <<T as OnDesk>::Device as Device>::Remark;
+type Sample<T> = <<T as OnDesk>::Device as Device>::Sample;
 type Doing<T> = <<T as OnDesk>::Device as Device>::Doing;
 
 /// How what was asked for on a line came to an early end.
@@ -25,8 +27,11 @@ pub(in crate::app) enum Cut<'e, E> {
 
 /// Whoever is at the end of a line.
 pub(in crate::app) trait OnLine: OnDesk {
-    /// Takes what was sampled and what has passed since the last time.
-    fn take_samples_and_frames(&mut self);
+    /// Samples, and how many were dropped before them.
+    fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
+
+    /// Frames that have passed, and how many are missing before them.
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64);
 
     /// What the device says on the way.
     fn remarked(&mut self, remark: Remark<Self>, services: &mut Services);
@@ -83,6 +88,20 @@ pub(in crate::app) trait OnLine: OnDesk {
         }
         if self.session().line.as_ref().is_some_and(Line::is_dead) {
             self.lose(Text::new("session.ended"), services);
+        }
+    }
+
+    /// Takes what was sampled and what has passed since the last time.
+    fn take_samples_and_frames(&mut self) {
+        let Some(line) = &mut self.session_mut().line else { return };
+        let (samples, dropped) = line.samples();
+        let (frames, missed) = line.frames();
+        if !samples.is_empty() || dropped > 0 {
+            self.sampled(samples, dropped);
+            self.session_mut().answers();
+        }
+        if !frames.is_empty() {
+            self.passed(frames, missed);
         }
     }
 

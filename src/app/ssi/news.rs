@@ -10,7 +10,8 @@ use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Drafted, Kind, OnLine};
 use crate::app::{Severity, Text, explain};
 use crate::device::bridge::AdapterError;
-use crate::device::ssi::Identity;
+use crate::device::ssi::{Identity, Words};
+use crate::link::TraceEntry;
 use crate::protocol::ssi::KIND;
 use crate::sim::biss::Motor;
 use crate::worker::ssi::{JobError, Ssi, SsiJob, SsiOutput};
@@ -101,17 +102,12 @@ impl Encoder {
 }
 
 impl OnLine for Encoder {
-    fn take_samples_and_frames(&mut self) {
-        let Some(line) = &mut self.session.line else { return };
-        let (samples, dropped) = line.samples();
-        let (frames, missed) = line.frames();
-        if !samples.is_empty() || dropped > 0 {
-            self.record.add(samples, dropped);
-            self.session.answers();
-        }
-        if !frames.is_empty() {
-            self.session.trace.add(frames, missed, trace::meaning);
-        }
+    fn sampled(&mut self, samples: Vec<Words>, dropped: u64) {
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.session.trace.add(frames, missed, trace::meaning);
     }
 
     fn pump(&mut self, services: &mut Services) {
