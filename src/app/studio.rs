@@ -242,6 +242,13 @@ impl Studio {
         self.devices.iter().any(AnyDevice::is_active) || search || self.signals.can_stop()
     }
 
+    /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
+    pub fn works(&self) -> bool {
+        let search = self.search().is_some_and(connect::Search::is_running);
+        let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
+        self.devices.iter().any(device) || search || self.signals.can_stop()
+    }
+
     /// Live values come in: the picture has to be drawn again and again.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(AnyDevice::is_polling) || self.is_in_control()
@@ -417,7 +424,8 @@ impl Studio {
         if self.question.take().is_some() {
             return;
         }
-        if self.can_stop() {
+        // Watching is no work: whoever closes a dialog, or has drives in hand, goes on seeing them.
+        if self.works() {
             self.stop();
             return;
         }
@@ -428,6 +436,9 @@ impl Studio {
         if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(AnyDevice::id) {
             self.with_device(id, |device, _| device.close_review());
             return;
+        }
+        if self.is_in_control() {
+            return self.stop_motion();
         }
         self.stop();
     }

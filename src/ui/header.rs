@@ -198,11 +198,26 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     };
     let width = if moves { STOP * 2.0 } else { STOP };
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
+    ui.data_mut(|data| data.insert_temp(stop_place(), response.rect.min));
     let pressed = moves && response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if name(response, active, &word).clicked() || pressed {
         // What is shown of a drive goes on while it is stopped.
         actions.push(if moves { Action::StopMotion } else { Action::Stop });
     }
+}
+
+/// STOP over whatever stands over the window, while a drive moves: where it always is.
+pub(super) fn stop_over_ui(ctx: &egui::Context, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
+        return;
+    }
+    let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };
+    let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
+    area.constrain(false).show(ctx, |ui| stop(ui, skin, studio, actions));
+}
+
+fn stop_place() -> egui::Id {
+    egui::Id::unique("place of stop")
 }
 
 /// The notice that stands in the window: a strip that covers nothing, and is closed by a click.

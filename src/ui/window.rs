@@ -120,6 +120,7 @@ impl Window {
         }
         self.shell(ui, &skin, &mut actions);
         self.dialogs(&ctx, &skin, &mut actions);
+        header::stop_over_ui(&ctx, &skin, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
             // What they change is to be seen.
@@ -304,7 +305,7 @@ impl Window {
         }
         let views = &mut self.views;
         if !moves
-            && !self.studio.can_stop()
+            && !self.studio.works()
             && (views.file.take().is_some()
                 || std::mem::take(&mut views.about)
                 || std::mem::take(&mut views.help)

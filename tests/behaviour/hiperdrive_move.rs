@@ -81,5 +81,8 @@ fn what_does_not_arrive_says_where_it_stands() {
     late.says(&["1 s", "--timeout", &position.to_string()]);
     assert!(late.took < Duration::from_secs(10), "{late:?}");
     run("sim:?s3=1", "5").says(&["S3", "at 0"]);
-    run("sim:?load=120", "5").says(&["fault", "at 0"]);
+    // Reference 4: a following error is 8203h, 33283.
+    let blocked = run("sim:?load=120", "5");
+    blocked.says(&["fault", "at 0", "0x8203"]);
+    assert_eq!(blocked.json_with(1)["error"]["code"], 33_283);
 }

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
-use encoder_studio::app::{Severity, Studio, Text};
+use encoder_studio::app::{Action, Severity, Studio, Text, connect};
 use encoder_studio::device::hiperdrive::dead_man::Lock;
-use encoder_studio::protocol::hiperdrive::{ErrorCode, Value};
+use encoder_studio::protocol::hiperdrive::{ErrorCode, State, Value};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, number, read, unit};
@@ -45,6 +45,11 @@ fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
     assert_eq!(unit(&desk).why_lost().unwrap().id(), "hd_lost.silent");
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.told(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
+    desk.until("everything is read anew", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.actual(ONE).is_some() && own.session.is_ready()
+    });
+    desk.settle();
     act(&mut desk, Hiperdrive::Take);
     desk.until("it is taken again", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
     assert_eq!(unit(&desk).why_lost(), None);
@@ -137,4 +142,38 @@ fn the_table_shows_what_the_drive_says_now() {
         own.is_some_and(|own| own.buffer.first() == Some(&ErrorCode::BLOCK_FORWARD))
     });
     assert_eq!(shown(&desk, 108), Value::Number(33_537));
+}
+
+#[test]
+fn what_was_said_before_a_loss_counts_no_more() {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.moves() && studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    fall_silent(&desk);
+    desk.until("the loss is known", |studio| !is_open(studio));
+    desk.until("nothing moves as far as is known", |studio| !studio.moves());
+    desk.until("it is read anew", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
+    assert_ne!(unit(&desk).state(ONE), Some(State::Moving));
+    desk.until("why it was lost is told", |studio| {
+        studio.hiperdrive().unwrap().session.is_ready() && studio.services.log.standing().is_some()
+    });
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("it is taken again", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
+    let standing = desk.studio.services.log.standing().map(|own| own.texts.clone()).unwrap_or_default();
+    assert!(standing.iter().all(|text| text.id() != "hd_lost.silent"), "{standing:?}");
+}
+
+#[test]
+fn escape_ends_no_watching_while_drives_are_in_hand() {
+    let mut desk = in_control("sim:");
+    assert!(unit(&desk).session.is_polling());
+    desk.connect(connect::Action::Open);
+    desk.act(Action::Escape);
+    assert!(desk.studio.connect.is_none() && unit(&desk).session.is_polling(), "the dialog is closed");
+    desk.act(Action::Escape);
+    assert!(unit(&desk).session.is_polling() && is_open(&desk.studio));
+    act(&mut desk, Hiperdrive::Give);
+    desk.until("it is given back", |studio| !is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
+    desk.act(Action::Escape);
+    assert!(!unit(&desk).session.is_polling());
 }

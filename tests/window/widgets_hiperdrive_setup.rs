@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::hiperdrive::axis::Step;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action, Language, ReviewAction, Tab};
+use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, connect};
 use encoder_studio::protocol::ethernet_ip::AddressSource;
 
 use crate::screen::Screen;
@@ -143,4 +143,40 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
     }
+}
+
+/// A second click that was meant for the step before does not go through the next one.
+#[test]
+fn a_step_is_seen_before_it_can_be_left() {
+    let mut screen = page("sim:", "page.axis");
+    screen.click("hd_axis.begin");
+    screen.steps();
+    assert!(screen.is_enabled("hd_axis.next"), "it is requested");
+    screen.button("hd_axis.next").click();
+    screen.harness.step();
+    screen.harness.step();
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Scale);
+    assert!(!screen.is_enabled("hd_axis.back"));
+    screen.steps();
+    assert!(screen.is_enabled("hd_axis.back"));
+}
+
+/// What lies under a dialog waits, but not STOP.
+#[test]
+fn stop_is_reached_over_a_dialog() {
+    let mut screen = page("sim:", "page.motion");
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    let act = |screen: &mut Screen, action| screen.act(Action::Hiperdrive(id, action));
+    act(&mut screen, Hiperdrive::Take);
+    screen.until("the control is taken", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
+    });
+    act(&mut screen, Hiperdrive::Drive(Motor::Move { target: 30_000_000 }));
+    screen.until("it moves", Studio::moves);
+    screen.act(Action::Connect(connect::Action::Open));
+    assert!(screen.studio().connect.is_some() && screen.studio().moves(), "a move goes on under a dialog");
+    screen.click("hd_bar.stop");
+    screen.until("it stands", |studio| !studio.moves());
+    let own = screen.studio().hiperdrive().unwrap();
+    assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }

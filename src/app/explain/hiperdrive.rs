@@ -11,7 +11,7 @@ mod write;
 
 pub use check::{check, source, switch};
 pub use error::{device, out_of_range, range};
-pub use motion::{ended, goal, lock, lost, phase, refusal, weight};
+pub use motion::{LOST, ended, goal, lock, lost, phase, refusal, weight};
 pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit, variant};
 pub use write::{change, item, op, plan, service, warning, written};
 

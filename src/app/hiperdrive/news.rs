@@ -13,7 +13,7 @@ use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::Reading;
 use crate::device::hiperdrive::dead_man::Ended;
 use crate::link::TraceEntry;
-use crate::protocol::hiperdrive::{DriveNumber, KIND};
+use crate::protocol::hiperdrive::{DriveNumber, KIND, State};
 use crate::sim::hiperdrive::Target;
 use crate::worker::Session;
 use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
@@ -166,6 +166,10 @@ impl OnLine for Unit {
         self.notice_rules();
         for (drive, before) in before {
             self.notice_fault(drive, before);
+            let is_over = |state: State| !matches!(state, State::Fault | State::Locked);
+            if before.is_some_and(|before| !is_over(before)) && self.state(drive).is_some_and(is_over) {
+                services.log.settle("hd_end.fault", Some(&self.session.name()));
+            }
         }
         if let Some((drive, ended)) = self.moves.take_end() {
             self.tell_end(drive, ended, services);
@@ -177,6 +181,9 @@ impl OnLine for Unit {
 
     fn remarked(&mut self, Remark::ControlLost: Remark, services: &mut Services) {
         self.moves.stop();
+        // What drives said last was said before, and nobody knows what has become of it.
+        self.forget_readings();
+        (self.is_stale, self.looks_at_all) = (true, true);
         let text = explain::hiperdrive::lost(self.moves.view().lost.as_ref());
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
@@ -217,6 +224,9 @@ impl OnLine for Unit {
             HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.beat();
+                for lost in explain::hiperdrive::LOST {
+                    services.log.settle(lost, Some(&self.session.name()));
+                }
                 self.poll();
                 // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones.
                 self.is_stale = true;

@@ -200,7 +200,7 @@ impl Unit {
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // What was read at the beginning says nothing any more once the device is gone.
-        let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected);
+        let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
 

@@ -55,8 +55,12 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let operations = operations(&prepared.plan);
     let said = said(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
-    if let (Action::Factory, false) = (act.action, act.all) {
-        output.remark(&Text::new("hd_cli.not_saved").terminal());
+    match act.action {
+        Action::Factory if !act.all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
+        Action::Acknowledge if operations.is_empty() => {
+            output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&act.of).get()).terminal());
+        }
+        _ => {}
     }
     show_done(output, &action_name(act.action), &operations, &spent, &[], &said)
 }

@@ -157,7 +157,7 @@ fn said(drive: &DriveStatus) -> Vec<Said> {
     said
 }
 
-fn error_text(code: ErrorCode) -> String {
+pub(super) fn error_text(code: ErrorCode) -> String {
     let words = explain::hiperdrive::error(code);
     format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
+use super::inspect::error_text;
 use super::run::{Runner, drive, value};
 use crate::app::hiperdrive::Measure;
 use crate::app::{Text, explain};
@@ -16,7 +17,7 @@ use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperdrive::dead_man::{Effort, Ended, Goal, Permit, Phase, Refusal, Wish};
 use crate::device::hiperdrive::{Identity, Rules};
-use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Percent, PositionScale, Value};
+use crate::protocol::hiperdrive::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
 use crate::worker::hiperdrive::{DriveView, HiperdriveJob, HiperdriveOutput};
 
 /// How often it is said that the motion is wanted still.
@@ -66,15 +67,31 @@ pub(in crate::cli) fn drive_to(common: &Common, output: &Output, wanted: &Move) 
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
     let reached = matches!(came, Came::Ended(Ended::Arrived));
-    let json = json!({"drive": drive.get(), "target": target, "position": position, "reached": reached});
+    let mut json = json!({"drive": drive.get(), "target": target, "position": position, "reached": reached});
     if reached {
         given?;
         let text = position.map_or_else(String::new, |position| format!("drive {} is at {position}\n", drive.get()));
         output.show(&json, &text)?;
         return Ok(Done::Well);
     }
+    let error = match came {
+        Came::Ended(Ended::Fault) => newest_error(&mut runner, drive),
+        _ => None,
+    };
+    if let (Some(error), Some(object)) = (error, json.as_object_mut()) {
+        object.insert("error".to_owned(), json!({"code": error.code(), "text": error_text(error)}));
+    }
     output.show(&json, "")?;
-    Err(Failure::Failed(why(&came, stood, wanted.timeout)))
+    let mut lines = why(&came, stood, wanted.timeout);
+    lines.extend(error.map(|error| format!("0x{:04X} {}", error.code(), error_text(error))));
+    Err(Failure::Failed(lines))
+}
+
+/// The error for which the drive stands, as far as it still tells.
+fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
+    let newest = value(runner, ParameterNumber::of_drive(108, drive)?).ok()?;
+    let Value::Number(code) = newest else { return None };
+    u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
 /// Where it goes, and between which limits, as the drive is scaled now: whoever changed the scale sees what became of them.

@@ -15,7 +15,7 @@ use crate::profile::Consent;
 use crate::profile::hiperdrive::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
 use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration};
 use crate::protocol::hiperdrive::{
-    DriveNumber, ErrorCode, ParameterNumber, State, StatusWord, Topology, nearest_reference,
+    DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, Topology, nearest_reference,
 };
 
 /// A plan that a person consented to and whose base still holds.
@@ -233,15 +233,32 @@ fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
     }
 }
 
-/// The fault of a drive needs a reset of all drives before it is acknowledged: all but one of RS-485 alone (reference 4).
+/// What ends the fault of a drive (reference 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// It has none.
+    Nothing,
+    /// 197 = 0: it is one of RS-485 alone.
+    Acknowledgement,
+    /// All drives are reset before that.
+    Reset,
+}
+
+/// Looks what ends the fault of a drive.
 ///
 /// # Errors
 /// The way.
-pub fn needs_reset(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
+pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Error> {
     let status = drive_status(master, drive)?;
     // Older ones are acknowledged already.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
-    Ok(recent.any(|code| *code != ErrorCode::RS485))
+    let word = status.status;
+    let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
+    Ok(match status.faults {
+        0 if !has_failed => Remedy::Nothing,
+        _ if recent.any(|code| *code != ErrorCode::RS485) => Remedy::Reset,
+        _ => Remedy::Acknowledgement,
+    })
 }
 
 /// Ends the fault of a drive: 197 = 0. What it needs before it is an operation of its own.

@@ -19,7 +19,21 @@ use crate::ui::{Skin, icons};
 #[derive(Default)]
 pub(super) struct View {
     entries: Option<Entries>,
+    /// Which step is drawn, and since when on the window's clock.
+    since: Option<(Step, f64)>,
 }
+
+impl View {
+    /// Seconds for which a step has been drawn; 0: it is new.
+    fn age(&mut self, step: Step, now: f64) -> f64 {
+        let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
+        self.since = Some((step, since));
+        now - since
+    }
+}
+
+/// So long a step is looked at before it is left: what a second click was meant for is the step before.
+const SETTLES: f64 = 0.6;
 
 /// The run, as it is drawn.
 struct Shown<'a> {
@@ -112,7 +126,10 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
             Reached::Ahead => StepState::ToCome,
         };
         let told = matches!(reached, Reached::Done | Reached::Failed);
-        let found = words::found(shown.axis, step, shown.seen).filter(|_| told);
+        let found = match (step, reached) {
+            (Step::Reference, Reached::Skipped) => Some(Text::new("hd_axis.no_reference")),
+            _ => words::found(shown.axis, step, shown.seen).filter(|_| told),
+        };
         Line {
             title: skin.words(&words::title(step)),
             state,
@@ -129,6 +146,13 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
+    let age = view.age(step, ui.input(|input| input.time));
+    if age == 0.0 {
+        ui.scroll_to_cursor(Some(egui::Align::TOP));
+    }
+    if age < SETTLES {
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(SETTLES - age));
+    }
     let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
     let aside = |ui: &mut Ui| {
         ui.label(skin.caption(format!("{place}/{}", Step::ALL.len())));
@@ -155,7 +179,7 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
             row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
         }
         ui.add_space(skin.space.groups);
-        foot(ui, skin, shown, actions);
+        ui.add_enabled_ui(age >= SETTLES, |ui| foot(ui, skin, shown, actions));
     });
 }
 

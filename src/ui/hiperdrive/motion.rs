@@ -34,16 +34,18 @@ const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
 /// Height of what says what is done with the drive.
 const SAID: f32 = 44.0;
-/// Height of a page below which the states stand behind what moves the drive.
-const LOW: f32 = 480.0;
+/// Height of a window below which the states stand behind what moves the drive.
+const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
         empty(ui, skin, &skin.say("hd_motion.offline"), None);
         return;
     }
-    // In a low window what moves the drive comes before the picture of its states.
-    let low = ui.clip_rect().height() < LOW;
+    // In a low window what moves the drive comes before the picture of its states, but not where that says what has failed.
+    // The window counts, not what is left of it: nothing changes its place because a notice comes.
+    let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
+    let low = ui.ctx().content_rect().height() < LOW && !has_failed;
     locks(ui, skin, unit, actions);
     if !low {
         states(ui, skin, unit, actions);

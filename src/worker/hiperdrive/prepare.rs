@@ -1,7 +1,7 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
 use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
-use crate::device::hiperdrive::write::needs_reset;
+use crate::device::hiperdrive::write::{Remedy, remedy};
 use crate::device::hiperdrive::{Error, Identity, Master, read_state, settings};
 use crate::profile::hiperdrive::{
     HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
@@ -52,12 +52,16 @@ pub(super) fn prepare(
         Change::Do(service) => {
             let (identity, state) = state(&mut master, Vec::new())?;
             let mut plan = plan_service(&state.image, *service);
-            if let Service::Acknowledge(drive) = service
-                && needs_reset(&mut master, *drive)?
-            {
-                // It concerns all drives, and is shown as what it is.
-                plan = plan_service(&state.image, Service::Reset);
-                plan.ops.push(Op::Service(*service));
+            if let Service::Acknowledge(drive) = service {
+                match remedy(&mut master, *drive)? {
+                    Remedy::Nothing => plan.ops.clear(),
+                    Remedy::Acknowledgement => {}
+                    Remedy::Reset => {
+                        // It concerns all drives, and is shown as what it is.
+                        plan = plan_service(&state.image, Service::Reset);
+                        plan.ops.push(Op::Service(*service));
+                    }
+                }
             }
             (identity, state.image, only(plan))
         }

@@ -170,6 +170,17 @@ fn a_fault_is_acknowledged_with_a_reset_only_where_one_is_needed() {
 }
 
 #[test]
+fn without_a_fault_nothing_is_acknowledged() {
+    for query in ["", "hub=4&drives=1,1&requested=1", "requested=0"] {
+        let mut stand = Stand::new(query);
+        let prepared = stand.prepare(Change::Do(Service::Acknowledge(drive(1)))).unwrap();
+        assert!(prepared.plan.is_empty(), "{query}");
+        let done = stand.commit(prepared).unwrap();
+        assert!(done.backup.is_none() && stand.sets().is_empty(), "{query}");
+    }
+}
+
+#[test]
 fn what_rules_motion_is_known_after_every_write() {
     let mut stand = Stand::new("requested=1");
     stand.survey();

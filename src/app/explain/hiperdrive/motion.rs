@@ -93,6 +93,10 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
+/// What [`lost`] says, as rows of the texts: true no more once somebody has control again.
+pub const LOST: [&str; 6] =
+    ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
+
 /// Why the cyclic connection is gone, and what to do.
 pub fn lost(lost: Option<&CyclicLost>) -> Text {
     match lost {
