@@ -44,7 +44,8 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
 /// What can be done at any time.
 fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window the icons have to do; their words are the tooltips.
-    let narrow = ui.ctx().content_rect().width() < 1000.0;
+    // A STOP of twice its width needs the room of some.
+    let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1140.0 } else { 1000.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = skin.say(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }

@@ -39,10 +39,13 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
         0 => "Nobody answered.".to_owned(),
         others => format!("No HIPERDRIVE answered; other EtherNet/IP devices: {others}."),
     };
-    Err(Failure::Failed(vec![format!(
-        "{heard} Check supply, cable and address: only devices in this computer's own network are asked; one elsewhere is asked \
-         with --link enip:ADDRESS."
-    )]))
+    let hint = match &common.link {
+        None => {
+            "only devices in this computer's own network are asked; one elsewhere is asked with --link enip:ADDRESS."
+        }
+        Some(_) => "that address alone was asked; without --link all in this computer's own network are.",
+    };
+    Err(Failure::Failed(vec![format!("{heard} Check supply, cable and address: {hint}")]))
 }
 
 /// Where a link leads: one device, or all in a network (enip:192.168.1.255).

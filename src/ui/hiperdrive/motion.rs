@@ -33,7 +33,7 @@ const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
 /// Height of what says what is done with the drive.
-const SAID: f32 = 44.0;
+const SAID: f32 = 32.0;
 /// Height of a window below which the states stand behind what moves the drive.
 const LOW: f32 = 760.0;
 
