@@ -214,7 +214,7 @@ pub(super) fn stop_over_ui(ctx: &egui::Context, skin: &Skin, studio: &Studio, ac
     }
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };
     let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
-    area.constrain(false).show(ctx, |ui| stop(ui, skin, studio, actions));
+    area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, skin, studio, actions)));
 }
 
 fn stop_place() -> egui::Id {

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::hiperdrive::axis::Step;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, connect};
+use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
 use encoder_studio::protocol::ethernet_ip::AddressSource;
 
 use crate::screen::Screen;
@@ -78,7 +78,12 @@ fn an_address_is_typed_looked_at_and_written() {
         studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
-    let Stage::Ready(plan) = screen.studio().shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    // The dialog says it too, above the form that does.
+    let sheet = screen.studio().shown().unwrap().sheet().unwrap();
+    let warned =
+        |text: &Text| text.terminal().contains("At the next power-up") && text.terminal().contains("192.168.5.20");
+    assert!(sheet.warnings.iter().any(warned), "{:?}", sheet.warnings);
+    let Stage::Ready(plan) = sheet.stage else { panic!("no plan") };
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::Review(id, ReviewAction::Write(plan)));
     screen.until("it is written and read", |studio| {

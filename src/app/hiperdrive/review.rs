@@ -1,10 +1,12 @@
 //! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
 
+use super::network::PowerUp;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::device::hiperdrive::write::Written;
 use crate::profile::Plan;
 use crate::profile::hiperdrive::{Base, Op, Service, warnings};
+use crate::protocol::hiperdrive::{AddressSwitch, ParameterNumber};
 use crate::worker::hiperdrive::{Change, Hiperdrive, Prepared};
 
 /// A write on its way.
@@ -50,6 +52,7 @@ impl Reviewed for Hiperdrive {
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
             texts.push(Text::new("hd_review.factory_all"));
         }
+        texts.extend(power_up(&prepared.plan));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
         texts.extend(review::left_alone("hd_review.missing", &prepared.missing, mounting));
         texts
@@ -88,4 +91,15 @@ impl Reviewed for Hiperdrive {
     fn written(written: &Written) -> Text {
         explain::hiperdrive::written(written)
     }
+}
+
+/// Where the device answers after a change of its network settings, once its supply was off.
+fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
+    let to = plan.ops.iter().find_map(|op| match op {
+        Op::Network { to, .. } => Some(to),
+        Op::Write { .. } | Op::Service(_) => None,
+    })?;
+    let digits = ParameterNumber::new(12).and_then(|number| plan.base.values.get(&number));
+    let switch = digits.and_then(|digits| AddressSwitch::parse(u8::try_from(*digits).ok()?));
+    Some(Text::new("hd_review.power_up").with_text("what", PowerUp::of(switch, to).words()))
 }
