@@ -281,7 +281,7 @@ impl AnyDevice {
     }
 
     /// Every edit is on disk, as far as the disk takes it.
-    pub(super) fn is_draft_kept(&self) -> bool {
+    pub fn is_draft_kept(&self) -> bool {
         each!(self, own => own.session.drafting.is_kept())
     }
 

@@ -195,8 +195,7 @@ fn drafts(desk: &Desk) -> usize {
 #[track_caller]
 fn until_kept(desk: &mut Desk) {
     let folder = desk.outside.path("data/drafts");
-    desk.until("the edits are kept", |_| folder.exists());
-    desk.settle();
+    desk.until("the edits are kept", |studio| folder.exists() && shown(studio).unwrap().is_draft_kept());
     assert_eq!(drafts(desk), 1);
 }
 
