@@ -221,7 +221,6 @@ pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> R
     Ok(lines)
 }
 
-/// A line with the worst verdict of its findings.
 fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Finding) -> (Verdict, Finding) {
     (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
 }

@@ -5,8 +5,9 @@
 //! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (whoever owns a clock and a port sends them)
 //! ```
 //!
-//! A connection of which nothing has come for three intervals is lost: the drives are told to stop, for as long as that takes,
-//! then to be off, and it is over. It never comes back; a person opens another.
+//! Where nothing has come for three intervals, what moves stops. Where somebody has listened for as long, the connection is
+//! lost: the drives are told to stop, for as long as that takes, then to be off, and it is over. It never comes back; a person
+//! opens another.
 
 mod connection;
 mod drives;

@@ -174,6 +174,13 @@ impl DeadMan {
         }
     }
 
+    /// Nobody hears where the drive is, whoever is to blame: what moves is to stand.
+    pub fn fall_deaf(&mut self, now: Moment) {
+        if self.stage.has_motion() {
+            self.stop(now, Ended::Deaf);
+        }
+    }
+
     fn hear(&mut self, now: Moment, actual: Actual) {
         self.reports += 1;
         self.heard = Some((now, actual));

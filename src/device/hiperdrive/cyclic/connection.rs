@@ -76,9 +76,14 @@ impl Connection {
         self.next
     }
 
+    /// Nothing has come for three intervals, whoever is to blame: where the drives are is not known.
+    pub fn is_quiet(&self, now: Moment) -> bool {
+        self.began && now.since(self.heard) > self.come_interval * LOST
+    }
+
     /// How long nothing has come, where that is too long: three intervals of listening. Whoever was kept from listening by a
     /// busy computer cannot tell whether nothing came, and what came may still be on its way to him; but no longer than the
-    /// target waits, which has stopped its drives then.
+    /// target waits for a packet of ours.
     pub fn silent(&mut self, now: Moment) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;

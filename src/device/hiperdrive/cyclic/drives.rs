@@ -112,6 +112,9 @@ impl Drives {
         if let Some(after) = self.connection.silent(now) {
             self.lose(now, CyclicLost::Silent { after });
         }
+        if self.connection.is_quiet(now) {
+            self.men.iter_mut().for_each(|man| man.dead_man.fall_deaf(now));
+        }
         let rest = Intent::rest(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
         let mut drives = vec![OutData::default(); self.places];

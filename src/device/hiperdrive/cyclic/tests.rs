@@ -202,6 +202,9 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
         bench.answers = true;
         bench.cycles(3);
         assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
+        // Without knowing where the drive is nothing moves on.
+        let how = if lost { Ended::Lost } else { Ended::Deaf };
+        assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, how)), "{away} ms");
     }
     // Nothing comes after it either.
     let mut bench = Bench::jogs();
