@@ -94,13 +94,7 @@ impl Unit {
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
             Motor::Expert(expert) => return self.moves.set_expert(expert),
             Motor::ConfirmLimits(drive) => {
-                // Those that are shown have to be those that the drive has, by all that is known at this moment.
-                self.moves.look();
-                self.notice_rules();
-                if !self.is_stale {
-                    self.moves.confirm_limits(drive);
-                }
-                return;
+                return self.confirm_limits(drive);
             }
             Motor::JogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => Wish::Jog { direction, effort: self.moves.jog_effort() },

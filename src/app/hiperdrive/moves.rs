@@ -73,6 +73,7 @@ impl Moves {
         }
         (self.expert, self.act) = (false, None);
         self.permits.clear();
+        self.ruled_anew.clear();
         self.view = motion.view();
         self.motion = Some(motion);
     }
@@ -89,6 +90,7 @@ impl Moves {
     pub(super) fn forget(&mut self) {
         self.stop();
         self.unconfirmed.clear();
+        self.ruled_anew.clear();
     }
 
     /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.

@@ -10,8 +10,8 @@ use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text, explain};
-use crate::device::hiperdrive::Reading;
 use crate::device::hiperdrive::dead_man::Ended;
+use crate::device::hiperdrive::{DriveStatus, Reading};
 use crate::link::TraceEntry;
 use crate::protocol::hiperdrive::{DriveNumber, KIND, State};
 use crate::sim::hiperdrive::Target;
@@ -202,6 +202,10 @@ impl OnLine for Unit {
                 self.submit(HiperdriveJob::Status, services);
             }
             HiperdriveOutput::Status(status) => {
+                let failed = |own: &DriveStatus| matches!(own.status.state(), State::Fault | State::Locked);
+                if !status.drives.iter().any(failed) {
+                    services.log.settle("hd_end.fault", Some(&self.session.name()));
+                }
                 self.status = Some(*status);
                 if !std::mem::replace(&mut self.has_polled, true) {
                     self.poll();
@@ -253,8 +257,11 @@ impl OnLine for Unit {
     }
 
     fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
-        if let Cut::Failed(_) = how {
-            self.moves.stop();
+        match how {
+            Cut::Failed(_) => self.moves.stop(),
+            // What has to be read before anything moves is read all the same, behind whatever ended it.
+            Cut::Cancelled(_) => self.looks_at_all |= self.is_stale,
+            Cut::Lost => {}
         }
         self.cut_write(how, texts)
     }

@@ -149,7 +149,7 @@ impl Unit {
             }
             Ask::Save => self.plan(Change::Do(Service::Save), services),
             Ask::Recall => self.plan(Change::Do(Service::Recall), services),
-            Ask::ConfirmLimits => self.moves.confirm_limits(drive),
+            Ask::ConfirmLimits => self.confirm_limits(drive),
             Ask::Take => {
                 self.moves.set_jog_effort(Effort::JOG);
                 self.act(super::Action::Take, services);

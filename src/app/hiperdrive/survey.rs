@@ -27,7 +27,9 @@ impl Unit {
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();
-        (self.is_stale, self.looks_at_all) = (false, false);
+        // What the control has read may be newer than what the survey did.
+        let differs = self.drives().into_iter().any(|drive| self.is_ruled_otherwise(drive));
+        (self.is_stale, self.looks_at_all) = (differs, differs);
         if !self.drives().contains(&self.drive)
             && let Some(drive) = self.drives().first().copied()
         {
@@ -58,10 +60,25 @@ impl Unit {
     pub(super) fn notice_rules(&mut self) {
         for drive in self.moves.take_ruled_anew() {
             let Some(permit) = self.moves.permit(drive).filter(|permit| permit.limits.is_some()) else { continue };
-            let other_limits = permit.limits != self.limits(drive);
-            if other_limits || permit.locks.contains(&Lock::LimitsUnconfirmed) {
+            if self.is_ruled_otherwise(drive) || permit.locks.contains(&Lock::LimitsUnconfirmed) {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
+        }
+    }
+
+    /// Whoever has the control has read other limits of a drive than those that are shown.
+    fn is_ruled_otherwise(&self, drive: DriveNumber) -> bool {
+        let held = self.moves.permit(drive).filter(|_| self.moves.is_open());
+        held.and_then(|permit| permit.limits).is_some_and(|limits| Some(limits) != self.limits(drive))
+    }
+
+    /// A person has looked at the limits that are shown, which have to be those that the drive has by all that is known at
+    /// this moment.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber) {
+        self.moves.look();
+        self.notice_rules();
+        if !self.is_stale {
+            self.moves.confirm_limits(drive);
         }
     }
 

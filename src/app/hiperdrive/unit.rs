@@ -12,6 +12,7 @@ use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
 use crate::app::Text;
 use crate::app::check::CheckLine;
+use crate::app::line::Line;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
@@ -293,6 +294,11 @@ impl Unit {
     /// Ends what runs, and every motion first.
     pub(in crate::app) fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
+        let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);
+        // Whoever has the control goes on seeing the drives, and what rules them.
+        if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
+            line.poll(Some(pace));
+        }
     }
 }

@@ -179,7 +179,7 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
             row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
         }
         ui.add_space(skin.space.groups);
-        ui.add_enabled_ui(age >= SETTLES, |ui| foot(ui, skin, shown, actions));
+        foot(ui, skin, shown, age >= SETTLES, actions);
     });
 }
 
@@ -199,8 +199,8 @@ fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
     });
 }
 
-/// Back and cancel, what is missing, and on.
-fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+/// Back and cancel, what is missing, and on. Before it is settled the step can only be cancelled, which stops what moves.
+fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
     let allowed = axis.may_go_on(seen);
@@ -208,7 +208,7 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         warning(ui, skin, why);
     }
     ui.horizontal_wrapped(|ui| {
-        let may_back = step != Step::Request && !axis.is_writing() && !seen.moves;
+        let may_back = settled && step != Step::Request && !axis.is_writing() && !seen.moves;
         if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &skin.say("hd_axis.back")).clicked() {
             shown.push(actions, Run::Back);
         }
@@ -217,13 +217,13 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         }
         if step.may_be_skipped() {
             let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-            if enabled_button(ui, !axis.is_writing() && !seen.moves, "", &skin.say(id)).clicked() {
+            if enabled_button(ui, settled && !axis.is_writing() && !seen.moves, "", &skin.say(id)).clicked() {
                 shown.push(actions, Run::Skip);
             }
         }
         let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right(ui, |ui| {
-            if primary(ui, skin, allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
+            if primary(ui, skin, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
         });
