@@ -86,10 +86,14 @@ impl Motion {
         number
     }
 
-    /// What was wanted last is wanted still. To be said every 100 ms while anything moves: 250 ms without it stop the drive.
+    /// What was wanted last is wanted still. To be said every 100 ms while anything moves: 250 ms without it stop the drive,
+    /// and what comes after them is too late, also where the connection's thread stood still as long.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
-        self.lock().intent.refreshed = now;
+        let mut cell = self.lock();
+        if !cell.intent.is_stale(now) {
+            cell.intent.refreshed = now;
+        }
     }
 
     /// All drives stop.
@@ -234,5 +238,34 @@ impl Cell {
 impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Motion").field(&self.view()).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::device::hiperdrive::dead_man::Effort;
+    use crate::link::VirtualClock;
+
+    /// Where the window and the thread of the connection stood still together, the window may be the first to wake up.
+    #[test]
+    fn what_nobody_said_for_too_long_is_not_said_again() {
+        let clock = Arc::new(VirtualClock::default());
+        let motion = Motion::new(clock.clone());
+        let is_stale = || motion.with_wanted(|intent, _| intent.is_stale(clock.now()));
+        let later = |time: Duration| clock.sleep_until(clock.now() + time);
+        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        for _ in 0..3 {
+            later(Intent::FRESH);
+            motion.refresh();
+        }
+        assert!(!is_stale(), "said in time, again and again");
+        later(Intent::FRESH + Duration::from_millis(1));
+        motion.refresh();
+        assert!(is_stale(), "too late");
+        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        assert!(!is_stale(), "another act");
     }
 }
