@@ -198,7 +198,7 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
         // What came stands in line behind whoever wakes up.
         bench.answers = false;
         bench.ms += away;
-        bench.cycles(1);
+        assert_eq!(bench.cycles(1).join(" "), "1419", "the first word that leaves again");
         bench.answers = true;
         bench.cycles(3);
         assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");

@@ -21,10 +21,11 @@ impl DeadMan {
         }
     }
 
-    /// A pause or its end is an act that carries the job on.
+    /// A pause or its end is an act that carries the job on, where it is the very next one: between others a stop may have been
+    /// said while nobody looked.
     fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
         let Some(act) = &mut self.act else { return };
-        let fresh = intent.drive == self.drive && intent.number > act.number && !intent.is_stale(now);
+        let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
         let job = matches!(act.motion, Some(motion) if matches!(motion.motive, Motive::Job { .. }));
         if !fresh || !job {
             return;

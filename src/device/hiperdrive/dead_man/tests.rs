@@ -125,6 +125,36 @@ fn out_of_speed_mode_through_ready() {
     assert_eq!((man.sent().target, man.ended()), (77, Some((1, Ended::Stopped))));
 }
 
+/// Between two looks of a thread that was kept from looking, a stop may have been said, and something else behind it.
+#[test]
+fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
+    let permit = Permit { limits: Some((-1000, 1000)), locks: Vec::new(), endless: false };
+    for (waits, next) in [(true, Wish::Resume), (false, Wish::Pause)] {
+        let mut man = DeadMan::new(DriveNumber::FIRST, 0);
+        let mut now = Moment::START;
+        let mut look = |man: &mut DeadMan, number: u64, wish: Wish, status: u16| {
+            now = now + Duration::from_millis(10);
+            let intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: now };
+            man.next(now, heard(Some((status, 0))), &intent, &permit).control
+        };
+        let job = Wish::Move { target: 500, effort: FULL };
+        for status in [0x2A37, 0x2A37, 0x2A37, 0x1A37, 0x1A37] {
+            look(&mut man, 1, job, status);
+        }
+        assert!(matches!(man.phase(), super::Phase::Moving(_)), "{:?}", man.phase());
+        let mut number = 1;
+        if waits {
+            number = 2;
+            look(&mut man, number, Wish::Pause, 0x1A37);
+            assert!(matches!(man.phase(), super::Phase::Paused { .. }));
+        }
+        // The one between them was a stop.
+        let word = look(&mut man, number + 2, next, 0x1A37);
+        assert!(word.is_standing() && matches!(man.phase(), super::Phase::Stopping(_)), "{:?}", man.phase());
+        assert_eq!(man.ended(), Some((number, Ended::Stopped)));
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
