@@ -98,7 +98,7 @@ pub trait Device: Send + 'static {
     /// When it is not.
     fn check(&mut self) -> Result<(), LinkError>;
 
-    /// Nothing is to do: looks after what goes on without being asked, and tells what there is to say of it.
+    /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
     fn idle(&mut self, _desk: &mut Desk) -> Option<Self::Remark> {
         None
     }

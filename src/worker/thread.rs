@@ -98,6 +98,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             if bench.take(due) {
                 agenda.taken(due, Instant::now());
             }
+            bench.look_after();
             lost = false;
             next_check = Instant::now() + CHECK;
             continue;
@@ -108,9 +109,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
                 lost = true;
                 bench.outbox.send(Event::Lost(error));
             }
-            if let Some(remark) = bench.session.idle() {
-                bench.outbox.send(Event::Remark(remark));
-            }
+            bench.look_after();
         }
         let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
         let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);
@@ -158,6 +157,13 @@ impl<D: Device> Bench<D> {
             }
         }
         true
+    }
+
+    /// What goes on without being asked, however often samples are taken.
+    fn look_after(&mut self) {
+        if let Some(remark) = self.session.idle() {
+            self.outbox.send(Event::Remark(remark));
+        }
     }
 
     /// Waits for a job, a changed wish or the time. A job stays in its channel: the loop takes it.
