@@ -100,6 +100,13 @@ impl<D: Kind> Line<D> {
         }
     }
 
+    /// Ends the job that runs; live samples go on.
+    pub(super) fn stop_job(&mut self) {
+        let pace = self.polling();
+        self.stop();
+        self.poll(pace);
+    }
+
     /// The next event; what it says about the job that runs is noted here.
     pub(super) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;

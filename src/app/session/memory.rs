@@ -167,7 +167,7 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         let Some(review) = self.review().filter(|review| !review.is_writing()) else { return };
         let is_planning = review.is_planning();
         if let Some(line) = self.session_mut().line.as_mut().filter(|_| is_planning) {
-            line.stop();
+            line.stop_job();
         }
         *self.review_mut() = None;
     }
