@@ -5,7 +5,8 @@ use encoder_studio::app::hiperdrive::axis::{Action as Run, Axis, Button, End, En
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction, Tab};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ParameterNumber};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ParameterNumber, Value};
+use encoder_studio::units::Moment;
 
 use crate::support::Desk;
 
@@ -212,6 +213,42 @@ fn nothing_moves_before_the_limits_are_confirmed() {
         desk.settle();
     }
     assert_eq!(position(&desk), before);
+}
+
+/// What a person saw when they pressed is what counts, also where the window learns with the press that it is old.
+#[test]
+fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
+    let mut desk = until_jog();
+    run(&mut desk, Run::Press(Button::Confirm));
+    // Once more from the beginning, so that no lock says it.
+    run(&mut desk, Run::Begin);
+    next(&mut desk, Step::Scale);
+    edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
+    next(&mut desk, Step::Confirm);
+    run(&mut desk, Run::Press(Button::Take));
+    desk.until("control", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.moves.is_open() && own.session.is_ready() && own.may_move(DriveNumber::FIRST).is_ok()
+    });
+    // Another master, while the window stands still.
+    let upper = ParameterNumber::of_drive(160, DriveNumber::FIRST).unwrap();
+    let target = unit(&desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
+    let motion = unit(&desk).moves.motion().unwrap().clone();
+    let began = std::time::Instant::now();
+    while motion.permitted(DriveNumber::FIRST).limits != Some((-204_400, 1000)) {
+        assert!(began.elapsed() < crate::support::LONG, "nobody looks at the limits");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    run(&mut desk, Run::Press(Button::Confirm));
+    desk.until("they are read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.limits(DriveNumber::FIRST) == Some((-204_400, 1000))
+    });
+    let axis = axis(&desk);
+    assert_eq!(axis.may_go_on(&unit(&desk).seen(DriveNumber::FIRST)).unwrap_err().id(), "hd_axis.needs_confirm");
+    run(&mut desk, Run::Press(Button::Confirm));
+    next(&mut desk, Step::Jog);
 }
 
 #[test]

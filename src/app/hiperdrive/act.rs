@@ -94,7 +94,8 @@ impl Unit {
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
             Motor::Expert(expert) => return self.moves.set_expert(expert),
             Motor::ConfirmLimits(drive) => {
-                return self.confirm_limits(drive);
+                self.confirm_limits(drive, services);
+                return;
             }
             Motor::JogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => Wish::Jog { direction, effort: self.moves.jog_effort() },

@@ -22,10 +22,12 @@ pub struct Moves {
     expert: bool,
     /// Drives whose scaling was changed since somebody looked at their limits. They outlive a session.
     unconfirmed: BTreeSet<DriveNumber>,
-    /// What drives might do at the last look.
-    permits: BTreeMap<DriveNumber, Permit>,
+    /// What drives might do at the last look, and in which scale.
+    rules: BTreeMap<DriveNumber, (Permit, Option<(i64, i64)>)>,
     /// Drives for which that has become another since somebody asked.
     ruled_anew: BTreeSet<DriveNumber>,
+    /// The cyclic connection was opened since somebody asked.
+    taken: bool,
 }
 
 /// What was asked for last.
@@ -59,8 +61,9 @@ impl Default for Moves {
             job: Effort::MOVE,
             expert: false,
             unconfirmed: BTreeSet::new(),
-            permits: BTreeMap::new(),
+            rules: BTreeMap::new(),
             ruled_anew: BTreeSet::new(),
+            taken: false,
         }
     }
 }
@@ -72,8 +75,9 @@ impl Moves {
             motion.limits_changed(*drive);
         }
         (self.expert, self.act) = (false, None);
-        self.permits.clear();
+        self.rules.clear();
         self.ruled_anew.clear();
+        self.taken = false;
         self.view = motion.view();
         self.motion = Some(motion);
     }
@@ -108,23 +112,33 @@ impl Moves {
     /// Looks at what the drives say, and at what they may do.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
-        self.view = motion.view();
+        let view = motion.view();
+        self.taken |= view.open && !self.view.open;
+        self.view = view;
         for drive in self.view.drives.iter().map(|own| own.number) {
             let permit = motion.permitted(drive);
             if permit.locks.contains(&Lock::LimitsUnconfirmed) {
                 self.unconfirmed.insert(drive);
             }
-            let is_other = |before: &Permit| (before.limits, &before.locks) != (permit.limits, &permit.locks);
-            if self.permits.get(&drive).is_some_and(is_other) {
+            let scale = motion.scale(drive);
+            let is_other = |(before, at): &(Permit, _)| {
+                (before.limits, &before.locks, *at) != (permit.limits, &permit.locks, scale)
+            };
+            if self.rules.get(&drive).is_some_and(is_other) {
                 self.ruled_anew.insert(drive);
             }
-            self.permits.insert(drive, permit);
+            self.rules.insert(drive, (permit, scale));
         }
     }
 
     /// Drives that may do something else since this was asked last: their parameters were changed, here or by somebody else.
     pub(super) fn take_ruled_anew(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.ruled_anew)
+    }
+
+    /// The cyclic connection was opened since this was asked last.
+    pub(super) fn take_taken(&mut self) -> bool {
+        std::mem::take(&mut self.taken)
     }
 
     /// How the last act ended, once it has: to be told once.
@@ -274,6 +288,11 @@ impl Moves {
     /// What a drive may do; `None` while the session is not open.
     pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
         self.motion.as_ref().map(|motion| motion.permitted(drive))
+    }
+
+    /// The scale in which a drive has its limits, by parameters 154 and 156; `None` where it was not read.
+    pub(super) fn scale(&self, drive: DriveNumber) -> Option<(i64, i64)> {
+        self.motion.as_ref().and_then(|motion| motion.scale(drive))
     }
 
     /// Why a drive may not move.

@@ -228,6 +228,7 @@ impl OnLine for Unit {
             HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.beat();
+                self.notice_rules();
                 for lost in explain::hiperdrive::LOST {
                     services.log.settle(lost, Some(&self.session.name()));
                 }

@@ -149,7 +149,11 @@ impl Unit {
             }
             Ask::Save => self.plan(Change::Do(Service::Save), services),
             Ask::Recall => self.plan(Change::Do(Service::Recall), services),
-            Ask::ConfirmLimits => self.confirm_limits(drive),
+            Ask::ConfirmLimits => {
+                if !self.confirm_limits(drive, services) {
+                    return;
+                }
+            }
             Ask::Take => {
                 self.moves.set_jog_effort(Effort::JOG);
                 self.act(super::Action::Take, services);

@@ -3,9 +3,9 @@
 use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
-use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved};
+use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::Lock;
 use crate::device::hiperdrive::{Identity, Reading, Survey};
 use crate::profile::hiperdrive::Image;
@@ -56,30 +56,51 @@ impl Unit {
     }
 
     /// Whoever has the control reads again and again what rules the drives. Where that is not what is shown here, everything
-    /// is read anew: nothing moves by limits, and no limits are confirmed, that a person cannot see.
+    /// is read anew: nothing moves by limits, and no limits are confirmed, that a person cannot see. So it is from the moment
+    /// at which the control is there.
     pub(super) fn notice_rules(&mut self) {
+        self.is_stale |= self.moves.take_taken();
         for drive in self.moves.take_ruled_anew() {
-            let Some(permit) = self.moves.permit(drive).filter(|permit| permit.limits.is_some()) else { continue };
-            if self.is_ruled_otherwise(drive) || permit.locks.contains(&Lock::LimitsUnconfirmed) {
+            if self.is_ruled_otherwise(drive) {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
         }
     }
 
-    /// Whoever has the control has read other limits of a drive than those that are shown.
+    /// Whoever has the control has read other limits of a drive than those that are shown, or that they lie elsewhere.
     fn is_ruled_otherwise(&self, drive: DriveNumber) -> bool {
         let held = self.moves.permit(drive).filter(|_| self.moves.is_open());
-        held.and_then(|permit| permit.limits).is_some_and(|limits| Some(limits) != self.limits(drive))
+        held.and_then(|permit| permit.limits).is_some_and(|limits| {
+            Some(limits) != self.limits(drive) || self.moves.scale(drive) != self.scale_as_read(drive)
+        })
     }
 
-    /// A person has looked at the limits that are shown, which have to be those that the drive has by all that is known at
-    /// this moment.
-    pub(super) fn confirm_limits(&mut self, drive: DriveNumber) {
+    fn scale_as_read(&self, drive: DriveNumber) -> Option<(i64, i64)> {
+        let image = self.staged.base()?;
+        image.of_drive(drive, 154).zip(image.of_drive(drive, 156))
+    }
+
+    /// Whether the limits of a drive that are shown can be confirmed: they have to be those that it has, by all that is known.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
+        let is_read = !self.is_stale && self.limits(drive).is_some() && self.scale_as_read(drive).is_some();
+        if is_read { Ok(()) } else { Err(explain::hiperdrive::lock(Lock::Unread)) }
+    }
+
+    /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         self.moves.look();
         self.notice_rules();
-        if !self.is_stale {
-            self.moves.confirm_limits(drive);
+        match self.may_confirm(drive) {
+            Ok(()) => self.moves.confirm_limits(drive),
+            Err(why) => {
+                services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                return false;
+            }
         }
+        true
     }
 
     /// A drive was asked where it is.

@@ -85,7 +85,9 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 });
                 row(ui, skin, &skin.say("hd_limits.lower"), skin.mono(low));
                 row(ui, skin, &skin.say("hd_limits.upper"), skin.mono(high));
-                if allowed_button(ui, skin, &Ok(()), icons::CHECK, &skin.say("hd_limits.confirm")).clicked() {
+                if allowed_button(ui, skin, &unit.may_confirm(drive), icons::CHECK, &skin.say("hd_limits.confirm"))
+                    .clicked()
+                {
                     let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
                     actions.push(Action::Hiperdrive(unit.session.id, confirm));
                 }

@@ -97,6 +97,7 @@ impl Control {
         if before.is_some_and(|before| before.scale.is_some() && before.scale != rules.scale) {
             self.motion.limits_changed(drive);
         }
+        self.motion.scaled(drive, rules.scale);
         self.motion.permit(drive, rules.permit(identity.topology, variant));
     }
 }

@@ -22,6 +22,8 @@ struct Shared {
 struct Cell {
     intent: Intent,
     permits: BTreeMap<DriveNumber, Permit>,
+    /// Parameters 154 and 156, as they were read with those.
+    scales: BTreeMap<DriveNumber, (i64, i64)>,
     /// Drives whose limits have to be looked at.
     unconfirmed: Vec<DriveNumber>,
     expert: bool,
@@ -68,6 +70,7 @@ impl Motion {
         let cell = Cell {
             intent,
             permits: BTreeMap::new(),
+            scales: BTreeMap::new(),
             unconfirmed: Vec::new(),
             expert: false,
             punctual: false,
@@ -124,6 +127,19 @@ impl Motion {
             cell.unconfirm(drive);
         }
         cell.permits.insert(drive, permit);
+    }
+
+    /// The scale in which a drive has its limits (parameters 154 and 156); `None` where it was not read.
+    pub fn scale(&self, drive: DriveNumber) -> Option<(i64, i64)> {
+        self.lock().scales.get(&drive).copied()
+    }
+
+    pub(super) fn scaled(&self, drive: DriveNumber, scale: Option<(i64, i64)>) {
+        let mut cell = self.lock();
+        match scale {
+            Some(scale) => cell.scales.insert(drive, scale),
+            None => cell.scales.remove(&drive),
+        };
     }
 
     /// The scaling of a drive was changed, and with it where its limits lie: nothing moves until they are confirmed.
