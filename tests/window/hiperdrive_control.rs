@@ -3,13 +3,14 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
-use encoder_studio::app::{Action, Severity, Studio, Text, connect};
+use encoder_studio::app::hiperdrive::axis::{Action as Run, Button};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
 use encoder_studio::device::hiperdrive::dead_man::Lock;
 use encoder_studio::protocol::hiperdrive::{ErrorCode, State, Value};
 use encoder_studio::units::Moment;
 
-use crate::hiperdrive::{ONE, act, drive, number, read, unit};
+use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};
 use crate::hiperdrive_motion::in_control;
 use crate::support::Desk;
 
@@ -80,13 +81,22 @@ fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_
     desk.until("it is locked", |studio| studio.hiperdrive().unwrap().moves.locks(ONE) == [Lock::LimitsUnconfirmed]);
     // What was read before is no place to confirm.
     drive(&mut desk, Motor::ConfirmLimits(ONE));
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && (own.number(ONE, 154), own.number(ONE, 156)) == (Some(400), Some(256))
     });
     assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
     drive(&mut desk, Motor::Step { by: 4 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.limits"]);
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
+    // Once more, before anybody has confirmed: the limits keep their numbers, and lie elsewhere again.
+    set(&desk, 154, 100);
+    desk.until("it is read again", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.number(ONE, 154) == Some(100)
+    });
+    assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
+    desk.settle();
     drive(&mut desk, Motor::ConfirmLimits(ONE));
     assert!(unit(&desk).moves.locks(ONE).is_empty());
     drive(&mut desk, Motor::Step { by: 4 });
@@ -176,4 +186,72 @@ fn escape_ends_no_watching_while_drives_are_in_hand() {
     desk.until("it is given back", |studio| !is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
     desk.act(Action::Escape);
     assert!(!unit(&desk).session.is_polling());
+}
+
+#[test]
+fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
+    let mut desk = read("sim:");
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
+    desk.act(Action::Stop);
+    assert!(unit(&desk).session.is_polling(), "whoever has control goes on seeing");
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    assert!(unit(&desk).session.is_polling() && is_open(&desk.studio));
+    // Nor does whoever changes their mind about a write.
+    desk.until("nothing runs", |studio| studio.hiperdrive().unwrap().session.is_ready());
+    edit(&mut desk, Edit::Set(number(24), 7));
+    act(&mut desk, Hiperdrive::Review);
+    assert!(unit(&desk).review.is_some() && unit(&desk).session.is_busy());
+    let id = unit(&desk).session.id;
+    desk.act(Action::Review(id, ReviewAction::Close));
+    assert!(unit(&desk).review.is_none() && unit(&desk).session.is_polling());
+    set(&desk, 160, 65_536);
+    desk.until("what rules it is still looked at", |studio| {
+        studio.hiperdrive().unwrap().limits(ONE) == Some((-33_488_896, 65_536))
+    });
+}
+
+#[test]
+fn without_control_a_reading_ends_as_the_user_wishes_and_what_it_lacks_is_said() {
+    let mut desk = in_control("sim:");
+    act(&mut desk, Hiperdrive::Axis(Run::Begin));
+    fall_silent(&desk);
+    desk.until("everything is read anew", |studio| !is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
+    desk.act(Action::Stop);
+    desk.until("it has ended", |studio| studio.hiperdrive().unwrap().session.is_ready());
+    desk.settle();
+    let own = unit(&desk);
+    assert!(own.session.is_ready(), "it does not begin again");
+    assert_eq!(own.actual(ONE), None, "what was read before the loss");
+    let asked = own.axis().unwrap().ask(Button::Do, &own.seen(ONE));
+    assert_eq!(asked.unwrap_err().id(), "hd_axis.unread", "there is nothing to wait for");
+    act(&mut desk, Hiperdrive::Read);
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
+}
+
+#[test]
+fn what_was_not_read_while_control_was_held_is_read_once_it_is_given_back() {
+    let mut desk = read("sim:");
+    set(&desk, 160, 65_536);
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
+    desk.act(Action::Stop);
+    // The reading has ended, and the window does not know it yet.
+    std::thread::sleep(Duration::from_millis(200));
+    act(&mut desk, Hiperdrive::Give);
+    desk.until("it is given back", |studio| !is_open(studio));
+    desk.until("it is read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.limits(ONE) == Some((-33_488_896, 65_536))
+    });
+}
+
+#[test]
+fn what_was_read_before_a_link_was_opened_again_is_no_place_of_a_drive() {
+    let mut desk = in_control("sim:");
+    act(&mut desk, Hiperdrive::Reconnect);
+    desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.line().is_some());
+    assert!(unit(&desk).survey.is_some() && unit(&desk).session.is_busy());
+    assert_eq!(unit(&desk).actual(ONE), None);
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
 }

@@ -53,6 +53,8 @@ pub struct Seen {
     pub connected: bool,
     /// It is asked for something, or a review is open.
     pub busy: bool,
+    /// Its parameters may be others than those that were read.
+    pub stale: bool,
     /// It is a virtual one.
     pub is_virtual: bool,
     /// The cyclic connection is open.

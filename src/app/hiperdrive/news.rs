@@ -89,7 +89,8 @@ impl Unit {
         self.record.begin(&opened.began);
         self.moves.begin(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
-        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, false);
+        // What was read over a link before says nothing any more.
+        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
         self.session.take_line(opened, services);
         self.submit(HiperdriveJob::Hello, services);
     }
@@ -239,7 +240,8 @@ impl OnLine for Unit {
             }
             HiperdriveOutput::Given => {
                 self.moves.beat();
-                self.is_stale = false;
+                // What was not read while somebody had it is read now.
+                self.looks_at_all |= self.is_stale;
             }
             HiperdriveOutput::Watched(drive) => self.watched = drive,
             // The command line asks for it.
@@ -260,8 +262,8 @@ impl OnLine for Unit {
     fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             Cut::Failed(_) => self.moves.stop(),
-            // What has to be read before anything moves is read all the same, behind whatever ended it.
-            Cut::Cancelled(_) => self.looks_at_all |= self.is_stale,
+            // What has to be read before a drive in hand moves is read all the same, behind whatever ended it.
+            Cut::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             Cut::Lost => {}
         }
         self.cut_write(how, texts)

@@ -54,7 +54,8 @@ impl Unit {
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
         Seen {
             connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
-            busy: self.session.is_busy() || self.review.is_some() || self.is_stale,
+            busy: self.session.is_busy() || self.review.is_some(),
+            stale: self.is_stale,
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
             moves: self.is_moving() || self.moves.is_under_way(),

@@ -183,7 +183,7 @@ impl Axis {
 
     /// To the first step whose result the drive does not have any more.
     fn fall_back(&mut self, seen: &Seen) {
-        if !seen.connected || seen.busy || self.asked.is_some() || self.step == Step::PowerCycle {
+        if !seen.connected || seen.busy || seen.stale || self.asked.is_some() || self.step == Step::PowerCycle {
             return;
         }
         let lost = |step: Step| match step {

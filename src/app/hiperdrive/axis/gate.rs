@@ -16,6 +16,9 @@ impl Axis {
         if seen.busy || self.asked.is_some() {
             return Err(Text::new("hd_axis.busy"));
         }
+        if seen.stale && button != Button::Give {
+            return Err(Text::new("hd_axis.unread"));
+        }
         let stands = || if seen.moves { Err(Text::new("hd_axis.moving")) } else { Ok(()) };
         match button {
             Button::Take | Button::Give if seen.controlled == (button == Button::Take) => {

@@ -242,7 +242,8 @@ fn nothing_is_pressed_that_cannot_be_done() {
     let (axis, seen) = until_jog();
     for (label, changed, id) in [
         ("gone", Seen { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
-        ("busy", Seen { busy: true, ..seen.clone() }, "hd_axis.busy"),
+        ("busy", Seen { busy: true, stale: true, ..seen.clone() }, "hd_axis.busy"),
+        ("stale", Seen { stale: true, ..seen.clone() }, "hd_axis.unread"),
         ("no control", seen.clone(), "hd_axis.no_control"),
     ] {
         assert_eq!(why(&axis, &changed, Button::Go(Place::Middle)), id, "{label}");
