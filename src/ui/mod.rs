@@ -23,6 +23,7 @@ mod run;
 mod signals;
 mod skin;
 mod ssi;
+mod stopping;
 pub mod widgets;
 mod window;
 mod wires;

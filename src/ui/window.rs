@@ -9,7 +9,7 @@ use egui::{Key, Modifiers, Panel, Ui};
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::navigation::navigation_ui;
-use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, signals, ssi};
+use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, signals, ssi, stopping};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 
@@ -300,7 +300,12 @@ impl Window {
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Whoever presses it while a drive moves means the machine, whatever else is open or dragged.
         let moves = self.studio.moves();
-        if !ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) || in_use && !moves {
+        let goes_down = stopping::escape_goes_down(ctx);
+        let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        if !is_pressed || !goes_down || in_use && !moves {
+            return;
+        }
+        if stopping::means_motion(ctx, moves, ctx.input(|input| input.time)) && !moves {
             return;
         }
         let views = &mut self.views;

@@ -1,0 +1,137 @@
+//! STOP and Esc as a person presses them in a fright: the motion ends with the first press, and nothing else with the next.
+
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::kittest::Queryable;
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::{Action, Tab};
+use encoder_studio::device::hiperdrive::dead_man::Phase;
+use encoder_studio::protocol::hiperdrive::State;
+use encoder_studio::worker::hiperdrive::DriveView;
+
+use crate::hiperdrive::ONE;
+use crate::screen::Screen;
+use crate::support::LONG;
+
+/// An encoder is watched in one session, and a drive moves in another.
+fn moving() -> Screen {
+    let mut screen = Screen::begun([1280.0, 900.0]);
+    screen.click("live.start");
+    screen.act(Action::ShowTab(Tab::Hiperdrive));
+    screen.act(Action::Connect(Connect::Open));
+    screen.act(Action::Connect(Connect::Use("sim:".to_owned())));
+    screen.act(Action::Connect(Connect::Connect));
+    let ready = |screen: &mut Screen, what: &str, open: bool| {
+        screen.until(what, |studio| {
+            studio
+                .hiperdrive()
+                .is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.moves.is_open() == open)
+        });
+    };
+    ready(&mut screen, "it is read", false);
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    ready(&mut screen, "the connection is open", true);
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
+    screen.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    assert!(is_watched(&screen));
+    screen
+}
+
+fn is_watched(screen: &Screen) -> bool {
+    screen.encoder().session.is_polling()
+}
+
+fn moves(screen: &Screen) -> bool {
+    screen.studio().moves()
+}
+
+/// STOP of the header: the uppermost.
+fn stop(screen: &Screen) -> Pos2 {
+    let label = screen.say("hd_bar.stop");
+    let found =
+        screen.harness.query_all_by(|node| node.role() == Role::Button && node.label().as_ref() == Some(&label));
+    let places = found.map(|node| node.rect().center());
+    places.min_by(|one, other| one.y.total_cmp(&other.y)).unwrap()
+}
+
+fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    screen.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
+    screen.harness.step();
+}
+
+/// As long as the drive takes to stand, while no picture is drawn.
+fn until_it_stands(screen: &Screen) {
+    let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
+    let began = Instant::now();
+    let moves = |own: &DriveView| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;
+    while motion.view().drives.iter().any(moves) {
+        assert!(began.elapsed() < LONG, "it does not stand");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
+    let mut screen = moving();
+    let place = stop(&screen);
+    screen.harness.hover_at(place);
+    screen.harness.step();
+    pointer(&mut screen, place, true);
+    until_it_stands(&screen);
+    // Two pictures of a quarter of a second: still a click.
+    screen.harness.step();
+    screen.harness.step();
+    pointer(&mut screen, place, false);
+    assert!(is_watched(&screen) && !moves(&screen));
+    screen.steps();
+    // Whoever presses once more, later, means all.
+    pointer(&mut screen, place, true);
+    pointer(&mut screen, place, false);
+    screen.until("everything has ended", |studio| !studio.hiperface().unwrap().session.is_polling());
+}
+
+#[test]
+fn a_second_click_in_a_fright_ends_nothing_else() {
+    let mut screen = moving();
+    let place = stop(&screen);
+    screen.harness.hover_at(place);
+    screen.harness.step();
+    pointer(&mut screen, place, true);
+    until_it_stands(&screen);
+    for pressed in [false, true, false] {
+        pointer(&mut screen, place, pressed);
+    }
+    assert!(!moves(&screen));
+    screen.steps();
+    assert!(is_watched(&screen));
+}
+
+#[test]
+fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
+    for is_held in [true, false] {
+        let mut screen = moving();
+        // A move goes on under a dialog, which the next Esc would close.
+        screen.act(Action::Connect(Connect::Open));
+        assert!(moves(&screen));
+        screen.harness.key_down(Key::Escape);
+        screen.harness.step();
+        until_it_stands(&screen);
+        for _ in 0..8 {
+            if !is_held {
+                screen.harness.key_up(Key::Escape);
+            }
+            screen.harness.key_down(Key::Escape);
+            screen.harness.step();
+        }
+        assert!(!moves(&screen) && screen.studio().connect.is_some(), "held: {is_held}");
+        screen.harness.key_up(Key::Escape);
+        screen.steps();
+        screen.key(Key::Escape);
+        assert!(screen.studio().connect.is_none() && is_watched(&screen), "later it is meant");
+    }
+}
