@@ -1,5 +1,6 @@
 //! Lamps, network and the set-up of an axis as a person uses them: clicked, typed, and said in both languages.
 
+use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
@@ -118,6 +119,7 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
 #[test]
 fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     let mut screen = page("sim:", "page.parameters");
+    screen.press(Role::RadioButton, "Show: Scale");
     assert!(!screen.is_enabled("hd_scale.set"), "without a pitch there is no scale");
     screen.put("Spindle pitch", "four");
     screen.entry("A step is").focus();
@@ -148,6 +150,50 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
         screen.act(Action::SetLanguage(language));
         screen.check_language();
     }
+}
+
+/// A number is typed where it stands. What cannot be stays there with its reason, and with its parameter when other lines
+/// are shown.
+#[test]
+fn parameters_are_typed_into_their_table() {
+    let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
+    let row =
+        |screen: &Screen, label: &str| screen.harness.query_by_role_and_label(Role::Row, label).map(|own| own.rect());
+    assert!(row(&screen, "105 Status word").is_none(), "it is not to be set");
+    let begin = |screen: &mut Screen, label: &str| {
+        let table = screen.harness.get_by_role_and_label(Role::Table, "Parameters");
+        table.focus();
+        screen.harness.get_by_role_and_label(Role::Row, label).click();
+        screen.steps();
+        screen.key(Key::F2);
+    };
+    begin(&mut screen, "166 Maximum speed");
+    screen.put("166 Maximum speed", "9999");
+    screen.key(Key::Enter);
+    assert!(screen.shows("it may be 5 to 350"));
+    // Other lines: what is wrong goes along with its own.
+    screen.press(Role::RadioButton, "Show: All");
+    assert!(row(&screen, "105 Status word").is_some());
+    screen.put("166 Maximum speed", "300");
+    screen.key(Key::Enter);
+    let edits = |screen: &Screen| {
+        let own = screen.studio().hiperdrive().unwrap();
+        own.staged.differences().iter().map(|own| (own.number.get(), own.from, own.to)).collect::<Vec<_>>()
+    };
+    assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
+    assert!(!screen.shows("it may be 5 to 350"));
+    // What is only read cannot be typed over, and says so.
+    begin(&mut screen, "105 Status word");
+    assert!(screen.shows("105 (Status word) can only be read"));
+    // Another drive has other lines; nothing is typed into them.
+    begin(&mut screen, "158 Lower limit");
+    screen.put("158 Lower limit", "17");
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    let three = encoder_studio::protocol::hiperdrive::DriveNumber::new(3).unwrap();
+    screen.act(Action::Hiperdrive(id, Hiperdrive::SelectDrive(three)));
+    screen.steps();
+    assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
+    assert!(screen.harness.query_by_role_and_label(Role::TextInput, "158 Lower limit").is_none());
 }
 
 /// A second click that was meant for the step before does not go through the next one.

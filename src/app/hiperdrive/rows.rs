@@ -7,7 +7,7 @@ use super::words;
 use crate::app::{Text, explain};
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{
-    DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Range, Topology, Value,
+    Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Range, Topology, Value,
 };
 
 /// A parameter as a row of the table.
@@ -39,6 +39,18 @@ pub struct Row {
     pub changed_from: Option<i64>,
     /// It can be edited as a value.
     pub is_editable: bool,
+}
+
+impl Row {
+    /// Why it cannot be edited as a value; `None` where it can.
+    pub fn why_not_editable(&self) -> Option<Text> {
+        let id = match self.kind.access {
+            _ if self.is_editable => return None,
+            Access::Read => "hd_entry.only_read",
+            Access::ReadWrite | Access::Write => "hd_entry.not_a_value",
+        };
+        Some(Text::new(id).with("number", self.number).with_text("name", self.name.clone()))
+    }
 }
 
 impl Unit {
@@ -144,8 +156,9 @@ impl Unit {
                 Some(text.with_text("unit", Text::new(measure.unit())))
             }
             (154 | 156, Some(drive)) => {
-                let ruler = self.wanted_ruler(drive);
-                Some(Text::new("hd_meaning.steps_a_turn").with_number("steps", ruler.scale.steps_per_turn(), 3))
+                let steps = self.wanted_ruler(drive).scale.steps_per_turn();
+                let decimals = if steps.fract() == 0.0 { 0 } else { 3 };
+                Some(Text::new("hd_meaning.steps_a_turn").with_number("steps", steps, decimals))
             }
             (106, Some(drive)) => {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);

@@ -7,7 +7,8 @@ use crate::app::{Action, Text};
 use crate::protocol::biss::{Access, Decoding, Name};
 use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterRow, RegisterTable, RegisterView, register_table,
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView,
+    register_table,
 };
 use crate::ui::{Skin, icons};
 
@@ -159,7 +160,8 @@ fn table(
     };
     let label = skin.say("page.registers");
     let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
-    let table = RegisterTable { label: &label, groups, row: &row, widest: widest.unwrap_or(1) };
+    let kind = RegisterKind::Bytes { widest: widest.unwrap_or(1) };
+    let table = RegisterTable { label: &label, groups, row: &row, kind };
     let mut typed = Vec::new();
     let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
         let byte = parse(text)?;
@@ -204,7 +206,7 @@ fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) ->
     RegisterRow {
         address: register.address.to_string(),
         name,
-        hex: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
+        value: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
         decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
         meaning: encoder.meaning(shown).map(|own| skin.words(&own)).unwrap_or_default(),
         access: match register.access {
@@ -220,6 +222,7 @@ fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) ->
         cost: (!register.saves.is_empty()).then(|| skin.say("registers.cost")),
         read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
         fields: fields(skin, shown),
+        ..RegisterRow::default()
     }
 }
 

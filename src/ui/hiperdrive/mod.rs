@@ -89,7 +89,6 @@ pub(in crate::ui) struct View {
     serial_number: Option<String>,
     motion: motion::View,
     parameters: parameters::View,
-    scale: scale::View,
     axis: axis::View,
     leds: leds::View,
     network: network::View,
@@ -132,14 +131,16 @@ pub(super) fn page_ui(
             .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
     }
     let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
+    if view.page == Page::Parameters {
+        // A table scrolls by itself.
+        let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
+        frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
+        return;
+    }
     ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         frame.show(ui, |ui| match view.page {
             Page::Motion => motion::page_ui(ui, skin, unit, &mut view.motion, actions),
-            Page::Parameters => {
-                parameters::page_ui(ui, skin, unit, &mut view.parameters, actions);
-                ui.add_space(skin.space.groups);
-                scale::card_ui(ui, skin, unit, &mut view.scale, actions);
-            }
+            Page::Parameters => {}
             Page::Axis => axis::page_ui(ui, skin, unit, &mut view.axis, actions),
             Page::Diagnosis => {
                 errors::cards_ui(ui, skin, unit, actions);

@@ -35,8 +35,8 @@ pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 pub use hold_button::{HoldButton, HoldEvent, hold_button};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use register_table::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterOutput, RegisterRow, RegisterTable, RegisterView,
-    register_table,
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,
+    RegisterView, register_table,
 };
 pub use state_machine::{StateMachine, state_machine};
 pub use step_ring::{StepRing, step_ring};

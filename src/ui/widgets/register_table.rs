@@ -1,4 +1,5 @@
-//! Registers as a table, grouped by their banks: address, name, value as hex, as a number and decoded, access, default.
+//! Registers as a table, grouped by their banks: address, name, value as hex, as a number and decoded, access, default. Or
+//! parameters that are numbers: number, name, value, unit, range, what it is from the factory.
 //! Thousands of them scroll as easily as ten: a register is asked for only while it is in sight.
 //!
 //! * **Size**: as wide as there is room, as high as given; columns that matter least fall away, and stand under the pointer.
@@ -6,11 +7,11 @@
 //! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
 //!   Enter, F2 or a character edits the value, Enter takes it, Escape gives it up; Backspace takes the device's value
 //!   back; Ctrl+C copies.
-//! * **Pointer**: a press selects, on a heading or a caret folds; a double click edits.
+//! * **Pointer**: a press selects, on a heading or a caret folds, on the box of a number edits; a double click edits.
 //! * **Accessible**: a table with the label given, whose value is what is selected; a row a register in sight, with its
 //!   value and how it stands; a button a group.
 //! * **Painting**: edited values in the colour of what is staged and underlined; what changed since the last reading has a
-//!   dot, what costs a write cycle a flash.
+//!   dot, what costs a write cycle a flash, what is kept without supply a disk. Numbers that can be edited lie in boxes.
 
 mod columns;
 mod editor;
@@ -51,8 +52,20 @@ pub struct RegisterTable<'a> {
     pub groups: &'a [RegisterGroup],
     /// A register of a group; asked for what is in sight or unfolded.
     pub row: &'a dyn Fn(Place) -> RegisterRow,
-    /// Bytes of the widest register: all of them have to be seen.
-    pub widest: usize,
+    /// What the values are.
+    pub kind: RegisterKind,
+}
+
+/// What the values of a table are: by that it has its columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RegisterKind {
+    /// Bytes, in hexadecimal digits and as numbers.
+    Bytes {
+        /// Of the widest register: all of them have to be seen.
+        widest: usize,
+    },
+    /// Numbers that have a range.
+    Numbers,
 }
 
 /// A bank.
@@ -69,28 +82,34 @@ pub struct RegisterGroup {
 /// A register as it is shown.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// Where it is: `0x04:0x1F`.
+    /// Where it is: `0x04:0x1F`; or the number that it has.
     pub address: String,
     /// What it is called.
     pub name: String,
-    /// Its value in hexadecimal digits; empty where it was not read.
-    pub hex: String,
-    /// The same as a number.
+    /// Its value as it is typed: bytes in hexadecimal digits, or a number; empty where it was not read.
+    pub value: String,
+    /// Of bytes: the same as a number.
     pub decimal: String,
     /// What it means, with its unit.
     pub meaning: String,
     /// `R`, `W`, `RW`.
     pub access: String,
-    /// As delivered, in hexadecimal digits; empty where nobody knows.
+    /// As delivered, written like the value; empty where nobody knows.
     pub default: String,
+    /// Of numbers: what it may be.
+    pub range: String,
     /// It has another value than the default.
     pub differs: bool,
     /// It is not as it was at the reading before.
     pub changed: bool,
+    /// What it was then; empty where that is not told.
+    pub before: String,
     /// Its value was edited and is not written.
     pub edited: bool,
     /// Writing it costs something: what, in words.
     pub cost: Option<String>,
+    /// It is kept without supply: what there is to know about that, in words.
+    pub kept: Option<String>,
     /// Why its value cannot be edited; `None` where it can.
     pub read_only: Option<String>,
     /// Its bit fields.
@@ -132,17 +151,23 @@ pub struct RegisterOutput {
 const LINE: f32 = 16.0;
 /// Between the edge of the table and its lines.
 const MARGIN: i8 = 4;
+/// Characters of the longest number: −2³¹ is eleven.
+const NUMBER: usize = 12;
 
-/// Width of so many bytes in hexadecimal digits, with the distance to the next column.
-fn hex_width(skin: &Skin, bytes: usize) -> f32 {
+/// Width of a value, with the distance to the next column.
+fn value_width(skin: &Skin, kind: RegisterKind) -> f32 {
+    let characters = match kind {
+        RegisterKind::Bytes { widest } => widest * 3,
+        RegisterKind::Numbers => NUMBER,
+    };
     // Every character of the font for bytes is 0.6 of its size wide.
-    (bytes * 3) as f32 * 0.6 * skin.sizes.body + skin.space.between
+    characters as f32 * 0.6 * skin.sizes.body + skin.space.between
 }
 
 impl RegisterRow {
     /// What a screen reader says of it.
     fn words(&self, skin: &Skin) -> String {
-        let mut parts = vec![self.hex.clone(), self.decimal.clone(), self.meaning.clone()];
+        let mut parts = vec![self.value.clone(), self.decimal.clone(), self.meaning.clone()];
         parts.extend(self.differs.then(|| skin.say("widget.register_differs")));
         parts.extend(self.changed.then(|| skin.say("widget.register_changed")));
         parts.extend(self.edited.then(|| skin.say("widget.register_edited")));
@@ -179,8 +204,8 @@ pub fn register_table(
             controls::fill(ui);
             // The lines lie beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
-            let columns = Columns::new(width, hex_width(skin, table.widest));
-            paint::header(ui, skin, &columns);
+            let columns = Columns::new(table.kind, width, value_width(skin, table.kind));
+            paint::header(ui, skin, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, skin, id, &columns, table, &lines, room, view, take, &mut output)
         });
@@ -247,7 +272,7 @@ fn body(
         }
         if let Some(edit) = &view.edit
             && let Some(line) = lines.line_of(Selected::Row(edit.place))
-            && let Some(range) = columns.range(columns::Column::Hex)
+            && let Some(range) = columns.range(columns::Column::Value)
         {
             let own = at(line);
             let cell = Rect::from_x_y_ranges(own.left() + range.min..=own.left() + range.max, own.y_range());
@@ -308,13 +333,18 @@ fn row(
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
-    if response.double_clicked() {
+    let boxed = (table.kind == RegisterKind::Numbers && row.read_only.is_none())
+        .then(|| columns.range(columns::Column::Value).map(|value| paint::box_of(skin, rect, value)))
+        .flatten();
+    let in_box = response.clicked()
+        && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
+    if in_box || response.double_clicked() {
         keys::begin_at(table, view, place, None);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
-    paint::row(ui, skin, rect, columns, &row, (open, typing), paint::State::of(selected, &response));
+    paint::row(ui, skin, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));
     if response.hovered() && !typing {
-        response.on_hover_ui(|ui| paint::tip(ui, skin, columns, &row));
+        response.on_hover_ui(|ui| paint::tip(ui, skin, (table.kind, columns), &row));
     }
 }
 

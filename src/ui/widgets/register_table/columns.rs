@@ -2,32 +2,45 @@
 
 use egui::Rangef;
 
+use super::RegisterKind;
+
 /// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Column {
     Marks,
     Address,
     Name,
-    Hex,
+    Value,
     Decimal,
     Meaning,
     Access,
+    Range,
     Default,
 }
 
-/// Columns with their least widths, in their order; that of the bytes follows from them.
-const WIDTHS: [(Column, f32); 8] = [
+/// Columns of bytes with their least widths, in their order; that of the value follows from what it is.
+const BYTES: [(Column, f32); 8] = [
     (Column::Marks, 38.0),
     (Column::Address, 80.0),
     (Column::Name, 118.0),
-    (Column::Hex, 60.0),
+    (Column::Value, 60.0),
     (Column::Decimal, 96.0),
     (Column::Meaning, 130.0),
     (Column::Access, 48.0),
     (Column::Default, 84.0),
 ];
+/// Those of numbers.
+const NUMBERS: [(Column, f32); 7] = [
+    (Column::Marks, 42.0),
+    (Column::Address, 40.0),
+    (Column::Name, 150.0),
+    (Column::Value, 60.0),
+    (Column::Meaning, 110.0),
+    (Column::Range, 150.0),
+    (Column::Default, 96.0),
+];
 /// What falls away, the first first. It is under the pointer then.
-const LEAST: [Column; 3] = [Column::Decimal, Column::Default, Column::Access];
+const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
 /// The share of what is left that the name gets; the meaning gets the rest.
 const NAME: f32 = 0.45;
 
@@ -36,12 +49,15 @@ const NAME: f32 = 0.45;
 pub(super) struct Columns(Vec<(Column, Rangef)>);
 
 impl Columns {
-    /// The columns in so much room, with so much for the bytes.
-    pub(super) fn new(width: f32, hex: f32) -> Self {
-        let mut shown = WIDTHS.to_vec();
+    /// The columns in so much room, with so much for the value.
+    pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
+        let mut shown = match kind {
+            RegisterKind::Bytes { .. } => BYTES.to_vec(),
+            RegisterKind::Numbers => NUMBERS.to_vec(),
+        };
         for (column, own) in &mut shown {
-            if *column == Column::Hex {
-                *own = own.max(hex);
+            if *column == Column::Value {
+                *own = own.max(value);
             }
         }
         for least in LEAST {
@@ -86,27 +102,33 @@ fn total(columns: &[(Column, f32)]) -> f32 {
 mod tests {
     use super::*;
 
-    fn shown(width: f32) -> Vec<Column> {
-        Columns::new(width, 100.0).iter().map(|(column, _)| column).collect()
+    const BYTES: RegisterKind = RegisterKind::Bytes { widest: 1 };
+
+    fn shown(kind: RegisterKind, width: f32) -> Vec<Column> {
+        Columns::new(kind, width, 100.0).iter().map(|(column, _)| column).collect()
     }
 
     #[test]
     fn what_matters_least_falls_away_first() {
         use Column::*;
         // 38 + 80 + 118 + 100 + 96 + 130 + 48 + 84 = 694.
-        assert_eq!(shown(694.0).len(), 8);
-        assert_eq!(shown(693.0), [Marks, Address, Name, Hex, Meaning, Access, Default]);
-        assert_eq!(shown(597.0), [Marks, Address, Name, Hex, Meaning, Access]);
-        assert_eq!(shown(513.0), [Marks, Address, Name, Hex, Meaning]);
-        assert_eq!(shown(-1.0), [Marks, Address, Name, Hex, Meaning]);
+        assert_eq!(shown(BYTES, 694.0).len(), 8);
+        assert_eq!(shown(BYTES, 693.0), [Marks, Address, Name, Value, Meaning, Access, Default]);
+        assert_eq!(shown(BYTES, 597.0), [Marks, Address, Name, Value, Meaning, Access]);
+        assert_eq!(shown(BYTES, 513.0), [Marks, Address, Name, Value, Meaning]);
+        assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
+        // 42 + 40 + 150 + 100 + 110 + 150 + 96 = 688.
+        assert_eq!(shown(RegisterKind::Numbers, 688.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
+        assert_eq!(shown(RegisterKind::Numbers, 687.0), [Marks, Address, Name, Value, Meaning, Range]);
+        assert_eq!(shown(RegisterKind::Numbers, 591.0), [Marks, Address, Name, Value, Meaning]);
     }
 
     #[test]
     fn name_and_meaning_take_what_is_left() {
-        let columns = Columns::new(794.0, 100.0);
+        let columns = Columns::new(BYTES, 794.0, 100.0);
         assert_eq!(columns.range(Column::Name), Some(Rangef::new(118.0, 281.0)));
-        assert_eq!(columns.range(Column::Hex), Some(Rangef::new(281.0, 381.0)));
+        assert_eq!(columns.range(Column::Value), Some(Rangef::new(281.0, 381.0)));
         assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(477.0, 662.0)));
-        assert_eq!((columns.width(), Columns::new(100.0, 10.0).width()), (794.0, 426.0));
+        assert_eq!((columns.width(), Columns::new(BYTES, 100.0, 10.0).width()), (794.0, 426.0));
     }
 }

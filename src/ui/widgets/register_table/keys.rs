@@ -31,7 +31,7 @@ pub(super) fn listen(
             }
             Event::Text(text) => text.trim().is_empty() || !begin(table, view, Some(text)),
             Event::Copy => {
-                copied = view.selected().map(|place| (table.row)(place).hex);
+                copied = view.selected().map(|place| (table.row)(place).value);
                 copied.is_none()
             }
             _ => true,
@@ -137,7 +137,7 @@ pub(super) fn begin_at(table: &RegisterTable<'_>, view: &mut RegisterView, place
         view.refused = Some(why);
         return true;
     }
-    let text = typed.map_or(row.hex, ToOwned::to_owned);
+    let text = typed.map_or(row.value, ToOwned::to_owned);
     view.edit = Some(Edit { place, text, problem: None, begins: true, typed: typed.is_some() });
     true
 }

@@ -98,7 +98,7 @@ impl Lines {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{RegisterBits, RegisterGroup, RegisterRow};
+    use super::super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
     use super::*;
 
     fn group(rows: usize) -> RegisterGroup {
@@ -113,7 +113,7 @@ mod tests {
     fn every_line_is_found_both_ways() {
         let groups = [group(3), group(0), group(2), group(4)];
         let row = |own: Place| RegisterRow { fields: vec![RegisterBits::default(); own.row + 1], ..Default::default() };
-        let table = RegisterTable { label: "", groups: &groups, row: &row, widest: 1 };
+        let table = RegisterTable { label: "", groups: &groups, row: &row, kind: RegisterKind::Numbers };
         let mut view = RegisterView::default();
         view.fold(2, true);
         [place(0, 0), place(0, 1), place(3, 3), place(2, 1)].into_iter().for_each(|own| view.unfold(own, true));

@@ -5,7 +5,7 @@ use egui::{
 };
 
 use super::columns::{Column, Columns};
-use super::{RegisterBits, RegisterGroup, RegisterRow};
+use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
 use crate::ui::{Skin, icons};
 
 /// Height of the line with the names of the columns.
@@ -37,25 +37,29 @@ impl State {
     }
 }
 
-const fn title(column: Column) -> &'static str {
-    match column {
-        Column::Marks => "",
-        Column::Address => "widget.register_address",
-        Column::Name => "widget.register_name",
-        Column::Hex => "widget.register_hex",
-        Column::Decimal => "widget.register_decimal",
-        Column::Meaning => "widget.register_meaning",
-        Column::Access => "widget.register_access",
-        Column::Default => "widget.register_default",
+const fn title(kind: RegisterKind, column: Column) -> &'static str {
+    match (column, kind) {
+        (Column::Marks, _) => "",
+        (Column::Address, RegisterKind::Bytes { .. }) => "widget.register_address",
+        (Column::Address, RegisterKind::Numbers) => "widget.register_number",
+        (Column::Name, _) => "widget.register_name",
+        (Column::Value, RegisterKind::Bytes { .. }) => "widget.register_hex",
+        (Column::Value, RegisterKind::Numbers) => "widget.register_value",
+        (Column::Decimal, _) => "widget.register_decimal",
+        (Column::Meaning, _) => "widget.register_meaning",
+        (Column::Access, _) => "widget.register_access",
+        (Column::Range, _) => "widget.register_range",
+        (Column::Default, RegisterKind::Bytes { .. }) => "widget.register_default",
+        (Column::Default, RegisterKind::Numbers) => "widget.register_factory",
     }
 }
 
 /// The names of the columns.
-pub(super) fn header(ui: &mut Ui, skin: &Skin, columns: &Columns) {
+pub(super) fn header(ui: &mut Ui, skin: &Skin, kind: RegisterKind, columns: &Columns) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
     let middle = rect.top() + HEADER / 2.0 - 2.0;
     for (column, range) in columns.iter().filter(|(column, _)| *column != Column::Marks) {
-        let words = skin.caption(skin.say(title(column)));
+        let words = skin.caption(skin.say(title(kind, column)));
         inscribe(ui, skin, rect, middle, range, words, column == Column::Decimal);
     }
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, skin.palette.line));
@@ -83,7 +87,7 @@ pub(super) fn row(
     ui: &Ui,
     skin: &Skin,
     rect: Rect,
-    columns: &Columns,
+    (kind, columns): (RegisterKind, &Columns),
     row: &RegisterRow,
     (open, typing): (bool, bool),
     state: State,
@@ -92,27 +96,40 @@ pub(super) fn row(
     marks(ui, skin, rect.left_center(), row, open);
     let palette = skin.palette;
     let value = if row.edited { palette.staged } else { palette.text };
+    if kind == RegisterKind::Numbers
+        && row.read_only.is_none()
+        && let Some(range) = columns.range(Column::Value)
+    {
+        ui.painter().rect_filled(box_of(skin, rect, range), 2.0, palette.raised);
+    }
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
             Column::Marks => continue,
             Column::Address => (skin.mono(&row.address), palette.muted),
             Column::Name => (egui::RichText::new(&row.name), palette.text),
-            Column::Hex if typing => continue,
-            Column::Hex if row.hex.is_empty() => (skin.mono("–"), palette.muted),
-            Column::Hex => (skin.mono(&row.hex), value),
+            Column::Value if typing => continue,
+            Column::Value if row.value.is_empty() => (skin.mono("–"), palette.muted),
+            Column::Value => (skin.mono(&row.value), value),
             Column::Decimal => (skin.mono(&row.decimal), value),
             // The number stands for what it means where its own column has fallen away.
             Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
                 (skin.mono(&row.decimal), value)
             }
+            Column::Meaning if kind == RegisterKind::Numbers => (egui::RichText::new(&row.meaning), palette.muted),
             Column::Meaning => (egui::RichText::new(&row.meaning), value),
             Column::Access => (skin.mono(&row.access), palette.muted),
+            Column::Range => (skin.caption(&row.range), palette.muted),
             Column::Default if row.differs => (skin.mono(format!("≠ {}", row.default)), palette.text),
             Column::Default => (skin.mono(&row.default), palette.muted),
         };
         let right = column == Column::Decimal;
+        let range = match (column, columns.range(Column::Meaning)) {
+            // A text may be longer than a number.
+            (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
+            _ => range,
+        };
         let width = inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), right);
-        if row.edited && column == Column::Hex {
+        if row.edited && column == Column::Value {
             let left = rect.left() + range.min;
             let y = rect.bottom() - 2.0;
             ui.painter().hline(left..=left + width, y, Stroke::new(1.0, palette.staged));
@@ -120,7 +137,14 @@ pub(super) fn row(
     }
 }
 
-/// A caret for bit fields, a dot for what changed, a pencil for what was edited, a flash for what costs.
+/// Where the number of a line can be pressed to edit it.
+pub(super) fn box_of(skin: &Skin, rect: Rect, value: Rangef) -> Rect {
+    let inset = skin.space.inside;
+    let x = rect.left() + value.min - inset..=rect.left() + value.max - skin.space.between;
+    Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
+}
+
+/// A caret for bit fields, a dot for what changed, a pencil for what was edited, a flash for what costs, a disk for what is kept.
 fn marks(ui: &Ui, skin: &Skin, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = skin.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
@@ -138,6 +162,8 @@ fn marks(ui: &Ui, skin: &Skin, left: Pos2, row: &RegisterRow, open: bool) {
     }
     if row.cost.is_some() {
         text(MARK * 2.5, icons::LIGHTNING, palette.warn.into());
+    } else if row.kept.is_some() {
+        text(MARK * 2.5, icons::FLOPPY_DISK, palette.muted.into());
     }
 }
 
@@ -149,9 +175,9 @@ pub(super) fn bits(ui: &Ui, skin: &Skin, rect: Rect, columns: &Columns, bits: &R
         let (words, inset) = match column {
             Column::Address => (skin.mono(&bits.bits), skin.space.between),
             Column::Name => (egui::RichText::new(&bits.name), skin.space.between),
-            Column::Hex => (skin.mono(&bits.value), 0.0),
+            Column::Value => (skin.mono(&bits.value), 0.0),
             Column::Meaning => (egui::RichText::new(&bits.meaning), 0.0),
-            Column::Marks | Column::Decimal | Column::Access | Column::Default => continue,
+            Column::Marks | Column::Decimal | Column::Access | Column::Range | Column::Default => continue,
         };
         let range = Rangef::new(range.min + inset, range.max);
         inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), false);
@@ -182,17 +208,22 @@ fn inscribe(
 }
 
 /// What a register is, and what there was no room for.
-pub(super) fn tip(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &RegisterRow) {
+pub(super) fn tip(ui: &mut Ui, skin: &Skin, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
     ui.spacing_mut().item_spacing.y = skin.space.inside;
     ui.label(egui::RichText::new(row.label()).color(skin.palette.text));
     if !row.meaning.is_empty() {
         ui.label(egui::RichText::new(&row.meaning).color(skin.palette.muted));
     }
-    let values = [(Column::Decimal, &row.decimal), (Column::Access, &row.access), (Column::Default, &row.default)];
+    let values = [
+        (Column::Decimal, &row.decimal),
+        (Column::Access, &row.access),
+        (Column::Range, &row.range),
+        (Column::Default, &row.default),
+    ];
     for (column, value) in values {
         if columns.range(column).is_none() && !value.is_empty() {
             ui.horizontal(|ui| {
-                ui.label(skin.caption(skin.say(title(column))));
+                ui.label(skin.caption(skin.say(title(kind, column))));
                 ui.label(skin.mono(value));
             });
         }
@@ -204,12 +235,16 @@ pub(super) fn tip(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &RegisterRow
     if row.edited {
         note(ui, icons::PENCIL_SIMPLE, &skin.say("widget.register_edited"), palette.staged.into());
     } else if row.changed {
-        note(ui, icons::INFO, &skin.say("widget.register_changed"), palette.accent.into());
+        let before = if row.before.is_empty() { String::new() } else { format!(": {}", row.before) };
+        note(ui, icons::INFO, &format!("{}{before}", skin.say("widget.register_changed")), palette.accent.into());
     }
     if row.differs {
         note(ui, icons::INFO, &skin.say("widget.register_differs"), palette.text.into());
     }
     if let Some(cost) = &row.cost {
         note(ui, icons::LIGHTNING, cost, palette.warn.into());
+    }
+    if let Some(kept) = &row.kept {
+        note(ui, icons::FLOPPY_DISK, kept, palette.muted.into());
     }
 }

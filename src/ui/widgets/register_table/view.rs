@@ -86,6 +86,18 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
+    /// The registers of the table are other ones: what is selected or typed goes along with its own, and ends where that
+    /// has gone.
+    pub fn follow(&mut self, now: impl Fn(Place) -> Option<Place>) {
+        self.selected = match self.selected {
+            Some(Selected::Row(place)) => now(place).map(Selected::Row),
+            group => group,
+        };
+        self.edit = self.edit.take().and_then(|edit| Some(Edit { place: now(edit.place)?, ..edit }));
+        self.open = self.open.iter().filter_map(|place| now(*place)).collect();
+        self.refused = None;
+    }
+
     pub(super) fn go(&mut self, to: Selected) {
         self.selected = Some(to);
         self.reveal = true;

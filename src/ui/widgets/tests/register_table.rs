@@ -10,8 +10,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use super::{CTRL, NONE, focus, press, skin, window};
 use crate::app::Text;
 use crate::ui::widgets::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterOutput, RegisterRow, RegisterTable, RegisterView,
-    register_table,
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,
+    RegisterView, register_table,
 };
 
 #[derive(Default)]
@@ -33,7 +33,7 @@ fn register(place: Place, edited: Option<u8>) -> RegisterRow {
     RegisterRow {
         address: format!("{:02X}:{:02X}", place.group, place.row),
         name: format!("register {}", place.row),
-        hex: format!("{value:02X}"),
+        value: format!("{value:02X}"),
         decimal: value.to_string(),
         meaning: if place.row == 3 { "idle".to_owned() } else { String::new() },
         edited: edited.is_some(),
@@ -45,6 +45,10 @@ fn register(place: Place, edited: Option<u8>) -> RegisterRow {
 }
 
 fn table() -> Harness<'static, Registers> {
+    table_of(RegisterKind::Bytes { widest: 1 })
+}
+
+fn table_of(kind: RegisterKind) -> Harness<'static, Registers> {
     let groups: Vec<RegisterGroup> = (0..BANKS)
         .map(|bank| RegisterGroup { title: format!("Bank {bank:02X}"), note: String::new(), rows: 64 })
         .collect();
@@ -54,7 +58,7 @@ fn table() -> Harness<'static, Registers> {
             *asked.borrow_mut() += 1;
             register(place, edits.get(&place).copied())
         };
-        let model = RegisterTable { label: TABLE, groups: &groups, row: &row, widest: 1 };
+        let model = RegisterTable { label: TABLE, groups: &groups, row: &row, kind };
         let mut put = None;
         let mut take = |place, text: &str| {
             let value = u8::from_str_radix(text, 16).map_err(|_| Text::new("widget.hex_nothing"))?;
@@ -207,4 +211,42 @@ fn a_selected_register_is_brought_in_sight() {
     harness.state_mut().view.select(place(0x23, 0x3F));
     harness.run();
     harness.get_by_label("23:3F register 63");
+}
+
+#[test]
+fn the_box_of_a_number_is_pressed_once() {
+    let entry = |harness: &Harness<'_, Registers>| {
+        harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
+    };
+    for (kind, expected) in
+        [(RegisterKind::Numbers, Some("00:00 register 0")), (RegisterKind::Bytes { widest: 1 }, None)]
+    {
+        let mut harness = table_of(kind);
+        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 behind it
+        // 689.6. The name has 45 % of what is left.
+        let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
+        let value = 232.0 + (spare * 0.45).floor() + 30.0;
+        click(&mut harness, "00:00 register 0", value, 1);
+        assert_eq!(entry(&harness).as_deref(), expected, "{kind:?}");
+        press(&mut harness, &[(NONE, Key::Escape)]);
+        click(&mut harness, "00:01 register 1", value, 1);
+        assert_eq!(entry(&harness), None, "it has no box");
+    }
+}
+
+#[test]
+fn what_is_typed_stays_with_its_register_when_the_lines_are_other_ones() {
+    let mut harness = table();
+    click(&mut harness, "00:05 register 5", 100.0, 2);
+    let typed = |harness: &Harness<'_, Registers>| {
+        harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
+    };
+    assert_eq!(typed(&harness).as_deref(), Some("00:05 register 5"));
+    harness.state_mut().view.follow(|own| Some(Place { row: own.row + 1, ..own }));
+    harness.run();
+    assert_eq!(typed(&harness).as_deref(), Some("00:06 register 6"));
+    assert_eq!(harness.state().view.selected(), Some(place(0, 6)));
+    harness.state_mut().view.follow(|_| None);
+    harness.run();
+    assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
