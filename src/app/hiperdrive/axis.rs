@@ -210,8 +210,10 @@ pub struct Axis {
     step: Step,
     /// What is typed.
     entries: Entries,
-    /// The scale under which the limits were confirmed.
-    confirmed: Option<PositionScale>,
+    /// The spindle is known from before: what is typed is no mere proposal.
+    spindle_known: bool,
+    /// The scale under which the limits were confirmed, and those.
+    confirmed: Option<(PositionScale, (i32, i32))>,
     travel: Travel,
     /// What the place got: `None`: nothing yet.
     reference: Option<i32>,
@@ -274,6 +276,7 @@ impl Axis {
             drive,
             step: Step::Request,
             entries: Entries::new(ruler),
+            spindle_known: ruler.is_some_and(|own| own.pitch.is_some()),
             confirmed: None,
             travel: Travel::default(),
             reference: None,
@@ -360,9 +363,11 @@ impl Axis {
         self.fell_back
     }
 
-    /// How steps are measured: with the scale that the drive has, on the spindle that was typed.
+    /// How steps are measured: with the scale that the drive has, on the spindle that is known or was typed. What is only
+    /// proposed measures nothing.
     pub fn ruler(&self, seen: &Seen) -> Option<Ruler> {
-        Some(Ruler { scale: seen.scale?, pitch: self.entries.pitch().ok() })
+        let typed = self.spindle_known || self.step > Step::Scale;
+        Some(Ruler { scale: seen.scale?, pitch: self.entries.pitch().ok().filter(|_| typed) })
     }
 
     /// How far each step is.

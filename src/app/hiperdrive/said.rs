@@ -113,12 +113,23 @@ impl Unit {
 
     /// A place as a person measures it, with its unit.
     pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
+        let (value, decimals, unit) = self.measured(drive, steps);
+        Text::new("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
+    }
+
+    /// From one place to another, with their unit.
+    pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
+        let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
+        let text = Text::new("hd_entry.range").with_number("low", low, decimals);
+        text.with_number("high", high, decimals).with_text("unit", unit)
+    }
+
+    /// A place as a person measures it, its decimals and its unit.
+    fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
         let (value, measure) = value.map_or((f64::from(steps), super::Measure::Steps), |value| (value, self.measure));
-        Text::new("hd_entry.place")
-            .with_number("value", value, ruler.decimals(measure))
-            .with_text("unit", Text::new(measure.unit()))
+        (value, ruler.decimals(measure), Text::new(measure.unit()))
     }
 
     /// States to which a drive can be led from the one it is in, by one word; none while nobody has control.

@@ -1,6 +1,6 @@
 //! The drive's states, and what moves it: by hand, to a position, at a speed.
 
-use egui::{RichText, Ui};
+use egui::{RichText, Ui, vec2};
 
 use super::{figures, jog};
 use crate::app::explain::hiperdrive as explain;
@@ -9,7 +9,8 @@ use crate::app::{Action, SessionId, Text};
 use crate::device::hiperdrive::dead_man::{Effort, Goal, Motive, Phase};
 use crate::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
 use crate::ui::controls::{
-    allowed_button, card, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry, two_columns,
+    allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
+    two_columns,
 };
 use crate::ui::widgets::{StateMachine, state_machine};
 use crate::ui::{Skin, icons};
@@ -32,8 +33,9 @@ pub(super) struct View {
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
-/// Height of what says what is done with the drive.
+/// Height of what says what is done with the drive, and the width from which that stands beside a heading.
 const SAID: f32 = 32.0;
+const BESIDE: f32 = 560.0;
 /// Height of a window below which the states stand behind what moves the drive.
 const LOW: f32 = 760.0;
 
@@ -97,9 +99,18 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     }
 }
 
-/// The diagram, the words, and what the drive does just now.
+/// The diagram, and what the drive does just now: beside the heading, or below where that is narrow. Always as high, since
+/// nothing may move away under the finger that holds a drive.
 fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_states.title", |ui| {
+    let beside = ui.available_width() >= BESIDE;
+    let mut acts = Vec::new();
+    let aside = |ui: &mut Ui| {
+        ui.allocate_space(vec2(0.0, ui.spacing().interact_size.y));
+        if beside {
+            news(ui, skin, unit, &mut acts);
+        }
+    };
+    card_with(ui, skin, "hd_states.title", aside, |ui| {
         let drive = unit.drive();
         let actual = unit.actual(drive);
         let present = actual.map(|actual| actual.status.state());
@@ -118,34 +129,36 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             };
             actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(wanted)));
         }
-        // Always as high: nothing may move away under the finger that holds a drive.
-        let top = ui.cursor().top();
-        failed(ui, skin, unit, present, actions);
-        if let Some(said) = unit.said(drive) {
-            let ink = if said.is_well { skin.palette.good } else { skin.palette.warn };
-            paragraph(ui, RichText::new(skin.words(&said.words)).color(ink));
+        if !beside {
+            let top = ui.cursor().top();
+            ui.horizontal_wrapped(|ui| news(ui, skin, unit, actions));
+            ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
         }
-        ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
     });
+    actions.append(&mut acts);
 }
 
-/// What has failed, and the way out of it.
-fn failed(ui: &mut Ui, skin: &Skin, unit: &Unit, present: Option<State>, actions: &mut Vec<Action>) {
-    if !matches!(present, Some(State::Fault | State::Locked)) {
-        return;
-    }
-    ui.horizontal_wrapped(|ui| {
+/// What has failed and the way out of it; or how the last act goes on or ended.
+fn news(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let drive = unit.drive();
+    if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
         let open = unit.moves.is_open();
         if enabled_button(ui, open, icons::CHECK, &skin.say("hd_states.acknowledge")).clicked() {
             motor(actions, unit.session.id, Motor::Acknowledge);
         }
-        let newest = unit.drive_status(unit.drive()).and_then(|own| own.buffer.first().copied());
+        let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
             let words = explain::error(code);
             let text = format!("{:04X}  {}", code.code(), skin.words(&words.name));
-            ui.label(RichText::new(text).color(skin.palette.bad)).on_hover_text(skin.words(&words.remedy));
+            let label = egui::Label::new(RichText::new(text).color(skin.palette.bad)).truncate();
+            ui.add(label).on_hover_text(skin.words(&words.remedy));
+            return;
         }
-    });
+    }
+    if let Some(said) = unit.said(drive) {
+        let ink = if said.is_well { skin.palette.good } else { skin.palette.warn };
+        ui.add(egui::Label::new(RichText::new(skin.words(&said.words)).color(ink)).truncate());
+    }
 }
 
 fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
@@ -166,13 +179,12 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
         let now = skin.words(&unit.place(drive, actual.position));
         row(ui, skin, &skin.say("hd_move.now"), skin.mono(now));
     }
-    if let Some((low, high)) = unit.limits(drive) {
-        let [low, high] = [low, high].map(|steps| skin.words(&unit.place(drive, steps)));
-        row(ui, skin, &skin.say("hd_move.range"), skin.mono(format!("{low} … {high}")));
+    if let Some(limits) = unit.limits(drive) {
+        row(ui, skin, &skin.say("hd_move.range"), skin.mono(skin.words(&unit.places(drive, limits))));
     }
+    length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(ui, skin, unit, (unit.moves.move_effort(), drafts), Motor::MoveEffort, actions);
-    length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
     let allowed = effort.and(unit.may_move(drive));
     ui.horizontal_wrapped(|ui| {
         if allowed_button(ui, skin, &allowed, icons::PLAY, &skin.say("hd_move.go")).clicked() {

@@ -28,9 +28,9 @@ pub struct StateMachine<'a> {
 }
 
 /// Sizes in points.
-const BOX: f32 = 40.0;
+const BOX: f32 = 36.0;
 const GAP: f32 = 28.0;
-const BETWEEN: f32 = 44.0;
+const BETWEEN: f32 = 32.0;
 const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;

@@ -85,7 +85,7 @@ impl Axis {
     pub(in crate::app) fn begin(&mut self, ask: Ask, seen: &Seen) {
         match ask {
             Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Recall => self.asked = Some(ask),
-            Ask::ConfirmLimits => self.confirmed = seen.scale,
+            Ask::ConfirmLimits => self.confirmed = seen.scale.zip(seen.limits),
             Ask::PowerCycle => self.lose(),
             Ask::Move(_) | Ask::Take | Ask::Give => {}
         }

@@ -160,8 +160,8 @@ impl Axis {
 
     /// Somebody has confirmed the limits under the scale that the drive has.
     pub(super) fn is_confirmed(&self, seen: &Seen) -> bool {
-        let own = self.confirmed.is_some() && self.confirmed == seen.scale;
-        own && !seen.locks.contains(&Lock::LimitsUnconfirmed)
+        let scale = self.confirmed.map(|(scale, _)| scale);
+        scale.is_some() && scale == seen.scale && !seen.locks.contains(&Lock::LimitsUnconfirmed)
     }
 
     /// Where a test move leads.

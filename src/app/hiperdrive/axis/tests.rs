@@ -387,7 +387,25 @@ fn every_step_says_what_to_do_and_what_was_found() {
     }
     let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
     assert_eq!(found(Step::Scale), "The drive has 400/256: 400 steps a turn.");
+    assert_eq!(found(Step::Confirm), "The drive has -2044.00 mm … 2044.00 mm.", "those that were looked at");
     assert_eq!(found(Step::Upper), "The drive has -10.00 mm … 20.00 mm.");
     assert_eq!(found(Step::Jog), "Moved 5.00 mm up and 4.00 mm down. Clockwise counts up.");
     assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm beside them.");
+}
+
+/// A pitch that is only proposed is nobody's: 65536 steps a turn stay steps until there is one.
+#[test]
+fn millimetres_come_with_a_spindle() {
+    let (mut axis, mut seen) = (run(), fresh());
+    let position = |axis: &Axis, seen: &Seen| words::millimetres(axis.ruler(seen), 400).words(Language::English);
+    assert_eq!(position(&axis, &seen), "400 steps");
+    press(&mut axis, &mut seen, Button::Do);
+    next(&mut axis, &seen, Step::Scale);
+    press(&mut axis, &mut seen, Button::Do);
+    assert_eq!(position(&axis, &seen), "400 steps");
+    next(&mut axis, &seen, Step::Confirm);
+    assert_eq!(position(&axis, &seen), "4.00 mm");
+    let pitch = Some(crate::protocol::hiperdrive::Length { nanometres: 8_000_000 });
+    let known = Axis::new(axis.drive(), Some(Ruler { scale: seen.scale.unwrap(), pitch }));
+    assert_eq!(position(&known, &seen), "8.00 mm");
 }

@@ -78,7 +78,9 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             Some(text.with_number("steps", per_turn, decimals))
         }
         Step::Confirm | Step::Upper => {
-            let (low, high) = seen.limits?;
+            // What was confirmed stays what it was, also after others were taught.
+            let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|(_, limits)| limits);
+            let (low, high) = confirmed.or(seen.limits)?;
             Some(Text::new("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
         }
         Step::Jog => {
