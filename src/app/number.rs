@@ -122,7 +122,12 @@ fn filled(what: &'static str, text: &str) -> Result<(), Text> {
 
 /// As many decimals as a limit needs, three at most.
 pub(super) fn decimals(value: f64) -> usize {
-    (0..3).find(|count| (value * 10_f64.powi(*count)).fract() == 0.0).unwrap_or(3) as usize
+    decimals_of(value, 3)
+}
+
+/// As many decimals as a number needs, up to those.
+pub(super) fn decimals_of(value: f64, most: usize) -> usize {
+    (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }
 
 #[cfg(test)]

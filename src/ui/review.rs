@@ -1,7 +1,10 @@
 //! The review of a write, whatever the device: every operation old → new, what it costs and needs, the consent, how far it
 //! is, what came of it.
 
-use egui::{RichText, ScrollArea, Ui};
+use std::sync::Arc;
+
+use egui::text::{LayoutJob, TextFormat};
+use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
 use super::controls::{enabled_button, modal, paragraph, primary, row, spinner};
 use super::{Skin, icons};
@@ -12,15 +15,17 @@ use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
+    // As many operations as there is room for beside all that is said of them.
+    let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
     modal(ctx, skin, "review", width, |ui| {
         ui.label(skin.heading(skin.words(&sheet.what)));
         ui.label(skin.label(device.name()));
         ui.add_space(skin.space.between);
-        content(ui, skin, device, &sheet, actions);
+        content(ui, skin, device, (&sheet, room), actions);
     });
 }
 
-fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions: &mut Vec<Action>) {
+fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet, f32), actions: &mut Vec<Action>) {
     match &sheet.stage {
         Stage::Planning => {
             ui.horizontal(|ui| {
@@ -39,7 +44,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             buttons(ui, skin, device, actions, "review.close", |_, _| {});
         }
         Stage::Ready(plan) => {
-            operations(ui, skin, &sheet.lines, None);
+            operations(ui, skin, (&sheet.lines, room), None);
             remarks(ui, skin, sheet);
             options(ui, skin, device, sheet, actions);
             ui.label(skin.label(skin.say(sheet.manner.way())));
@@ -51,7 +56,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             });
         }
         Stage::Writing(done) => {
-            operations(ui, skin, &sheet.lines, Some(*done));
+            operations(ui, skin, (&sheet.lines, room), Some(*done));
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
             let stopping = device.running().is_some_and(|running| running.stopping);
@@ -66,7 +71,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             });
         }
         Stage::Done { verified, backup, logbook } => {
-            operations(ui, skin, &sheet.lines, Some(usize::MAX));
+            operations(ui, skin, (&sheet.lines, room), Some(usize::MAX));
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
                 ui.label(skin.words(verified));
@@ -117,23 +122,35 @@ fn buttons(
 }
 
 /// The operations; while they are carried out, with the number of those that are done. What is written is never cut off.
-fn operations(ui: &mut Ui, skin: &Skin, lines: &[OpWords], done: Option<usize>) {
+fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: Option<usize>) {
     let palette = skin.palette;
     skin.sunken().show(ui, |ui| {
-        ScrollArea::vertical().id_salt("operations").max_height(280.0).auto_shrink([false, true]).show(ui, |ui| {
+        ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             for (at, line) in lines.iter().enumerate() {
                 if at > 0 {
                     ui.separator();
                 }
                 let is_done = done.is_some_and(|done| at < done);
-                ui.horizontal(|ui| {
-                    let icon = if is_done { icons::CHECK } else { icons::PENCIL_SIMPLE };
-                    let colour = if is_done { palette.good } else { palette.muted };
-                    ui.label(RichText::new(icon).color(colour));
-                    ui.label(skin.words(&line.item));
-                });
                 // What was read back is no longer what is only meant to be.
                 let ink = if is_done { palette.good } else { palette.staged };
+                let (icon, colour) =
+                    if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
+                let short = match line.changes.as_slice() {
+                    [change] if change.part.is_none() => short(ui, skin, change, ink),
+                    _ => None,
+                };
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(icon).color(colour));
+                    ui.label(skin.words(&line.item));
+                    if let Some(words) = &short {
+                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                            ui.add(egui::Label::new(words.clone()).selectable(true));
+                        });
+                    }
+                });
+                if short.is_some() {
+                    continue;
+                }
                 let heads = if done == Some(usize::MAX) {
                     ["review.before", "review.after"]
                 } else {
@@ -144,6 +161,23 @@ fn operations(ui: &mut Ui, skin: &Skin, lines: &[OpWords], done: Option<usize>) 
         });
     });
     ui.add_space(skin.space.between);
+}
+
+/// What is there and what will be, on one line: where they have room beside what they are of.
+fn short(ui: &Ui, skin: &Skin, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
+    let mut job = LayoutJob::default();
+    let font = FontId::monospace(skin.sizes.body);
+    let parts = [
+        (skin.words(&change.old), skin.palette.muted),
+        ("  →  ".to_owned(), skin.palette.muted),
+        (skin.words(&change.new), ink),
+    ];
+    for (words, ink) in parts {
+        job.append(&words, 0.0, TextFormat::simple(font.clone(), ink.into()));
+    }
+    job.wrap.max_width = f32::INFINITY;
+    let galley = ui.painter().layout_job(job);
+    (galley.rows.len() == 1 && galley.size().x <= ui.available_width() * SHORT).then_some(galley)
 }
 
 /// One thing that changes: what it is, what is there before, and what after it.
@@ -167,6 +201,12 @@ fn change_ui(ui: &mut Ui, skin: &Skin, change: &ChangeWords, heads: [&'static st
     }
 }
 
+/// Height of the operations, at least and at most, and of all else in the dialog and around it.
+const LEAST: f32 = 200.0;
+const MOST: f32 = 440.0;
+const REST: f32 = 400.0;
+/// The share of a line that old and new may have together.
+const SHORT: f32 = 0.6;
 /// Width of the column that says which is old and which is new.
 const HEADS: f32 = 56.0;
 

@@ -1,11 +1,14 @@
 //! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
 
 use super::network::PowerUp;
+use super::ruler::Measure;
+use super::words;
+use crate::app::number::decimals_of;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::device::hiperdrive::write::Written;
 use crate::profile::Plan;
-use crate::profile::hiperdrive::{Base, Op, Service, warnings};
+use crate::profile::hiperdrive::{self, Base, Image, Op, Service, warnings};
 use crate::protocol::hiperdrive::{AddressSwitch, ParameterNumber};
 use crate::worker::hiperdrive::{Change, Hiperdrive, Prepared};
 
@@ -38,8 +41,21 @@ impl Reviewed for Hiperdrive {
         &prepared.plan
     }
 
-    fn op(_: &Prepared, op: &Op) -> OpWords {
-        explain::hiperdrive::op(op)
+    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+        let mut words = explain::hiperdrive::op(op);
+        if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
+            let now = prepared.plan.base.image();
+            let then = now.with(&hiperdrive::written(&prepared.plan));
+            let meant = |text: &mut Text, value, image| {
+                if let Some(meaning) = meaning(*number, value, image) {
+                    let value = text.clone();
+                    *text = Text::new("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
+                }
+            };
+            old.iter().for_each(|old| meant(&mut change.old, *old, &now));
+            meant(&mut change.new, *new, &then);
+        }
+        words
     }
 
     fn leaves_mounting(prepared: &Prepared) -> bool {
@@ -90,6 +106,18 @@ impl Reviewed for Hiperdrive {
 
     fn written(written: &Written) -> Text {
         explain::hiperdrive::written(written)
+    }
+}
+
+/// What a value means that the number alone does not say: places in turns, under the scale of then.
+fn meaning(number: ParameterNumber, value: i64, image: &Image) -> Option<Text> {
+    match (number.base(), number.drive()) {
+        (158 | 160 | 170 | 176 | 198, Some(drive)) => {
+            let turns = value as f64 / image.scale(drive)?.steps_per_turn();
+            let text = Text::new("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
+            Some(text.with_text("unit", Text::new(Measure::Turns.unit())))
+        }
+        _ => words::meaning(number, value),
     }
 }
 

@@ -4,6 +4,7 @@ use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
 use super::words;
+use crate::app::number::decimals_of;
 use crate::app::{Text, explain};
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{
@@ -152,13 +153,16 @@ impl Unit {
                 let ruler = self.wanted_ruler(drive);
                 let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };
                 let place = ruler.of(*value, measure)?;
-                let text = Text::new("hd_entry.place").with_number("value", place, ruler.decimals(measure).min(4));
+                let text = Text::new("hd_entry.place").with_number(
+                    "value",
+                    place,
+                    decimals_of(place, ruler.decimals(measure).min(4)),
+                );
                 Some(text.with_text("unit", Text::new(measure.unit())))
             }
             (154 | 156, Some(drive)) => {
                 let steps = self.wanted_ruler(drive).scale.steps_per_turn();
-                let decimals = if steps.fract() == 0.0 { 0 } else { 3 };
-                Some(Text::new("hd_meaning.steps_a_turn").with_number("steps", steps, decimals))
+                Some(Text::new("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
             }
             (106, Some(drive)) => {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);

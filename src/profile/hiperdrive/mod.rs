@@ -21,7 +21,7 @@ pub use error::PlanError;
 pub use image::Image;
 pub use item::{Item, ItemError};
 pub use network::{NetworkSettings, plan_network};
-pub use plan::{Base, HiperdrivePlan, Op, Service};
+pub use plan::{Base, HiperdrivePlan, Op, Service, written};
 pub use record::{HiperdriveProfile, Kept, MountingMark, ProfileDrive, ProfileIdentity};
 pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore};
 pub use warning::{Warning, warnings};

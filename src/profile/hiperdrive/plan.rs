@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Item, NetworkSettings};
+use super::{Image, Item, NetworkSettings};
 use crate::profile::{Operation, Plan};
 use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber};
@@ -18,6 +18,22 @@ pub struct Base {
     pub values: BTreeMap<ParameterNumber, i64>,
     /// The TCP/IP object, where it is to be changed.
     pub network: Option<NetworkSettings>,
+}
+
+impl Base {
+    /// Its parameters.
+    pub fn image(&self) -> Image {
+        Image { values: self.values.clone() }
+    }
+}
+
+/// The parameters that a plan writes, as they will be.
+pub fn written(plan: &HiperdrivePlan) -> Image {
+    let written = plan.ops.iter().filter_map(|op| match op {
+        Op::Write { number, new, .. } => Some((*number, *new)),
+        Op::Service(_) | Op::Network { .. } => None,
+    });
+    Image { values: written.collect() }
 }
 
 /// One thing that is done.

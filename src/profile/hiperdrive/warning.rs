@@ -1,7 +1,7 @@
 //! What a person should know of a plan before it is carried out.
 
 use super::network::SWITCH;
-use super::{HiperdrivePlan, Image, Item, Op};
+use super::{HiperdrivePlan, Image, Item, written};
 use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
 /// What a plan brings along.
@@ -28,12 +28,7 @@ pub enum Warning {
 
 /// All that is to be known of a plan.
 pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
-    let now = Image { values: plan.base.values.clone() };
-    let written = plan.ops.iter().filter_map(|op| match op {
-        Op::Write { number, new, .. } => Some((*number, *new)),
-        Op::Service(_) | Op::Network { .. } => None,
-    });
-    let written = Image { values: written.collect() };
+    let (now, written) = (plan.base.image(), written(plan));
     let then = now.with(&written);
     let mut warnings: Vec<Warning> = then.drives().into_iter().filter_map(|drive| moved(&now, &then, drive)).collect();
     for (&number, &new) in &written.values {
