@@ -14,6 +14,7 @@ mod interbus;
 mod kind;
 mod number;
 mod output;
+mod patience;
 mod plan;
 mod ports;
 mod positions;

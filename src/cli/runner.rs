@@ -11,6 +11,8 @@ use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
+use super::output::say;
+use super::patience::{Pace, Patience};
 use super::{Failure, Result};
 use crate::app::Text;
 use crate::app::explain;
@@ -52,6 +54,14 @@ pub(super) trait Runs: Device {
     /// A job that ended early, in words.
     fn failure(error: &Self::Error) -> Vec<Text>;
 
+    /// How long its replies take, where that is measured and the link says how long they may.
+    fn reply_pace(_session: &Session<Self>) -> Option<Pace>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
     /// What Ctrl-C does at once, before anything else, each time that it is pressed.
     fn interrupt(_kept: &Self::Kept) -> Box<dyn Fn() + Send> {
         Box::new(|| ())
@@ -63,6 +73,7 @@ pub(super) struct Runner<D: Runs> {
     worker: Worker<D>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
+    patience: Patience,
     /// What the device said on the way of the last job.
     pub(super) remarks: Vec<D::Remark>,
     /// What is known of the session.
@@ -100,6 +111,7 @@ impl<D: Runs> Runner<D> {
         if let Some(path) = &common.trace {
             record(&mut session, path)?;
         }
+        let patience = Patience::begin(D::reply_pace(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
         let stopper = worker.stopper();
@@ -115,7 +127,7 @@ impl<D: Runs> Runner<D> {
             stopper.stop();
         })
         .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
-        Ok(Runner { worker, interrupted, remarks: Vec::new(), kept })
+        Ok(Runner { worker, interrupted, patience, remarks: Vec::new(), kept })
     }
 
     /// Runs a job to its end.
@@ -134,7 +146,13 @@ impl<D: Runs> Runner<D> {
         let bar = Bar::default();
         let mut announced = None;
         loop {
-            match self.worker.events().recv().map_err(|_| Ended::Worker)? {
+            let Some(event) = self.next_event()? else {
+                if let Some(words) = self.patience.words() {
+                    bar.say(&words);
+                }
+                continue;
+            };
+            match event {
                 Event::Progress(of, progress) if of == id => {
                     let words = D::announce(&progress.what);
                     if let Some(words) = words.as_ref().filter(|_| words != announced) {
@@ -151,6 +169,19 @@ impl<D: Runs> Runner<D> {
                 Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => return Err(Ended::Job(error)),
                 _ => {}
             }
+        }
+    }
+
+    /// What the worker tells next; `None` where it is time to look how things go.
+    fn next_event(&self) -> std::result::Result<Option<Event<D>>, Ended<D>> {
+        let events = self.worker.events();
+        let Some(left) = self.patience.left() else {
+            return events.recv().map(Some).map_err(|_| Ended::Worker);
+        };
+        match events.recv_timeout(left) {
+            Ok(event) => Ok(Some(event)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err(Ended::Worker),
         }
     }
 
@@ -268,9 +299,13 @@ impl Bar {
 }
 
 impl Bar {
-    /// A line above the bar.
+    /// A line above the bar, or where it will be.
     fn say(&self, words: &str) {
-        self.0.println(words);
+        match self.0.length() {
+            Some(_) => self.0.println(words),
+            None if self.0.is_hidden() => {}
+            None => say(&format!("{words}\n")),
+        }
     }
 }
 

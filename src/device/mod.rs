@@ -7,8 +7,10 @@ pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod line;
+mod replies;
 pub mod ssi;
 mod written;
 
 pub use line::{Echo, LineState};
+pub use replies::Replies;
 pub use written::Written;

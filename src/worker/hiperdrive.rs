@@ -115,14 +115,14 @@ impl Device for Hiperdrive {
         Ok(match job {
             HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
             HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
-            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk))?)),
-            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk))?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Survey => {
                 let survey = survey(&mut self.master(desk), &mut parameter)?;
                 self.control.rule_by(&survey);
                 Out::Surveyed(Box::new(survey))
             }
-            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk))?)),
+            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Check => {
                 let told = &mut |done, total, what| step(done, total, Doing::Step(what));
                 Out::Check(check_device(&mut self.master(desk), told)?)
@@ -132,7 +132,7 @@ impl Device for Hiperdrive {
             HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(desk))?)),
             HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Take => {
-                self.take(desk)?;
+                self.take(desk, &mut parameter)?;
                 Out::Taken
             }
             HiperdriveJob::Give => {

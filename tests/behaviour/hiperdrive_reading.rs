@@ -233,3 +233,17 @@ fn devices_are_found_by_asking_an_address() {
     let wrong = bench.run(&["find", "hiperdrive", "--link", "sim:"]);
     wrong.fails(2, &["enip:ADDRESS"]);
 }
+
+/// At a terminal there is a bar, and a word on the network; a script reads nothing of that.
+#[test]
+fn a_slow_device_is_read_without_a_word_where_nobody_looks() {
+    let bench = Bench::new();
+    let ran = ask(&bench, "sim:?fault=delay:200", &["status", "hiperdrive"]);
+    assert!(ran.json()["ok"] == json!(true) && ran.err.is_empty(), "{ran:?}");
+    bench
+        .run(&["read", "hiperdrive", "158", "--link", "sim:?fault=delay:100&timeout=20"])
+        .fails(1, &["too late", "timeout=2000 in the link"]);
+    bench
+        .run(&["read", "hiperdrive", "158", "--link", "sim:?fault=silent-after:0&timeout=20"])
+        .fails(1, &["does not answer", "timeout=2000 in the link"]);
+}

@@ -7,7 +7,9 @@ use crate::app::{Text, explain};
 use crate::cli::Result;
 use crate::cli::args::{Code, OfDrive};
 use crate::cli::output::say;
+use crate::cli::patience::Pace;
 use crate::cli::runner::{self, Runs, unexpected};
+use crate::device::hiperdrive::Station;
 use crate::link::LinkUrl;
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Value};
 use crate::store::Store;
@@ -46,6 +48,11 @@ impl Runs for Hiperdrive {
 
     fn failure(error: &JobError) -> Vec<Text> {
         explain::hiperdrive::job(error)
+    }
+
+    fn reply_pace(session: &Session<Self>) -> Option<Pace> {
+        let station = session.station();
+        Some(Pace { replies: station.replies(), timeout: station.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
     /// What moves is told to stop, and that is waited for.

@@ -200,7 +200,7 @@ const NEVER: i64 = 255;
 pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> Result<Vec<Line>, Error> {
     let mut lines = Vec::new();
     told(0, 1, Step::Messages);
-    let identity = identify(master)?;
+    let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
     lines.push(Line::of(Step::Supply, vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)]));

@@ -1,6 +1,7 @@
 //! What can go wrong with drives behind EtherNet/IP, with the facts a person needs.
 
 use std::fmt;
+use std::time::Duration;
 
 use crate::device::line::LineError;
 use crate::link::LinkError;
@@ -83,6 +84,15 @@ pub enum Damage {
     },
 }
 
+/// Replies that came when nobody waited for them any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Late {
+    /// The slowest of them.
+    pub took: Duration,
+    /// So long one may take, beside the margin of the line.
+    pub waited: Duration,
+}
+
 /// Why a request was not done, as the device says it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
@@ -136,6 +146,8 @@ pub enum Error {
         asked: Asked,
         /// How often.
         tries: u32,
+        /// It did, but too late; `None` where nothing came.
+        late: Option<Late>,
     },
     /// It answers, and not as it should.
     #[error("{asked}: {cause}, tried {tries} times")]

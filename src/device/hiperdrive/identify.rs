@@ -90,6 +90,30 @@ pub struct DriveStatus {
     pub requested: bool,
 }
 
+/// Who is told what is read next, and how many of how many have been read.
+pub(super) type Told<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
+
+/// What is read, one after the other.
+struct Steps<'t> {
+    done: u64,
+    total: u64,
+    told: Told<'t>,
+}
+
+impl Steps<'_> {
+    /// This is read next.
+    fn next(&mut self, number: ParameterNumber) -> ParameterNumber {
+        (self.told)(self.done, self.total, number);
+        self.done += 1;
+        number
+    }
+
+    /// So many are not read.
+    fn skip(&mut self, count: u64) {
+        self.done += count;
+    }
+}
+
 /// Where a drive is and how fast, read at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
@@ -123,30 +147,34 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; what the device refuses; the way.
-pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
+pub fn identify(master: &mut Master<'_>, told: Told<'_>) -> Result<Identity, Error> {
+    // Parameters of a drive, and of the device.
+    const DRIVE: u64 = 6;
+    const DEVICE: u64 = 5;
     let category = category(master)?;
     let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category.clone() })?;
+    let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, told };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
-        let variant = master.read_number(of(120, number)?)?;
+        let variant = master.read_number(steps.next(of(120, number)?))?;
         let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
         if variant == Variant::NONE {
+            steps.skip(DRIVE - 1);
             continue;
         }
-        drives.push(DriveIdentity {
-            number,
-            variant,
-            name: drive_text(master, 121, number)?,
-            article_number: drive_text(master, 122, number)?,
-            serial_number: drive_text(master, 123, number)?,
-            version: drive_text(master, 125, number)?,
-            requested: is_requested(master, number)?,
-        });
+        let mut text = |base| {
+            steps.next(of(base, number)?);
+            drive_text(master, base, number)
+        };
+        let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
+        steps.next(of(152, number)?);
+        let requested = is_requested(master, number)?;
+        drives.push(DriveIdentity { number, variant, name, article_number, serial_number, version, requested });
     }
     master.learn(topology);
-    let mut text = |number| master.read_text(own(number)?);
+    let mut text = |number| master.read_text(steps.next(own(number)?));
     let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
-    let serial_number = master.read_number(own(17)?)?.to_string();
+    let serial_number = master.read_number(steps.next(own(17)?))?.to_string();
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
@@ -173,8 +201,8 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ParameterNumber)) -> Result<Survey, Error> {
-    let identity = identify(master)?;
+pub fn survey(master: &mut Master<'_>, told: Told<'_>) -> Result<Survey, Error> {
+    let identity = identify(master, told)?;
     let numbers: Vec<ParameterNumber> = readable(&identity).collect();
     let total = numbers.len() as u64;
     let mut values = BTreeMap::new();
@@ -203,36 +231,53 @@ fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
     device.chain(drives)
 }
 
+/// Parameters that tell the status of a drive.
+const OF_STATUS: u64 = 15;
+
 /// Reads errors and states of all drives.
 ///
 /// # Errors
 /// As [`identify`].
-pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
+pub fn read_status(master: &mut Master<'_>, told: Told<'_>) -> Result<Status, Error> {
     let topology = topology(master)?;
+    // Of each drive whether it is there, and the rest.
+    let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, told };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
-        if master.read_number(of(120, number)?)? != i64::from(Variant::NONE.number()) {
-            drives.push(drive_status(master, number)?);
+        if master.read_number(steps.next(of(120, number)?))? == i64::from(Variant::NONE.number()) {
+            steps.skip(OF_STATUS);
+        } else {
+            drives.push(status_of(master, number, &mut steps)?);
         }
     }
-    let (supply_tenths, temperature) = (master.read_number(own(9)?)?, master.read_number(own(11)?)?);
+    let mut device = |number| master.read_number(steps.next(own(number)?));
+    let (supply_tenths, temperature) = (device(9)?, device(11)?);
     Ok(Status { drives, supply_tenths, temperature })
 }
 
 pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
+    status_of(master, number, &mut Steps { done: 0, total: OF_STATUS, told: &mut |_, _, _| {} })
+}
+
+fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>) -> Result<DriveStatus, Error> {
+    let mut read = |base| master.read_number(steps.next(of(base, number)?));
+    // A number of 16 bits, as bits.
+    let mut word = |base| Ok::<_, Error>(read(base)? as u16);
     let mut buffer = Vec::new();
     for error in 108..=115 {
-        let code = word(master, error, number)?;
+        let code = word(error)?;
         buffer.extend((code != 0).then_some(ErrorCode::new(code)));
     }
+    let status = StatusWord::new(word(105)?);
+    let words = [word(116)?, word(117)?, word(118)?];
     Ok(DriveStatus {
         number,
-        status: StatusWord::new(word(master, 105, number)?),
+        status,
         buffer,
-        words: [word(master, 116, number)?, word(master, 117, number)?, word(master, 118, number)?],
-        faults: u8::try_from(master.read_number(of(197, number)?)?).unwrap_or(u8::MAX),
-        temperature: master.read_number(of(119, number)?)?,
-        requested: is_requested(master, number)?,
+        words,
+        faults: u8::try_from(read(197)?).unwrap_or(u8::MAX),
+        temperature: read(119)?,
+        requested: read(152)? != 0,
     })
 }
 

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use connection::Opened;
 
-use super::error::{Asked, Damage, Refusal};
+use super::error::{Asked, Damage, Late, Refusal};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, TRIES};
@@ -253,7 +253,7 @@ impl<'a> Master<'a> {
         repeats: Repeats,
         mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
     ) -> Result<T, Error> {
-        let mut tries = 0;
+        let (mut tries, late) = (0, self.station.late);
         loop {
             tries += 1;
             let trouble = match once(self)? {
@@ -273,7 +273,12 @@ impl<'a> Master<'a> {
                 }
                 Trouble::Status(status) => return Err(Error::Encapsulation { asked, status }),
                 _ if may && repeats == Repeats::Always => {}
-                Trouble::Silence => return Err(Error::NoReply { asked, tries }),
+                Trouble::Silence => {
+                    let took = self.station.replies.longest();
+                    let is_late = self.station.late > late && took >= longest;
+                    let late = is_late.then_some(Late { took, waited: self.station.timeout });
+                    return Err(Error::NoReply { asked, tries, late });
+                }
                 Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
             }
         }
@@ -282,10 +287,9 @@ impl<'a> Master<'a> {
     /// Sends a frame under a number of its own, and waits for the one that answers it.
     fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, Trouble>, Error> {
         self.line.start()?;
-        frame.context = self.station.next.to_le_bytes();
-        self.station.next = self.station.next.wrapping_add(1);
-        let bytes = frame.emit();
         let sent_at = self.line.now();
+        frame.context = self.station.begin(sent_at).to_le_bytes();
+        let bytes = frame.emit();
         self.station.line.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
         let deadline = sent_at + self.station.timeout + self.station.line.margin;
@@ -294,7 +298,9 @@ impl<'a> Master<'a> {
             loop {
                 match self.station.receiver.next_frame() {
                     Ok(Some(answer)) => {
-                        self.line.show(self.line.now(), MaskedBytes::clear(&answer.emit()));
+                        let now = self.line.now();
+                        self.line.show(now, MaskedBytes::clear(&answer.emit()));
+                        self.station.heard(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.answers(&frame) {
                             self.station.late += 1;

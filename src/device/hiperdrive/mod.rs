@@ -21,7 +21,7 @@ mod station;
 pub mod write;
 
 pub use discover::{Found, discover};
-pub use error::{Asked, Damage, Error, Refusal};
+pub use error::{Asked, Damage, Error, Late, Refusal};
 pub use identify::{
     DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
 };

@@ -1,6 +1,6 @@
 //! What is read to be kept, and to be planned upon.
 
-use super::identify::{identify, of};
+use super::identify::{Told, identify, of};
 use super::{DriveIdentity, Error, Identity, Master};
 use crate::profile::Unknown;
 use crate::profile::hiperdrive::{DeviceState, HiperdriveProfile, Image, Positions, ProfileDrive, ProfileIdentity};
@@ -44,11 +44,8 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.
-pub fn save(
-    master: &mut Master<'_>,
-    told: &mut dyn FnMut(u64, u64, ParameterNumber),
-) -> Result<HiperdriveProfile, Error> {
-    let identity = identify(master)?;
+pub fn save(master: &mut Master<'_>, told: Told<'_>) -> Result<HiperdriveProfile, Error> {
+    let identity = identify(master, told)?;
     let image = read_image(master, identity.kept().collect(), told)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
@@ -60,9 +57,9 @@ pub fn save(
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,
-    told: &mut dyn FnMut(u64, u64, ParameterNumber),
+    told: Told<'_>,
 ) -> Result<(Identity, DeviceState), Error> {
-    let identity = identify(master)?;
+    let identity = identify(master, told)?;
     let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
     numbers.sort();
     numbers.dedup();
@@ -82,11 +79,7 @@ pub fn read_state(
     Ok((identity, state))
 }
 
-fn read_image(
-    master: &mut Master<'_>,
-    numbers: Vec<ParameterNumber>,
-    told: &mut dyn FnMut(u64, u64, ParameterNumber),
-) -> Result<Image, Error> {
+fn read_image(master: &mut Master<'_>, numbers: Vec<ParameterNumber>, told: Told<'_>) -> Result<Image, Error> {
     let total = numbers.len() as u64;
     let mut image = Image::default();
     for (done, number) in numbers.into_iter().enumerate() {

@@ -1,15 +1,17 @@
 //! What a session knows about an adapter or a hub, from one job to the next.
 
-use std::collections::BTreeMap;
 use std::collections::hash_map::RandomState;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::time::Duration;
 
+use crate::device::Replies;
 use crate::device::line::LineState;
 use crate::link::{Query, UrlError};
 use crate::protocol::ethernet_ip::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::protocol::hiperdrive::{ByteOrder, Kind, Topology};
+use crate::units::Moment;
 
 /// Link parameters that describe the connection and nothing of a virtual device.
 pub const PARAMETERS: [&str; 4] = ["rpi", "order", "udp", "timeout"];
@@ -32,6 +34,10 @@ pub struct Station {
     pub(super) session: Option<u32>,
     /// The number of the next request.
     pub(super) next: u64,
+    /// Numbers of the last requests that have no reply yet, and when they were sent.
+    open: VecDeque<(u64, Moment)>,
+    /// How long replies take, the late ones as well.
+    pub(super) replies: Replies,
     /// What has come and is no whole frame.
     pub(super) receiver: Receiver,
     /// Frames that came after somebody had waited for them.
@@ -57,6 +63,10 @@ impl Station {
     pub const INTERVAL: Duration = Duration::from_millis(10);
     /// Of a reply.
     pub const TIMEOUT: Duration = Duration::from_secs(1);
+    /// It may be given so long at most.
+    pub const LONGEST_TIMEOUT: Duration = Duration::from_secs(2);
+    /// Requests without a reply whose late ones are told apart: more than are sent before one gives up.
+    const OPEN: usize = 8;
 
     /// A device that nobody has asked.
     pub fn new(margin: Duration) -> Self {
@@ -71,6 +81,8 @@ impl Station {
             line: LineState::new(margin),
             session: None,
             next: 1,
+            open: VecDeque::new(),
+            replies: Replies::default(),
             receiver: Receiver::default(),
             late: 0,
             originator: random as u32,
@@ -122,6 +134,29 @@ impl Station {
     /// Frames that came after somebody had waited for them.
     pub const fn late(&self) -> u64 {
         self.late
+    }
+
+    /// How long replies take, also while a job runs.
+    pub fn replies(&self) -> Replies {
+        self.replies.clone()
+    }
+
+    /// A request is sent; gives back its number.
+    pub(super) fn begin(&mut self, at: Moment) -> u64 {
+        let number = self.next;
+        self.next = number.wrapping_add(1);
+        self.open.truncate(Self::OPEN - 1);
+        self.open.push_front((number, at));
+        number
+    }
+
+    /// A frame with this number has come, which answers the request of that number, in time or not.
+    pub(super) fn heard(&mut self, number: u64, at: Moment) {
+        if let Some(place) = self.open.iter().position(|(own, _)| *own == number)
+            && let Some((_, sent)) = self.open.remove(place)
+        {
+            self.replies.note(at.since(sent));
+        }
     }
 }
 

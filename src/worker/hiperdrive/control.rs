@@ -104,11 +104,15 @@ impl Control {
 
 impl Hiperdrive {
     /// Opens the cyclic connection. Nothing moves by that.
-    pub(super) fn take(&mut self, desk: &mut Desk) -> Result<(), Error> {
+    pub(super) fn take(
+        &mut self,
+        desk: &mut Desk,
+        told: &mut dyn FnMut(u64, u64, ParameterNumber),
+    ) -> Result<(), Error> {
         if self.control.open.is_some() {
             return Err(Error::InControl);
         }
-        let identity = identify(&mut self.master(desk))?;
+        let identity = identify(&mut self.master(desk), told)?;
         self.read_rules(desk, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
         let opened = self.master(desk).forward_open(identity.topology, packets.port())?;

@@ -1,7 +1,7 @@
 //! What can be read of a device. Nothing is set for it, and no cyclic connection is opened.
 
-use encoder_studio::device::hiperdrive::Error;
 use encoder_studio::device::hiperdrive::check::{Finding, Step, Verdict};
+use encoder_studio::device::hiperdrive::{Error, Late};
 use std::sync::{Arc, Mutex};
 
 use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
@@ -9,6 +9,7 @@ use encoder_studio::protocol::ethernet_ip::{AddressSource, Service};
 use encoder_studio::protocol::hiperdrive::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::store::Store;
 use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError, open};
+use encoder_studio::worker::{Event, JobId};
 
 use super::support::{Stand, drive, number};
 
@@ -164,4 +165,40 @@ fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
     assert_eq!(of(Step::Timeout(drive(1))).findings, [Finding::NoTimeout]);
     assert_eq!(of(Step::Address).findings, [Finding::Switch(AddressSwitch::Bootp)]);
     assert!(of(Step::Range(drive(1))).findings.contains(&Finding::Within(65536)));
+}
+
+/// Reading a parameter after the other takes seconds where a reply takes long: each is told, empty places count as done.
+#[test]
+fn what_takes_many_requests_tells_each_of_them() {
+    let mut stand = Stand::new("hub=4&drives=1,0,1");
+    for (job, total, asked) in [(HiperdriveJob::Identify, 29, 1 + 29 - 2 * 5), (HiperdriveJob::Status, 66, 66 - 2 * 15)]
+    {
+        let (name, before) = (format!("{job:?}"), stand.requests().len());
+        let mut told = Vec::new();
+        let ended = stand.session.run(JobId::default(), job, &mut |event| {
+            if let Event::Progress(_, progress) = event {
+                told.push((progress.done, progress.total));
+            }
+        });
+        assert!(matches!(ended, Event::Finished(..)), "{name}: {ended:?}");
+        assert_eq!(stand.requests().len() - before, asked, "{name}");
+        assert!(told.len() >= asked - 1 && told.is_sorted(), "{name}: {told:?}");
+        assert_eq!((told[0], told.last()), ((0, total), Some(&(total - 1, total))), "{name}");
+    }
+}
+
+#[test]
+fn replies_are_measured_and_late_ones_told_from_none() {
+    let mut slow = Stand::new("fault=delay:300");
+    let replies = slow.session.station().replies();
+    slow.run(HiperdriveJob::Read(number(158))).unwrap();
+    let usual = replies.usual().unwrap();
+    assert!((300..400).contains(&usual.as_millis()) && replies.longest() >= usual, "{usual:?}");
+    let mut late = Stand::new("fault=delay:1300");
+    let error = late.run(HiperdriveJob::Read(number(158))).unwrap_err();
+    let Some(Error::NoReply { late: Some(Late { took, waited }), .. }) = error.device() else { panic!("{error}") };
+    assert!((1300..1400).contains(&took.as_millis()) && took > waited, "{took:?} of {waited:?}");
+    let mut silent = Stand::new("fault=silent-after:0");
+    let error = silent.run(HiperdriveJob::Read(number(158))).unwrap_err();
+    assert!(matches!(error.device(), Some(Error::NoReply { late: None, .. })), "{error}");
 }

@@ -3,7 +3,7 @@
 use super::names::parameter;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
-use crate::device::hiperdrive::{Asked, Damage, Error, Refusal};
+use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal};
 use crate::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
 use crate::protocol::hiperdrive::{OutOfRange, ParameterNumber, Range, Topology};
 
@@ -13,9 +13,14 @@ pub fn device(error: &Error) -> Text {
         Error::Link(error) => link(error),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::NeverSilent => Text::new("hd_said.never_silent"),
-        Error::NoReply { asked: what, tries } => {
+        Error::NoReply { asked: what, tries, late: None } => {
             Text::new("hd_said.no_reply").with_text("asked", asked(*what)).with("tries", tries)
         }
+        Error::NoReply { asked: what, tries, late: Some(Late { took, waited }) } => Text::new("hd_said.late_reply")
+            .with_text("asked", asked(*what))
+            .with("tries", tries)
+            .with("took", took.as_millis())
+            .with("waited", waited.as_millis()),
         Error::Damaged { asked: what, tries, cause } => Text::new("hd_said.damaged")
             .with_text("asked", asked(*what))
             .with("tries", tries)

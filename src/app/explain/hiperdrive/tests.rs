@@ -1,10 +1,12 @@
 //! What is said of HIPERDRIVE drives: a sentence on what happened and one on what to do, in both languages.
 
+use std::time::Duration;
+
 use super::{device, ended, lock, plan, warning, weight};
 use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
 use crate::device::hiperdrive::dead_man::{Ended, Lock, Refusal};
-use crate::device::hiperdrive::{Asked, Damage, Error, Refusal as Refused};
+use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal as Refused};
 use crate::profile::hiperdrive::{Item, PlanError, Warning};
 use crate::protocol::ethernet_ip::{AddressError, GeneralStatus, Service};
 use crate::protocol::hiperdrive::{
@@ -53,10 +55,12 @@ fn errors_say_what_happened_and_what_to_do() {
     let asked = Asked::Set(number(158));
     let refusal =
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
+    let late = Late { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
     let ranged = |range| OutOfRange { number: number(186), name: "RS-485 time-out", value: 0, range };
     let errors = [
         Error::NeverSilent,
-        Error::NoReply { asked: Asked::Session, tries: 5 },
+        Error::NoReply { asked: Asked::Session, tries: 5, late: None },
+        Error::NoReply { asked: Asked::Session, tries: 5, late: Some(late) },
         Error::Damaged { asked: Asked::Identity, tries: 5, cause: Damage::Empty },
         Error::Damaged { asked: Asked::Mac, tries: 5, cause: Damage::Cut { bytes: 7 } },
         Error::InControl,
@@ -81,6 +85,12 @@ fn errors_say_what_happened_and_what_to_do() {
     ];
     for error in errors {
         says(&device(&error), 2);
+    }
+    // Where more time may help, the command line says how to give it, and the window speaks of no link.
+    for late in [None, Some(late)] {
+        let text = device(&Error::NoReply { asked: Asked::Session, tries: 5, late });
+        assert!(text.terminal().contains("timeout=2000 in the link"), "{}", text.terminal());
+        assert!(!text.words(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {
         says(&device(&Error::Refused { asked, refusal: refusal(status) }), 2);

@@ -1,0 +1,119 @@
+//! What is said at a terminal while a device answers slowly, so that nobody takes a slow network for a program that hangs.
+
+use std::time::{Duration, Instant};
+
+use crate::device::Replies;
+
+/// Before that nobody wonders.
+const WONDERS: Duration = Duration::from_secs(3);
+/// How often one looks from then on.
+const LOOKS: Duration = Duration::from_millis(500);
+/// A reply that takes as long is a slow one.
+const SLOW: Duration = Duration::from_millis(100);
+
+/// How long replies of a device take, and how long they may.
+pub(super) struct Pace {
+    /// What has been measured.
+    pub(super) replies: Replies,
+    /// So long a reply may take, as `timeout=` in the link says.
+    pub(super) timeout: Duration,
+    /// The longest `timeout=`.
+    pub(super) longest: Duration,
+}
+
+/// Looks after a command that takes long; of one that is slow it tells once.
+pub(super) struct Patience {
+    pace: Option<Pace>,
+    look: Instant,
+}
+
+impl Patience {
+    /// Patience that begins now; a kind of device without a pace is never told slow.
+    pub(super) fn begin(pace: Option<Pace>) -> Self {
+        Patience { pace, look: Instant::now() + WONDERS }
+    }
+
+    /// How long to wait for news before the next look; `None`: as long as it takes.
+    pub(super) fn left(&self) -> Option<Duration> {
+        self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
+    }
+
+    /// Something to say, where it is time to.
+    pub(super) fn words(&mut self) -> Option<String> {
+        let now = Instant::now();
+        let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);
+        match words {
+            Some(_) => self.pace = None,
+            None if now >= self.look => self.look = now + LOOKS,
+            None => {}
+        }
+        words
+    }
+}
+
+impl Pace {
+    /// That it is slow, and where more time may help, how to give it.
+    fn words(&self) -> Option<String> {
+        let (timeout, longest) = (self.timeout, self.replies.longest());
+        let more = if timeout < self.longest {
+            format!("timeout={} in the link gives a reply more time.", self.longest.as_millis())
+        } else {
+            "Look at the load of the network.".to_owned()
+        };
+        let ms = |time: Duration| format!("{} ms", time.as_millis());
+        match self.replies.usual() {
+            None => Some(format!("The device has not answered yet, and is asked again every {}. {more}", ms(timeout))),
+            Some(usual) if usual < SLOW => None,
+            Some(usual) if longest < timeout / 2 => {
+                Some(format!("The device answers slowly: a reply takes {}.", ms(usual)))
+            }
+            Some(_) => Some(format!(
+                "The device answers slowly: a reply takes up to {}, and {} are waited for. {more}",
+                ms(longest),
+                ms(timeout)
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said with a time-out of so many milliseconds, after replies that took so many.
+    fn said(timeout: u64, took: &[u64]) -> Option<String> {
+        let replies = Replies::default();
+        took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));
+        Pace { replies, timeout: Duration::from_millis(timeout), longest: Duration::from_secs(2) }.words()
+    }
+
+    #[test]
+    fn slow_replies_are_told_with_what_helps() {
+        assert_eq!(said(1000, &[3, 5, 4]), None, "what takes long does so for other reasons");
+        assert_eq!(said(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
+        assert_eq!(
+            said(1000, &[600, 800]).unwrap(),
+            "The device answers slowly: a reply takes up to 800 ms, and 1000 ms are waited for. \
+             timeout=2000 in the link gives a reply more time."
+        );
+        assert_eq!(
+            said(1000, &[]).unwrap(),
+            "The device has not answered yet, and is asked again every 1000 ms. \
+             timeout=2000 in the link gives a reply more time."
+        );
+        assert!(said(2000, &[1500]).unwrap().ends_with("are waited for. Look at the load of the network."));
+    }
+
+    #[test]
+    fn nothing_is_said_before_time_and_nothing_twice() {
+        let replies = Replies::default();
+        replies.note(Duration::from_millis(300));
+        let pace = |replies| Pace { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
+        let mut patience = Patience::begin(Some(pace(replies)));
+        assert!(patience.words().is_none() && patience.left().is_some_and(|left| left > WONDERS / 2));
+        patience.look = Instant::now();
+        assert!(patience.words().is_some());
+        assert!(patience.words().is_none() && patience.left().is_none());
+        assert!(Patience::begin(None).left().is_none());
+    }
+}

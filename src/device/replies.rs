@@ -1,0 +1,54 @@
+//! How long a device takes to reply, seen from outside the thread of its session.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// What has been measured of a device's replies since its session began. All copies are the same.
+#[derive(Clone, Debug, Default)]
+pub struct Replies(Arc<Measured>);
+
+#[derive(Debug, Default)]
+struct Measured {
+    count: AtomicU64,
+    /// Microseconds, of all together.
+    sum: AtomicU64,
+    /// Microseconds.
+    longest: AtomicU64,
+}
+
+impl Replies {
+    /// A reply came so long after its request, in time or too late.
+    pub(crate) fn note(&self, took: Duration) {
+        let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
+        self.0.sum.fetch_add(took, Ordering::Relaxed);
+        self.0.longest.fetch_max(took, Ordering::Relaxed);
+        // The last: whoever sees it counted finds the others.
+        self.0.count.fetch_add(1, Ordering::Release);
+    }
+
+    /// How long a reply takes on average; `None` before one came.
+    pub fn usual(&self) -> Option<Duration> {
+        let count = self.0.count.load(Ordering::Acquire);
+        self.0.sum.load(Ordering::Relaxed).checked_div(count).map(Duration::from_micros)
+    }
+
+    /// How long the slowest took; zero before one came.
+    pub fn longest(&self) -> Duration {
+        Duration::from_micros(self.0.longest.load(Ordering::Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replies_are_measured_for_all_who_look() {
+        let (replies, ms) = (Replies::default(), Duration::from_millis);
+        let seen = replies.clone();
+        assert_eq!((seen.usual(), seen.longest()), (None, Duration::ZERO));
+        [100, 500, 300].into_iter().for_each(|took| replies.note(ms(took)));
+        assert_eq!((seen.usual(), seen.longest()), (Some(ms(300)), ms(500)));
+    }
+}
