@@ -18,6 +18,7 @@ pub(super) use decode::{Decode, Direction, Protocol, Words};
 pub(super) use motion::Move;
 pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
 
+use super::hiperdrive::listed_parameters;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
@@ -77,6 +78,7 @@ pub(super) enum Command {
     /// The position.
     Position(Position),
     /// One value: a data field, a register, a setting.
+    #[command(after_long_help = listed_parameters())]
     Read(Read),
     /// Read everything that can be restored, and what identifies the device.
     Save(Save),

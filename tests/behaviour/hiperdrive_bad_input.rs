@@ -94,7 +94,13 @@ fn options_and_actions_of_others_are_refused() {
     }
     bench
         .run(&["do", "hiperdrive", "set-position", "2147483648", "--link", "sim:"])
-        .fails(1, &["-2147483648", "2147483647"]);
+        .fails(1, &["-2147483648", "2147483647", "\"encoder-studio read hiperdrive 158\""]);
+    for number in ["999", "155", "0"] {
+        let ran = bench.run(&["read", "hiperdrive", number, "--link", "sim:"]);
+        ran.fails(2, &[number, "101 to 199", "\"encoder-studio help read\""]);
+    }
+    let help = bench.run(&["help", "read"]).out;
+    assert!(help.contains("  158  lower limit, steps") && help.contains("   17  serial number"), "{help}");
     bench.run(&["identify", "hiperdrive"]).fails(2, &["--link"]);
     bench.run(&["identify", "hiperdrive", "--link", "serial:/dev/null"]).fails(2, &["enip:"]);
     bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1?rpi=1"]).fails(2, &["5 to 100"]);

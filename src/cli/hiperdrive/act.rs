@@ -6,10 +6,10 @@ use crate::app::{Text, explain};
 use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
 use crate::cli::check;
 use crate::cli::consent::require_consent;
-use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
-use crate::cli::runner::unexpected;
+use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Failure, Result};
 use crate::profile::hiperdrive::Service;
 use crate::protocol::hiperdrive::KIND;
@@ -67,8 +67,10 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
 
 fn set_position(act: &Do, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
-    let beyond = || out_of_range("position", text, i32::MIN.into(), i32::MAX.into());
-    let position = i32::try_from(number).map_err(|_| beyond())?;
+    let position = i32::try_from(number).map_err(|_| {
+        let said = Text::new("hd_cli.position_range").with("value", text);
+        failed(&said.with("low", i32::MIN).with("high", i32::MAX))
+    })?;
     Ok(Change::SetPosition { drive: drive(&act.of), position, save: true })
 }
 

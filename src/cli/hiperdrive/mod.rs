@@ -17,8 +17,9 @@ mod write;
 use super::args::OfDrive;
 use super::kind::Kind;
 use super::{Failure, Result};
+use crate::app::Text;
 use crate::profile::hiperdrive::{Item, ItemError};
-use crate::protocol::hiperdrive::KIND;
+use crate::protocol::hiperdrive::{KIND, PARAMETERS};
 
 pub(super) use meaning::parameter_words;
 pub(super) use r#move::drive_to;
@@ -42,6 +43,19 @@ pub(super) const COMMANDS: Kind = Kind {
     other_device: profiles::other_device,
 };
 
+/// All parameters with their numbers, a line each: for the help, since a number alone says nothing.
+pub(super) fn listed_parameters() -> String {
+    let mut text = "\
+Parameters of HIPERDRIVE, of the device below 100, of drive 1 from 101 on (drive 2 from 201 on, and so on to drive 8):
+"
+    .to_owned();
+    for row in &PARAMETERS {
+        let unit = if row.unit.is_empty() { String::new() } else { format!(", {}", row.unit) };
+        text.push_str(&format!("  {:3}  {}{unit}\n", row.number, row.name));
+    }
+    text
+}
+
 /// The parameter that a user names, of the drive that is named beside it.
 fn item(text: &str, of: &OfDrive) -> Result<Item> {
     let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
@@ -51,5 +65,10 @@ fn item(text: &str, of: &OfDrive) -> Result<Item> {
         }
         _ => Ok(item),
     });
-    item.map_err(|error| Failure::Usage(error.to_string()))
+    item.map_err(|error| {
+        Failure::Usage(match error {
+            ItemError::NoParameter(number) => Text::new("hd_said.unknown").with("number", number).terminal(),
+            error => error.to_string(),
+        })
+    })
 }
