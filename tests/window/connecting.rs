@@ -62,6 +62,28 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     assert!(desk.studio.connect.is_none());
 }
 
+#[test]
+fn each_kind_shows_a_link_that_it_takes() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    for (device, scheme) in [
+        (Tab::Hiperface, "serial:"),
+        (Tab::Biss, "bridge:"),
+        (Tab::Ssi, "bridge:"),
+        (Tab::Interbus, "modbus:"),
+        (Tab::Hiperdrive, "enip:"),
+    ] {
+        desk.connect(Connect::Device(device));
+        let example = dialog(&desk).example();
+        assert!(example.starts_with(scheme), "{device:?}: {example}");
+        desk.connect(Connect::Use(example.to_owned()));
+        assert!(dialog(&desk).url().is_ok(), "{example}");
+    }
+    desk.connect(Connect::Device(Tab::Biss));
+    desk.connect(Connect::Use("serial:COM3".to_owned()));
+    assert!(dialog(&desk).example().starts_with("serial:"), "a pin is reached otherwise than a bus");
+}
+
 /// The form follows a link that is typed, and the link follows the form; what is no link for this device is named.
 #[test]
 fn a_link_is_typed_or_pasted() {

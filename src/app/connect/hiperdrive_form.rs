@@ -139,7 +139,9 @@ impl HiperdriveForm {
     fn target(&self) -> Result<(Scheme, String), Text> {
         Ok(match self.way {
             HiperdriveWay::Virtual => (Scheme::Sim, String::new()),
-            HiperdriveWay::Network => (Scheme::Enip, host_and_usual_port(&self.host, &self.tcp_port, PORT)?),
+            HiperdriveWay::Network => {
+                (Scheme::Enip, host_and_usual_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
+            }
             HiperdriveWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
@@ -191,7 +193,7 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.host_missing");
+        assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.device_missing");
         assert_eq!(refused(|form| form.way = HiperdriveWay::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.interval = "4".to_owned()), "form.parameter");
         assert_eq!(refused(|form| form.drives = "2".to_owned()), "form.parameter");

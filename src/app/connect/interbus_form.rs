@@ -112,7 +112,9 @@ impl InterbusForm {
     fn target(&self) -> Result<(Scheme, String), Text> {
         Ok(match self.way {
             InterbusWay::Virtual => (Scheme::Sim, String::new()),
-            InterbusWay::Gateway => (Scheme::Modbus, host_and_usual_port(&self.host, &self.tcp_port, PORT)?),
+            InterbusWay::Gateway => {
+                (Scheme::Modbus, host_and_usual_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
+            }
             InterbusWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
@@ -163,7 +165,7 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = InterbusWay::Gateway), "form.host_missing");
+        assert_eq!(refused(|form| form.way = InterbusWay::Gateway), "form.gateway_missing");
         assert_eq!(refused(|form| form.way = InterbusWay::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
         assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");

@@ -183,6 +183,17 @@ impl Connect {
             None => self.url().map(|url| url.to_string()).unwrap_or_default(),
         }
     }
+
+    /// What a link to a device of the chosen kind looks like.
+    pub fn example(&self) -> &'static str {
+        match self.device {
+            Tab::Biss if self.biss.is_on_the_bus() => "bridge:/dev/ttyUSB0",
+            Tab::Ssi => "bridge:/dev/ttyUSB0",
+            Tab::Interbus => "modbus:192.168.1.10",
+            Tab::Hiperdrive => "enip:192.168.1.10",
+            Tab::Hiperface | Tab::Biss | Tab::Signals => "serial:/dev/ttyUSB0",
+        }
+    }
 }
 
 impl Search {

@@ -24,7 +24,14 @@ pub(super) fn filled(entry: &str) -> Option<String> {
 }
 
 /// Sentences that say that something is still to be entered.
-const MISSING: [&str; 4] = ["form.port_missing", "form.host_missing", "form.tcp_port_missing", "form.file_missing"];
+const MISSING: [&str; 6] = [
+    "form.port_missing",
+    "form.host_missing",
+    "form.gateway_missing",
+    "form.device_missing",
+    "form.tcp_port_missing",
+    "form.file_missing",
+];
 
 /// Whether a sentence names something that is still to be entered, and nothing that is wrong.
 pub fn is_missing(problem: &Text) -> bool {
@@ -90,9 +97,9 @@ pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
 /// The same, where an empty port stands for the usual one.
 ///
 /// # Errors
-/// As [`host_and_port`].
-pub(super) fn host_and_usual_port(host: &str, port: &str, usual: &str) -> Result<String, Text> {
-    host_and_port(host, filled(port).as_deref().unwrap_or(usual))
+/// As [`host_and_port`]; `missing`, where no host is entered.
+pub(super) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
+    host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
 /// Host and port of a place in the network, as a link has them; an empty port where it has none.

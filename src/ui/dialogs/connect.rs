@@ -229,15 +229,16 @@ fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, port: &mut String, actions:
 }
 
 fn network(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String) {
-    place(ui, skin, host, port, "4001");
+    place(ui, skin, "connect.host", (host, "192.168.0.7"), (port, "4001"));
     ui.label(skin.caption(skin.say("connect.tcp_words")));
 }
 
-/// Host and port.
-fn place(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String, usual: &str) {
-    entry(ui, skin, &skin.say("connect.host"), |ui| {
-        text_entry(ui, host, 220.0, &skin.say("connect.host"), "192.168.0.7");
-        text_entry(ui, port, 72.0, &skin.say("connect.tcp_port"), usual);
+/// Host and port, each with what it may look like.
+fn place(ui: &mut Ui, skin: &Skin, id: &'static str, host: (&mut String, &str), port: (&mut String, &str)) {
+    let word = skin.say(id);
+    entry(ui, skin, &word, |ui| {
+        text_entry(ui, host.0, 220.0, &word, host.1);
+        text_entry(ui, port.0, 72.0, &skin.say("connect.tcp_port"), port.1);
     });
 }
 
@@ -317,7 +318,8 @@ fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
 
 /// The link as the command line takes it: it follows the form, and the form follows it.
 fn link_ui(ui: &mut Ui, skin: &Skin, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
-    let (word, hint) = (skin.say("connect.link"), skin.say("connect.link_hint"));
+    let hint = Text::new("connect.link_hint").with("link", dialog.example());
+    let (word, hint) = (skin.say("connect.link"), skin.words(&hint));
     let mut link = dialog.link();
     entry(ui, skin, &word, |ui| {
         let width = (ui.available_width() - 52.0).max(0.0);

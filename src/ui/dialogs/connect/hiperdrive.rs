@@ -27,7 +27,7 @@ pub(super) fn form_ui(
     match form.way {
         HiperdriveWay::Virtual => simulated(ui, skin, form),
         HiperdriveWay::Network => {
-            place(ui, skin, &mut form.host, &mut form.tcp_port, "44818");
+            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "44818"));
             interval(ui, skin, form);
             ui.add_space(skin.space.inside);
             discovery(ui, skin, dialog.discovery.as_ref(), actions);

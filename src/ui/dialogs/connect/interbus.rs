@@ -23,7 +23,7 @@ pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm, more: &
     match form.way {
         InterbusWay::Virtual => simulated(ui, skin, form),
         InterbusWay::Gateway => {
-            place(ui, skin, &mut form.host, &mut form.tcp_port, "502");
+            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "502"));
             registers(ui, skin, form);
         }
         InterbusWay::Replay => {
