@@ -1,6 +1,8 @@
 //! What may be asked of a drive at the moment, why not, and how it stands with what was asked: in words.
 
+use super::ruler::Measure;
 use super::unit::Unit;
+use crate::app::number::decimals_of;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::{Goal, Lock, Phase as Doing, Wish};
@@ -117,6 +119,20 @@ impl Unit {
         Text::new("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
+    /// A place in all that a person may measure in, whatever is chosen: the same number of steps may be another place than it
+    /// was. In degrees only where they are chosen.
+    pub fn in_all_units(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
+        let ruler = self.ruler(drive);
+        let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
+        let place = |own: Measure| {
+            let value = ruler.of(i64::from(steps), own)?;
+            let decimals = decimals_of(value, ruler.decimals(own).min(4));
+            let text = Text::new("hd_entry.place").with_number("value", value, decimals);
+            Some(text.with_text("unit", Text::new(own.unit())))
+        };
+        ruler.measures().filter(wanted).filter_map(place).collect()
+    }
+
     /// From one place to another, with their unit.
     pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
@@ -128,7 +144,7 @@ impl Unit {
     fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
-        let (value, measure) = value.map_or((f64::from(steps), super::Measure::Steps), |value| (value, self.measure));
+        let (value, measure) = value.map_or((f64::from(steps), Measure::Steps), |value| (value, self.measure));
         (value, ruler.decimals(measure), Text::new(measure.unit()))
     }
 

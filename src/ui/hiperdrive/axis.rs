@@ -56,6 +56,8 @@ impl Shown<'_> {
     }
 }
 
+/// Room for the button that leads on.
+const PRIMARY: f32 = 112.0;
 /// Below this width the list of steps does not stand beside the step.
 const BESIDE: f32 = 640.0;
 
@@ -230,9 +232,12 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mu
     });
 }
 
-/// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it.
+/// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it. Behind
+/// other buttons where there is room, or else below them.
 fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
-    let size = egui::vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
+    let rest = ui.available_size_before_wrap().x;
+    let width = if rest >= PRIMARY { rest } else { ui.available_width() };
+    let size = egui::vec2(width.max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 

@@ -4,7 +4,7 @@ use egui::{RichText, Ui, vec2};
 
 use super::{figures, jog};
 use crate::app::explain::hiperdrive as explain;
-use crate::app::hiperdrive::{Action as Hiperdrive, Measure, Motor, Unit, forms};
+use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::app::{Action, SessionId, Text};
 use crate::device::hiperdrive::dead_man::{Effort, Goal, Motive, Phase};
 use crate::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
@@ -79,11 +79,9 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 paragraph(ui, skin.words(&explain::lock(lock)));
             });
             if let Some((low, high)) = unit.limits_to_confirm(drive) {
-                // In turns too, whatever is chosen: the same number of steps may be another place than it was.
-                let turns = |steps: i32| unit.ruler(drive).of(steps.into(), Measure::Turns);
                 let [low, high] = [low, high].map(|steps| {
-                    let turns = turns(steps).map(|own| format!("{} {}", skin.number(own, 2), skin.say("unit.turns")));
-                    format!("{}  {}", skin.words(&unit.place(drive, steps)), turns.unwrap_or_default())
+                    let places = unit.in_all_units(drive, steps);
+                    places.iter().map(|place| skin.words(place)).collect::<Vec<_>>().join("   ")
                 });
                 row(ui, skin, &skin.say("hd_limits.lower"), skin.mono(low));
                 row(ui, skin, &skin.say("hd_limits.upper"), skin.mono(high));
