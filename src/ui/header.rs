@@ -3,7 +3,7 @@
 use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
-use super::stopping::means_motion;
+use super::stopping::{goes_down, means_motion, pressed_at};
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperdrive::Unit;
@@ -201,18 +201,11 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     let width = if moves { STOP * 2.0 } else { STOP };
     let response = ui.add_enabled(active, stop.min_size(egui::vec2(width, 0.0))).on_hover_text(hint);
     ui.data_mut(|data| data.insert_temp(stop_place(), response.rect.min));
-    let now = ui.input(|input| input.time);
-    let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
-    if pressed {
-        ui.data_mut(|data| data.insert_temp(stop_press(), now));
-    }
+    let pressed = goes_down(ui, &response);
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && moves {
-        // A click by the keyboard has no press of its own.
-        let by_pointer = ui.input(|input| input.pointer.any_released()) || pressed;
-        let begun = ui.data(|data| data.get_temp(stop_press())).filter(|_| by_pointer).unwrap_or(now);
         // What is shown of a drive goes on while it is stopped, and so does all else that runs.
-        let motion = means_motion(ui.ctx(), moves, begun);
+        let motion = means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }
@@ -225,10 +218,6 @@ pub(super) fn stop_over_ui(ctx: &egui::Context, skin: &Skin, studio: &Studio, ac
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };
     let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
     area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, skin, studio, actions)));
-}
-
-fn stop_press() -> egui::Id {
-    egui::Id::unique("press of stop")
 }
 
 fn stop_place() -> egui::Id {

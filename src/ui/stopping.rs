@@ -1,14 +1,15 @@
 //! What a press means that comes on the heels of a stop: whoever stops a machine presses twice, holds the key, and lets go of
-//! the button when the machine stands already. None of that is meant for whatever else runs.
+//! the button when the machine stands already. None of that is meant for whatever else runs. It stops motion all the same:
+//! something may have begun meanwhile.
 
-use egui::{Context, Event, Key};
+use egui::{Context, Event, Id, Key, Response, Ui};
 
 /// So soon after a stop, in seconds, another press means the same.
 const FRIGHT: f64 = 0.5;
 
 /// Whether what was pressed at this time, by the clock of the pictures, means what moves, or has moved until just now.
 pub(super) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
-    let id = egui::Id::unique("the last stop of a motion");
+    let id = Id::unique("the last stop of a motion");
     let just_now = ctx.data(|data| data.get_temp::<f64>(id)).is_some_and(|stopped| pressed - stopped <= FRIGHT);
     let means = moves || just_now;
     if means {
@@ -16,6 +17,28 @@ pub(super) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
         ctx.data_mut(|data| data.insert_temp(id, now));
     }
     means
+}
+
+/// The pointer goes down on a button that stops, in this picture.
+pub(super) fn goes_down(ui: &Ui, response: &Response) -> bool {
+    let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if goes {
+        let now = ui.input(|input| input.time);
+        ui.data_mut(|data| data.insert_temp(last_press(), now));
+    }
+    goes
+}
+
+/// When what counts in this picture, on a button that stops, was pressed.
+pub(super) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
+    let now = ui.input(|input| input.time);
+    // A click by the keyboard has no press of its own.
+    let by_pointer = goes_down || ui.input(|input| input.pointer.any_released());
+    ui.data(|data| data.get_temp(last_press())).filter(|_| by_pointer).unwrap_or(now)
+}
+
+fn last_press() -> Id {
+    Id::unique("press of stop")
 }
 
 /// Esc goes down in this picture; a key that is held and repeats itself does not.

@@ -298,14 +298,18 @@ impl Window {
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half
     /// typed byte, an open menu, a field that is being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
-        // Whoever presses it while a drive moves means the machine, whatever else is open or dragged.
-        let moves = self.studio.moves();
+        // Whoever presses it while a drive moves by this window means the machine, whatever else is open or dragged.
+        let moves = self.studio.moves_by_hand();
         let goes_down = stopping::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
-        if !is_pressed || !goes_down || in_use && !moves {
+        if !is_pressed || (in_use || !goes_down) && !moves {
             return;
         }
-        if stopping::means_motion(ctx, moves, ctx.input(|input| input.time)) && !moves {
+        let means_motion = stopping::means_motion(ctx, moves, ctx.input(|input| input.time));
+        // A key that is held stops what has begun since it went down, and nothing else; nor does one that is hit again, and
+        // what was asked for in this picture may be about to move.
+        if !goes_down || means_motion && !moves {
+            actions.push(Action::StopMotion);
             return;
         }
         let views = &mut self.views;

@@ -7,17 +7,18 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
-use encoder_studio::app::{Action, Tab};
-use encoder_studio::device::hiperdrive::dead_man::Phase;
-use encoder_studio::protocol::hiperdrive::State;
+use encoder_studio::app::{Action, Studio, Tab};
+use encoder_studio::device::hiperdrive::dead_man::{Ended, Phase};
+use encoder_studio::protocol::hiperdrive::{OutData, State};
+use encoder_studio::units::Moment;
 use encoder_studio::worker::hiperdrive::DriveView;
 
 use crate::hiperdrive::ONE;
 use crate::screen::Screen;
 use crate::support::LONG;
 
-/// An encoder is watched in one session, and a drive moves in another.
-fn moving() -> Screen {
+/// An encoder is watched in one session, and a drive is in hand in another.
+fn in_hand() -> Screen {
     let mut screen = Screen::begun([1280.0, 900.0]);
     screen.click("live.start");
     screen.act(Action::ShowTab(Tab::Hiperdrive));
@@ -35,9 +36,19 @@ fn moving() -> Screen {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
     ready(&mut screen, "the connection is open", true);
+    assert!(is_watched(&screen));
+    screen
+}
+
+fn begin(screen: &mut Screen) {
+    let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
     screen.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
-    assert!(is_watched(&screen));
+}
+
+fn moving() -> Screen {
+    let mut screen = in_hand();
+    begin(&mut screen);
     screen
 }
 
@@ -49,13 +60,19 @@ fn moves(screen: &Screen) -> bool {
     screen.studio().moves()
 }
 
-/// STOP of the header: the uppermost.
-fn stop(screen: &Screen) -> Pos2 {
-    let label = screen.say("hd_bar.stop");
+/// Where buttons of that name are, the uppermost first.
+fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
+    let label = screen.say(id);
     let found =
         screen.harness.query_all_by(|node| node.role() == Role::Button && node.label().as_ref() == Some(&label));
-    let places = found.map(|node| node.rect().center());
-    places.min_by(|one, other| one.y.total_cmp(&other.y)).unwrap()
+    let mut places: Vec<Pos2> = found.map(|node| node.rect().center()).collect();
+    places.sort_by(|one, other| one.y.total_cmp(&other.y));
+    places
+}
+
+/// STOP of the header.
+fn stop(screen: &Screen) -> Pos2 {
+    places(screen, "hd_bar.stop")[0]
 }
 
 fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
@@ -134,4 +151,56 @@ fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
         screen.key(Key::Escape);
         assert!(screen.studio().connect.is_none() && is_watched(&screen), "later it is meant");
     }
+}
+
+#[test]
+fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
+    let mut screen = moving();
+    let [above, page] = places(&screen, "hd_bar.stop")[..] else { panic!() };
+    screen.harness.hover_at(page);
+    screen.harness.step();
+    pointer(&mut screen, page, true);
+    until_it_stands(&screen);
+    // Two pictures of a quarter of a second: still a click.
+    screen.harness.step();
+    screen.harness.step();
+    pointer(&mut screen, page, false);
+    assert!(!moves(&screen));
+    screen.harness.hover_at(above);
+    pointer(&mut screen, above, true);
+    pointer(&mut screen, above, false);
+    screen.steps();
+    assert!(is_watched(&screen));
+}
+
+/// Somebody has Esc down already when the machine starts: the system says again and again that it is.
+#[test]
+fn escape_that_is_held_stops_what_begins_meanwhile() {
+    let mut screen = in_hand();
+    screen.harness.key_down(Key::Escape);
+    screen.steps();
+    begin(&mut screen);
+    screen.harness.key_down(Key::Escape);
+    screen.until("it stands", |studio| !studio.moves());
+    let ended = screen.studio().hiperdrive().unwrap().moves.drive(ONE).unwrap().ended;
+    assert!(matches!(ended, Some((_, Ended::Stopped))) && is_watched(&screen), "{ended:?}");
+}
+
+/// What somebody else moves cannot be stopped from here: Esc is for what is open.
+#[test]
+fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
+    let mut screen = Screen::opened_in(Tab::Hiperdrive, "sim:", [1280.0, 900.0]);
+    let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
+    screen.until("it is read", own);
+    let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
+    for control in [0x0400, 0x0401, 0x0409, 0x0439, 0x0479] {
+        let out = OutData { control, speed: 1, torque: 100, target: 30_000_000 };
+        target.with(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
+    }
+    screen.until("it is seen to move", Studio::moves);
+    screen.key(Key::F1);
+    screen.key(Key::Escape);
+    assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "the help is closed, and it is still watched");
+    screen.key(Key::Escape);
+    assert!(!screen.studio().hiperdrive().unwrap().session.is_polling(), "nothing else was open");
 }

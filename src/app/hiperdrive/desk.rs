@@ -28,7 +28,7 @@ impl Studio {
     }
 
     /// Something is under way that was asked for here: whoever presses Esc in a fright means that.
-    pub(in crate::app) fn moves_by_hand(&self) -> bool {
+    pub fn moves_by_hand(&self) -> bool {
         self.hiperdrives().any(|unit| unit.moves.is_moving() || unit.moves.is_under_way())
     }
 

@@ -2,19 +2,20 @@
 
 use egui::{RichText, Stroke, Ui, vec2};
 
-use crate::app::Action;
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
+use crate::app::{Action, Studio};
 use crate::ui::controls::{allowed_button, name, options, paragraph};
+use crate::ui::stopping::{goes_down, means_motion, pressed_at};
 use crate::ui::{Skin, icons};
 
 /// STOP: wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
 /// Draws it.
-pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
-        stop(ui, skin, unit, actions);
+        stop(ui, skin, (unit.moves.is_open(), studio.moves()), actions);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = skin.space.inside;
             ui.horizontal_wrapped(|ui| {
@@ -43,9 +44,8 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Ac
 }
 
 /// STOP of all drives; also while nothing is known to move.
-fn stop(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn stop(ui: &mut Ui, skin: &Skin, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
     let palette = skin.palette;
-    let open = unit.moves.is_open();
     let word = skin.say("hd_bar.stop");
     let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(skin.strong(skin.sizes.section)).color(ink);
@@ -53,8 +53,10 @@ fn stop(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let button = egui::Button::new(text).fill(fill).stroke(edge);
     // Also down counts: a stop does not wait for a finger to be lifted.
     let response = ui.add_sized(STOP, button).on_hover_text(skin.say("hd_bar.stop_hint"));
-    let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    let pressed = goes_down(ui, &response);
     if name(response, true, &word).clicked() || pressed {
+        // What is pressed on the heels of it means the same.
+        means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }

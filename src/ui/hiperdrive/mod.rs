@@ -122,7 +122,7 @@ pub(super) fn page_ui(
         // Stays where it is while the rest scrolls: STOP, and what it is not.
         egui::Panel::top(id.with("hiperdrive_bar"))
             .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
-            .show(ui, |ui| bar::bar_ui(ui, skin, unit, actions));
+            .show(ui, |ui| bar::bar_ui(ui, skin, studio, unit, actions));
     }
     if view.page.has_foot() {
         egui::Panel::bottom(id.with("hiperdrive_foot"))
