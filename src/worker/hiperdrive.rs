@@ -5,6 +5,7 @@ mod commit;
 mod control;
 mod cyclic;
 mod job;
+mod looks;
 mod motion;
 mod open;
 mod prepare;
@@ -118,8 +119,9 @@ impl Device for Hiperdrive {
             HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Survey => {
+                let began = desk.clock.now();
                 let survey = survey(&mut self.master(desk), &mut parameter)?;
-                self.control.rule_by(&survey);
+                self.control.rule_by(&survey, began);
                 Out::Surveyed(Box::new(survey))
             }
             HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
@@ -141,6 +143,7 @@ impl Device for Hiperdrive {
             }
             HiperdriveJob::Watch(drive) => {
                 self.watched = drive;
+                self.look_anew(desk, drive);
                 Out::Watched(drive)
             }
         })
@@ -150,7 +153,6 @@ impl Device for Hiperdrive {
         self.let_go_of_lost(desk);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
-            self.look_at_rules(desk, drive, actual)?;
             return Ok(Reading { at: desk.clock.now(), drive, actual });
         }
         Ok(position(&mut self.master(desk), drive)?)
@@ -174,6 +176,7 @@ impl Device for Hiperdrive {
 
     fn idle(&mut self, desk: &mut Desk) -> Option<Remark> {
         self.let_go_of_lost(desk);
+        self.look_at_rules(desk);
         self.remark.take()
     }
 

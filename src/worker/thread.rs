@@ -161,6 +161,8 @@ impl<D: Device> Bench<D> {
 
     /// What goes on without being asked, however often samples are taken.
     fn look_after(&mut self) {
+        // A job cuts it short, as it does a sample.
+        self.session.set_cancel(self.live.sampling().clone());
         if let Some(remark) = self.session.idle() {
             self.outbox.send(Event::Remark(remark));
         }

@@ -26,6 +26,8 @@ pub struct Moves {
     rules: BTreeMap<DriveNumber, (Permit, Option<(i64, i64)>)>,
     /// Drives for which that has become another since somebody asked.
     ruled_anew: BTreeSet<DriveNumber>,
+    /// Drives for which that had been read just before the last look.
+    ruled_lately: BTreeSet<DriveNumber>,
     /// The cyclic connection was opened since somebody asked.
     taken: bool,
 }
@@ -63,6 +65,7 @@ impl Default for Moves {
             unconfirmed: BTreeSet::new(),
             rules: BTreeMap::new(),
             ruled_anew: BTreeSet::new(),
+            ruled_lately: BTreeSet::new(),
             taken: false,
         }
     }
@@ -115,7 +118,12 @@ impl Moves {
         let view = motion.view();
         self.taken |= view.open && !self.view.open;
         self.view = view;
+        self.ruled_lately.clear();
         for drive in self.view.drives.iter().map(|own| own.number) {
+            // Asked first: what was read until then is seen by what comes.
+            if motion.is_ruled_lately(drive) {
+                self.ruled_lately.insert(drive);
+            }
             let permit = motion.permitted(drive);
             if permit.locks.contains(&Lock::LimitsUnconfirmed) {
                 self.unconfirmed.insert(drive);
@@ -293,6 +301,19 @@ impl Moves {
     /// The scale in which a drive has its limits, by parameters 154 and 156; `None` where it was not read.
     pub(super) fn scale(&self, drive: DriveNumber) -> Option<(i64, i64)> {
         self.motion.as_ref().and_then(|motion| motion.scale(drive))
+    }
+
+    /// What rules a drive was read within the last seconds, and looked at here since.
+    pub(super) fn is_ruled_lately(&self, drive: DriveNumber) -> bool {
+        self.ruled_lately.contains(&drive)
+    }
+
+    /// What rules a drive is to be read before it moves.
+    pub(super) fn doubt_rules(&mut self, drive: DriveNumber) {
+        self.ruled_lately.remove(&drive);
+        if let Some(motion) = &self.motion {
+            motion.doubt_rules(drive);
+        }
     }
 
     /// Why a drive may not move.

@@ -20,6 +20,8 @@ use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutp
 
 /// How often a drive is asked where it is, to begin with.
 const PACE: Duration = Duration::from_millis(200);
+/// What is told where the rules of a drive in hand cannot be read: true no more once they were.
+const RULES: &str = "hd_end.rules";
 
 /// What is kept of a session beside its thread.
 pub struct Aside {
@@ -119,6 +121,16 @@ impl Unit {
         }
     }
 
+    fn control_lost(&mut self, services: &mut Services) {
+        self.moves.stop();
+        // What drives said last was said before, and nobody knows what has become of it; also what waits to be taken.
+        self.take_samples_and_frames();
+        self.forget_readings();
+        (self.is_stale, self.looks_at_all) = (true, true);
+        let text = explain::hiperdrive::lost(self.moves.view().lost.as_ref());
+        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+    }
+
     fn tell_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
         let weight = explain::hiperdrive::weight(ended);
         if weight == Severity::Note {
@@ -180,13 +192,16 @@ impl OnLine for Unit {
         self.ask_on(services);
     }
 
-    fn remarked(&mut self, Remark::ControlLost: Remark, services: &mut Services) {
-        self.moves.stop();
-        // What drives said last was said before, and nobody knows what has become of it.
-        self.forget_readings();
-        (self.is_stale, self.looks_at_all) = (true, true);
-        let text = explain::hiperdrive::lost(self.moves.view().lost.as_ref());
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+        match remark {
+            Remark::ControlLost => self.control_lost(services),
+            Remark::RulesUnread(why) => {
+                self.moves.stop();
+                let texts = vec![Text::new(RULES), explain::hiperdrive::device(&why)];
+                services.tell(Severity::Error, texts, Some(&self.session.name()));
+            }
+            Remark::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
+        }
     }
 
     fn finished(&mut self, output: HiperdriveOutput, services: &mut Services) {
@@ -230,13 +245,13 @@ impl OnLine for Unit {
             HiperdriveOutput::Taken => {
                 self.moves.beat();
                 self.notice_rules();
-                for lost in explain::hiperdrive::LOST {
+                for lost in explain::hiperdrive::LOST.into_iter().chain([RULES]) {
                     services.log.settle(lost, Some(&self.session.name()));
                 }
                 self.poll();
-                // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones.
-                self.is_stale = true;
-                self.submit(HiperdriveJob::Survey, services);
+                // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones. As
+                // soon as the line is free.
+                (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
                 self.moves.beat();

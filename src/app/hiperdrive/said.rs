@@ -55,8 +55,8 @@ impl Unit {
         if let Phase::Silent(why) = &self.session.phase {
             return Err(why.clone());
         }
-        if self.is_stale {
-            return Err(explain::hiperdrive::lock(Lock::Unread));
+        if let Some(why) = self.why_unread(drive) {
+            return Err(why);
         }
         if let Some(lock) = self.moves.locks(drive).first() {
             return Err(explain::hiperdrive::lock(*lock));

@@ -161,7 +161,11 @@ impl Unit {
             }
             Ask::Give => self.act(super::Action::Give, services),
             Ask::Move(target) => {
-                let act = self.moves.want(drive, Wish::Move { target: *target, effort: Effort::JOG });
+                let wish = Wish::Move { target: *target, effort: Effort::JOG };
+                if let Err(why) = self.may(drive, wish) {
+                    return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                }
+                let act = self.moves.want(drive, wish);
                 if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
                     axis.went(place, *target, act);
                 }

@@ -80,13 +80,25 @@ impl Unit {
         image.of_drive(drive, 154).zip(image.of_drive(drive, 156))
     }
 
+    /// Why what is known of a drive's parameters is no ground to move it on; `None` where it is.
+    pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
+        if self.is_stale {
+            Some(explain::hiperdrive::lock(Lock::Unread))
+        } else if self.moves.is_open() && !self.moves.is_ruled_lately(drive) {
+            Some(Text::new("hd_lock.old"))
+        } else {
+            None
+        }
+    }
+
     /// Whether the limits of a drive that are shown can be confirmed: they have to be those that it has, by all that is known.
     ///
     /// # Errors
     /// Why not, in words.
     pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
-        let is_read = !self.is_stale && self.limits(drive).is_some() && self.scale_as_read(drive).is_some();
-        if is_read { Ok(()) } else { Err(explain::hiperdrive::lock(Lock::Unread)) }
+        let lacks = self.limits(drive).is_none() || self.scale_as_read(drive).is_none();
+        let unread = || lacks.then(|| explain::hiperdrive::lock(Lock::Unread));
+        self.why_unread(drive).or_else(unread).map_or(Ok(()), Err)
     }
 
     /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.

@@ -169,6 +169,8 @@ impl Unit {
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
             self.moves.let_go();
+            // Only what is shown is looked at again and again.
+            self.moves.doubt_rules(drive);
             self.drive = drive;
             self.record.forget();
         }
@@ -296,7 +298,7 @@ impl Unit {
         self.moves.stop();
         let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);
-        // Whoever has the control goes on seeing the drives, and what rules them.
+        // Whoever has the control goes on seeing the drives.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
             line.poll(Some(pace));
         }

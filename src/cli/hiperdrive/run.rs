@@ -39,6 +39,11 @@ impl Runs for Hiperdrive {
     fn say(remark: &Remark) {
         match remark {
             Remark::ControlLost => say(&format!("{}\n", Text::new("hd_cli.control_lost").terminal())),
+            Remark::RulesUnread(error) => {
+                let why = explain::hiperdrive::device(error).terminal();
+                say(&format!("{} {why}\n", Text::new("hd_end.rules").terminal()));
+            }
+            Remark::RulesRead => {}
         }
     }
 

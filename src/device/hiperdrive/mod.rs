@@ -27,6 +27,6 @@ pub use identify::{
 };
 pub use master::{Master, Opened};
 pub use network::{Network, network, settings};
-pub use rules::{Rules, read_rule, read_rules};
+pub use rules::{GROUPS, Rules, read_rule, read_rules};
 pub use save::{read_state, save};
 pub use station::{PARAMETERS, Station};

@@ -70,18 +70,20 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
     })
 }
 
-/// Reads one of the parameters that rule a drive again, another one with each turn.
+/// What rules a drive is read again in so many groups: what belongs together is read together.
+pub const GROUPS: usize = 4;
+
+/// Reads one group of the parameters that rule a drive again.
 ///
 /// # Errors
 /// The way.
-pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, turn: usize) -> Result<Rules, Error> {
+pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, group: usize) -> Result<Rules, Error> {
     let mut read = |base| match master.read_number(of(base, drive)?) {
         Ok(value) => Ok(Some(value)),
         Err(error) if error.is_unsaid() => Ok(None),
         Err(error) => Err(error),
     };
-    // What belongs together is read together.
-    Ok(match turn % 4 {
+    Ok(match group % GROUPS {
         0 => Rules { requested: read(152)?, ..known },
         1 => Rules { timeout: read(186)?, ..known },
         2 => Rules { scale: read(154)?.zip(read(156)?), ..known },

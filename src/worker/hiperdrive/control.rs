@@ -5,13 +5,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::commit::commit as carry_through;
+use super::looks::Looks;
 use super::{Commit, Committed, Cyclic, Hiperdrive, JobError, Motion, Remark, Told};
 use crate::device::hiperdrive::cyclic::CyclicLost;
 use crate::device::hiperdrive::dead_man::Permit;
-use crate::device::hiperdrive::{Error, Identity, Rules, Survey, identify, read_rule, read_rules};
+use crate::device::hiperdrive::{Error, Identity, Rules, Survey, identify};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::protocol::ethernet_ip::ForwardClose;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, ParameterNumber, Value};
+use crate::units::Moment;
 use crate::worker::Desk;
 
 /// Who has the cyclic connection, and what drives may do over it.
@@ -24,10 +26,8 @@ pub(super) struct Control {
     rules: BTreeMap<DriveNumber, Rules>,
     /// The device and its drives, as they were when it was opened last.
     identity: Option<Identity>,
-    /// Which of the rules is looked at next.
-    turn: usize,
-    /// Drives that were away since their rules were read.
-    away: Vec<DriveNumber>,
+    /// When they were looked at.
+    pub(super) looks: Looks,
 }
 
 struct Open {
@@ -44,8 +44,7 @@ impl Control {
             open: None,
             rules: BTreeMap::new(),
             identity: None,
-            turn: 0,
-            away: Vec::new(),
+            looks: Looks::default(),
         }
     }
 
@@ -60,7 +59,7 @@ impl Control {
     }
 
     /// The device and its drives, while drives may be moved.
-    fn held(&self) -> Option<Identity> {
+    pub(super) fn held(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
 
@@ -71,27 +70,32 @@ impl Control {
         }
     }
 
-    /// What drives may do, by a survey.
-    pub(super) fn rule_by(&mut self, survey: &Survey) {
+    /// What drives may do, by a survey that began at that moment.
+    pub(super) fn rule_by(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
             let read = |base| match survey.values.get(&ParameterNumber::of_drive(base, drive.number)?)? {
                 Value::Number(value) => Some(*value),
                 Value::Text(_) => None,
             };
             self.rule(&survey.identity, drive.number, Rules::by(read));
+            self.motion.ruled(drive.number, self.looks.all_read(drive.number, began));
         }
     }
 
-    /// A drive is away: what it may do when it is back nobody knows.
-    fn forget(&mut self, drive: DriveNumber) {
-        if !self.away.contains(&drive) {
-            self.away.push(drive);
-        }
+    /// What a drive may do nobody knows any more.
+    pub(super) fn forget(&mut self, drive: DriveNumber) {
+        self.looks.forget(drive);
+        self.motion.ruled(drive, None);
         self.motion.permit(drive, Permit::default());
     }
 
+    /// What rules a drive, as it was read last.
+    pub(super) fn rules(&self, drive: DriveNumber) -> Rules {
+        self.rules.get(&drive).copied().unwrap_or_default()
+    }
+
     /// Where the scale is another one than before, limits lie elsewhere: nobody has looked at them yet.
-    fn rule(&mut self, identity: &Identity, drive: DriveNumber, rules: Rules) {
+    pub(super) fn rule(&mut self, identity: &Identity, drive: DriveNumber, rules: Rules) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         let before = self.rules.insert(drive, rules);
         if before.is_some_and(|before| before.scale.is_some() && before.scale != rules.scale) {
@@ -113,6 +117,7 @@ impl Hiperdrive {
             return Err(Error::InControl);
         }
         let identity = identify(&mut self.master(desk), told)?;
+        self.control.looks = Looks::default();
         self.read_rules(desk, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
         let opened = self.master(desk).forward_open(identity.topology, packets.port())?;
@@ -169,7 +174,7 @@ impl Hiperdrive {
         for drive in &identity.drives {
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
             self.control.rule(identity, drive.number, rules);
-            self.control.motion.permit(drive.number, Permit::default());
+            self.control.forget(drive.number);
         }
         let ended = carry_through(self, desk, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
@@ -178,39 +183,5 @@ impl Hiperdrive {
             tracing::warn!("{why}");
         }
         ended
-    }
-
-    /// While drives may be moved, somebody else may change what rules them: one parameter of a drive is read again with each
-    /// look at it, and all of them once it was away.
-    ///
-    /// # Errors
-    /// The way.
-    pub(super) fn look_at_rules(&mut self, desk: &mut Desk, drive: DriveNumber, actual: Actual) -> Result<(), Error> {
-        let Some(identity) = self.control.held().filter(|identity| identity.drive(drive).is_some()) else {
-            return Ok(());
-        };
-        if !actual.status.is_present() {
-            self.control.forget(drive);
-            return Ok(());
-        }
-        let rules = match self.control.rules.get(&drive).copied().filter(|_| !self.control.away.contains(&drive)) {
-            None => read_rules(&mut self.master(desk), drive)?,
-            Some(rules) => {
-                self.control.turn = self.control.turn.wrapping_add(1);
-                let turn = self.control.turn;
-                read_rule(&mut self.master(desk), drive, rules, turn)?
-            }
-        };
-        self.control.away.retain(|away| *away != drive);
-        self.control.rule(&identity, drive, rules);
-        Ok(())
-    }
-
-    fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {
-        for drive in &identity.drives {
-            let rules = read_rules(&mut self.master(desk), drive.number)?;
-            self.control.rule(identity, drive.number, rules);
-        }
-        Ok(())
     }
 }

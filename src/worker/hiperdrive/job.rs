@@ -151,10 +151,14 @@ pub struct Commit {
 pub type Committed = crate::worker::Committed<Written>;
 
 /// What is said on the way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
     ControlLost,
+    /// What rules a drive in hand cannot be read, and is asked for again and again.
+    RulesUnread(Box<Error>),
+    /// It could be read again.
+    RulesRead,
 }
 
 /// The step that a job is at. Its text is the command line's.

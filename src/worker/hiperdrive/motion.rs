@@ -4,11 +4,13 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use crate::device::hiperdrive::cyclic::{CyclicLost, Drives, LinkFigures};
 use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
 use crate::link::Clock;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, Setpoint};
+use crate::units::Moment;
 
 /// The motion of a session's drives. Clones share it.
 #[derive(Clone)]
@@ -24,12 +26,17 @@ struct Cell {
     permits: BTreeMap<DriveNumber, Permit>,
     /// Parameters 154 and 156, as they were read with those.
     scales: BTreeMap<DriveNumber, (i64, i64)>,
+    /// What rules a drive is known by nothing older than this.
+    ruled: BTreeMap<DriveNumber, Moment>,
     /// Drives whose limits have to be looked at.
     unconfirmed: Vec<DriveNumber>,
     expert: bool,
     punctual: bool,
     view: View,
 }
+
+/// For so long what was read of what rules a drive counts: longer than a device may take to say all of it.
+const LATELY: Duration = Duration::from_secs(4);
 
 /// What the drives do, and how well their connection works.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,6 +78,7 @@ impl Motion {
             intent,
             permits: BTreeMap::new(),
             scales: BTreeMap::new(),
+            ruled: BTreeMap::new(),
             unconfirmed: Vec::new(),
             expert: false,
             punctual: false,
@@ -140,6 +148,32 @@ impl Motion {
             Some(scale) => cell.scales.insert(drive, scale),
             None => cell.scales.remove(&drive),
         };
+    }
+
+    /// What rules a drive was read within the last seconds. It is read each second while there is a cyclic connection; where
+    /// it is not, somebody else may have changed it.
+    pub fn is_ruled_lately(&self, drive: DriveNumber) -> bool {
+        let now = self.0.clock.now();
+        self.lock().ruled.get(&drive).is_some_and(|since| now.since(*since) <= LATELY)
+    }
+
+    /// Nothing that was read of what rules a drive counts any more: it is to be read before the drive moves.
+    pub fn doubt_rules(&self, drive: DriveNumber) {
+        self.lock().ruled.remove(&drive);
+    }
+
+    /// What rules a drive is known by nothing older than this; `None` where it is not known.
+    pub(super) fn ruled(&self, drive: DriveNumber, since: Option<Moment>) {
+        let mut cell = self.lock();
+        match since {
+            Some(since) => cell.ruled.insert(drive, since),
+            None => cell.ruled.remove(&drive),
+        };
+    }
+
+    /// The drive of which something was wanted last.
+    pub(super) fn wanted_drive(&self) -> DriveNumber {
+        self.lock().intent.drive
     }
 
     /// The scaling of a drive was changed, and with it where its limits lie: nothing moves until they are confirmed.
@@ -259,8 +293,6 @@ impl fmt::Debug for Motion {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
     use crate::device::hiperdrive::dead_man::Effort;
     use crate::link::VirtualClock;

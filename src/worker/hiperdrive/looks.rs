@@ -1,0 +1,181 @@
+//! What rules drives is read again and again while they may be moved, because somebody else may change it meanwhile: of the
+//! drive that is shown, and of the one that was moved last. It has a pace of its own, whatever else is polled.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::{Hiperdrive, Remark};
+use crate::device::hiperdrive::{Error, GROUPS, Identity, read_rule, read_rules};
+use crate::protocol::hiperdrive::DriveNumber;
+use crate::units::Moment;
+use crate::worker::Desk;
+
+/// From one group of the parameters that rule a drive to the next: all of them each second.
+const TURN: Duration = Duration::from_millis(250);
+/// Behind a look that failed.
+const REST: Duration = Duration::from_millis(500);
+
+/// When was looked at what rules drives.
+#[derive(Debug, Default)]
+pub(super) struct Looks {
+    /// When each group of them was read; none of a drive whose rules nobody knows.
+    drives: BTreeMap<DriveNumber, [Moment; GROUPS]>,
+    /// Until when nothing is asked, behind a look that failed.
+    rests: Option<Moment>,
+}
+
+impl Looks {
+    /// All that rules a drive was read, which began at that moment. Since when that is known.
+    pub(super) fn all_read(&mut self, drive: DriveNumber, began: Moment) -> Option<Moment> {
+        self.drives.insert(drive, [began; GROUPS]);
+        self.known_since(drive)
+    }
+
+    /// One group was read. Since when all of them are known.
+    fn read(&mut self, drive: DriveNumber, group: usize, now: Moment) -> Option<Moment> {
+        if let Some(at) = self.drives.get_mut(&drive).and_then(|own| own.get_mut(group)) {
+            *at = now;
+        }
+        self.known_since(drive)
+    }
+
+    /// What rules a drive is known by nothing older than this.
+    fn known_since(&self, drive: DriveNumber) -> Option<Moment> {
+        self.drives.get(&drive)?.iter().min().copied()
+    }
+
+    /// What rules a drive nobody knows any more.
+    pub(super) fn forget(&mut self, drive: DriveNumber) {
+        self.drives.remove(&drive);
+    }
+
+    /// The groups of a drive that are to be read now, the oldest first; `None`: all at once, since none is known.
+    fn due(&self, drive: DriveNumber, now: Moment) -> Option<Vec<usize>> {
+        let read = self.drives.get(&drive)?;
+        let newest = read.iter().max().copied().unwrap_or(now);
+        let turns = now.since(newest).as_millis() / TURN.as_millis();
+        let mut groups: Vec<usize> = (0..GROUPS).collect();
+        groups.sort_by_key(|group| read.get(*group).copied());
+        groups.truncate(usize::try_from(turns).unwrap_or(GROUPS));
+        Some(groups)
+    }
+}
+
+impl Hiperdrive {
+    /// While drives may be moved: looks at what rules them where that is due. Where it cannot be read, nothing moves until it
+    /// can, which is told once.
+    pub(super) fn look_at_rules(&mut self, desk: &mut Desk) {
+        let Some(identity) = self.control.held() else { return };
+        if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {
+            return;
+        }
+        let moved = self.control.motion().wanted_drive();
+        for drive in [Some(self.watched), Some(moved).filter(|moved| *moved != self.watched)].into_iter().flatten() {
+            if identity.drive(drive).is_none() {
+                continue;
+            }
+            match self.look_at(desk, &identity, drive) {
+                Ok(()) => {}
+                // A job goes first, or another wish has come.
+                Err(error) if error.is_cancelled() => return,
+                Err(error) => return self.cannot_look(desk, drive, error),
+            }
+        }
+        if self.control.looks.rests.take().is_some() {
+            self.remark.get_or_insert(Remark::RulesRead);
+        }
+    }
+
+    fn look_at(&mut self, desk: &mut Desk, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
+        if self.control.actual(drive).is_some_and(|actual| !actual.status.is_present()) {
+            self.control.forget(drive);
+            return Ok(());
+        }
+        let Some(groups) = self.control.looks.due(drive, desk.clock.now()) else {
+            let began = desk.clock.now();
+            let rules = read_rules(&mut self.master(desk), drive)?;
+            self.control.rule(identity, drive, rules);
+            let since = self.control.looks.all_read(drive, began);
+            self.control.motion().ruled(drive, since);
+            return Ok(());
+        };
+        for group in groups {
+            let now = desk.clock.now();
+            let known = self.control.rules(drive);
+            let rules = read_rule(&mut self.master(desk), drive, known, group)?;
+            self.control.rule(identity, drive, rules);
+            let since = self.control.looks.read(drive, group, now);
+            self.control.motion().ruled(drive, since);
+        }
+        Ok(())
+    }
+
+    fn cannot_look(&mut self, desk: &mut Desk, drive: DriveNumber, error: Error) {
+        tracing::warn!("{error}");
+        // All of it is read before anything moves again.
+        self.control.looks.forget(drive);
+        self.control.motion().ruled(drive, None);
+        if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
+            // Nothing more can be asked: that is told as a loss.
+            return self.control.lose_session();
+        }
+        if self.control.looks.rests.replace(desk.clock.now() + REST).is_none() {
+            self.control.motion().stop();
+            self.remark.get_or_insert(Remark::RulesUnread(Box::new(error)));
+        }
+    }
+
+    /// Reads all that rules a drive before anything else: it is shown from now on.
+    pub(super) fn look_anew(&mut self, desk: &mut Desk, drive: DriveNumber) {
+        self.control.looks.forget(drive);
+        self.control.motion().ruled(drive, None);
+        self.look_at_rules(desk);
+    }
+
+    /// Reads what rules all drives.
+    ///
+    /// # Errors
+    /// The way.
+    pub(super) fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {
+        for drive in &identity.drives {
+            let began = desk.clock.now();
+            let rules = read_rules(&mut self.master(desk), drive.number)?;
+            self.control.rule(identity, drive.number, rules);
+            let since = self.control.looks.all_read(drive.number, began);
+            self.control.motion().ruled(drive.number, since);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn every_group_comes_once_a_second_however_often_somebody_looks() {
+        let one = DriveNumber::FIRST;
+        for step in [10, 100, 250, 500, 2000] {
+            let mut looks = Looks::default();
+            assert_eq!(looks.due(one, at(0)), None, "nobody knows any");
+            assert_eq!(looks.all_read(one, at(0)), Some(at(0)));
+            let (mut now, mut asked) = (0, 0);
+            while now < 10_000 {
+                now += step;
+                for group in looks.due(one, at(now)).unwrap() {
+                    looks.read(one, group, at(now));
+                    asked += 1;
+                }
+                let age = at(now).since(looks.known_since(one).unwrap());
+                assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
+            }
+            assert!((16..=40).contains(&asked), "{step}: {asked} in ten seconds");
+            looks.forget(one);
+            assert_eq!((looks.known_since(one), looks.due(one, at(now))), (None, None));
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What rules a drive in hand is looked at again and again, whatever is polled and shown; where it cannot be, nothing moves.
+
+use std::net::Ipv4Addr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::{Action, Severity, Studio, Tab, World};
+use encoder_studio::device::hiperdrive::Station;
+use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
+use encoder_studio::protocol::hiperdrive::{DriveNumber, State, Value};
+use encoder_studio::sim::hiperdrive::{Config, Target};
+use encoder_studio::units::{CharacterFormat, Moment};
+use encoder_studio::worker::Session;
+use encoder_studio::worker::hiperdrive::Way;
+
+use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
+use crate::hiperdrive_motion::in_control;
+use crate::support::{Desk, LONG, Outside};
+
+fn two() -> DriveNumber {
+    DriveNumber::new(2).unwrap()
+}
+
+/// What another master writes.
+fn set(desk: &Desk, of: u16, value: i64) {
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+}
+
+#[test]
+fn what_rules_a_drive_in_hand_is_read_whatever_is_polled() {
+    for pace in [None, Some(Duration::from_secs(3600))] {
+        let mut desk = in_control("sim:");
+        act(&mut desk, Hiperdrive::Poll(pace));
+        desk.settle();
+        set(&desk, 160, 65_536);
+        let began = Instant::now();
+        desk.until("they are read", |studio| {
+            let own = studio.hiperdrive().unwrap();
+            own.limits(ONE) == Some((-33_488_896, 65_536)) && own.may_move(ONE).is_ok()
+        });
+        assert!(began.elapsed() < Duration::from_secs(6), "{pace:?}: {:?}", began.elapsed());
+        assert_eq!(unit(&desk).session.line().unwrap().polling(), pace);
+        // Nothing is lacking later either.
+        let began = Instant::now();
+        desk.until("some time passes", |studio| {
+            studio.hiperdrive().unwrap().may_move(ONE).unwrap();
+            began.elapsed() > Duration::from_secs(5)
+        });
+    }
+}
+
+#[test]
+fn another_drive_of_a_hub_moves_by_what_was_read_since_it_is_shown() {
+    let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
+    assert!(unit(&desk).may_move(two()).is_ok());
+    set(&desk, 260, 65_536);
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    drive(&mut desk, Motor::Move { target: 65_537 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.old"]);
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
+    assert_eq!(unit(&desk).limits(two()), Some((-33_488_896, 65_536)), "by what it has now");
+    drive(&mut desk, Motor::Move { target: 65_537 });
+    assert_eq!(desk.told(Severity::Warning), ["hd_lock.old", "hd_refused.outside"]);
+    drive(&mut desk, Motor::Step { by: 64 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64));
+}
+
+/// A stream on which every reply is damaged while somebody wishes it; packets pass as they are.
+struct Damaging(Box<dyn ByteLink>, Arc<AtomicBool>);
+
+impl ByteLink for Damaging {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        self.0.send(bytes)
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let before = into.len();
+        self.0.receive(until, into)?;
+        // Behind the header of the frame and those of its items the service that is answered.
+        if let Some(service) = into.get_mut(before + 40).filter(|_| self.1.load(Ordering::SeqCst)) {
+            *service ^= 0x55;
+        }
+        Ok(())
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        self.0.set_format(format)
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.0.check()
+    }
+}
+
+fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
+    let bad = Arc::new(AtomicBool::default());
+    let outside = Outside::new("");
+    let is_bad = bad.clone();
+    let world = World {
+        open_hiperdrive: Arc::new(move |url, store| {
+            let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+            let target = Target::new(&Config::from_pairs(&[]).unwrap());
+            let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+            let stream = Box::new(SimLink::connect(connection, clock.clone()));
+            let wire = Box::new(Damaging(stream, is_bad.clone()));
+            let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
+            let station = Station::from_query(&url.query, None, Duration::from_millis(20))?;
+            let way = Way { wire, port: Some(port), station, target: Some(target) };
+            Ok(Session::to_target(way, clock, store))
+        }),
+        ..outside.world()
+    };
+    let mut desk = Desk { studio: Studio::new(world, Arc::new(|| {})), outside };
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open("sim:");
+    until_read(&mut desk);
+    act(&mut desk, Hiperdrive::Take);
+    desk.until("it is in hand", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    (desk, bad)
+}
+
+#[test]
+fn what_cannot_be_read_stops_what_moves_until_it_can() {
+    let (mut desk, bad) = over_a_bad_stream();
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    bad.store(true, Ordering::SeqCst);
+    desk.until("it stands", |studio| !studio.moves());
+    desk.until("that is told", |studio| {
+        studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
+    });
+    assert!(unit(&desk).moves.is_open() && unit(&desk).session.is_polling(), "it is seen all the same");
+    drive(&mut desk, Motor::Step { by: 64 });
+    assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_lock.old"));
+    let began = Instant::now();
+    desk.until("some time passes", |studio| {
+        assert!(studio.hiperdrive().unwrap().may_move(ONE).is_err());
+        began.elapsed() > Duration::from_secs(2)
+    });
+    assert_eq!(desk.times_told("hd_end.rules"), 1);
+    bad.store(false, Ordering::SeqCst);
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    desk.until("what was told is over", |studio| {
+        studio.services.log.standing().is_none_or(|own| own.texts.iter().all(|text| text.id() != "hd_end.rules"))
+    });
+    assert!(unit(&desk).moves.is_open() && began.elapsed() < LONG);
+}
