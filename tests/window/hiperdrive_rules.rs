@@ -9,7 +9,7 @@ use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
 use encoder_studio::app::{Action, Severity, Studio, Tab, World};
 use encoder_studio::device::hiperdrive::Station;
 use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
-use encoder_studio::protocol::hiperdrive::{DriveNumber, State, Value};
+use encoder_studio::protocol::hiperdrive::{DriveNumber, ErrorCode, State, Value};
 use encoder_studio::sim::hiperdrive::{Config, Target};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
@@ -147,4 +147,63 @@ fn what_cannot_be_read_stops_what_moves_until_it_can() {
         studio.services.log.standing().is_none_or(|own| own.texts.iter().all(|text| text.id() != "hd_end.rules"))
     });
     assert!(unit(&desk).moves.is_open() && began.elapsed() < LONG);
+}
+
+fn fail(desk: &Desk, own: DriveNumber) {
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+}
+
+fn fault_stands(studio: &Studio) -> bool {
+    studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
+}
+
+/// Drive 2 has failed before; drive 1 fails while it moves, which is told, and drive 2 recovers.
+#[test]
+fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
+    let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Moving));
+    fail(&desk, two());
+    desk.until("its fault is told", fault_stands);
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    desk.until("the other may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    fail(&desk, ONE);
+    desk.until("both have failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
+    desk.until("that is told", |studio| fault_stands(studio) && studio.hiperdrive().unwrap().session.is_ready());
+    assert_eq!(desk.times_told("hd_end.fault"), 2);
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    drive(&mut desk, Motor::Acknowledge);
+    desk.until("it has recovered", |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Ready));
+    desk.settle();
+    assert!(fault_stands(&desk.studio), "the other has not");
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    drive(&mut desk, Motor::Acknowledge);
+    desk.until("all have recovered", |studio| !fault_stands(studio));
+}
+
+/// A reading of all states that began before a fault ends behind it.
+#[test]
+fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
+    let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
+    for _ in 0..3 {
+        drive(&mut desk, Motor::Move { target: 30_000_000 });
+        desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+        act(&mut desk, Hiperdrive::ReadStatus);
+        // The first drive was asked by now.
+        std::thread::sleep(Duration::from_millis(40));
+        fail(&desk, ONE);
+        desk.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
+        desk.until("everything is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
+        desk.settle();
+        assert!(fault_stands(&desk.studio));
+        drive(&mut desk, Motor::Acknowledge);
+        desk.until("it has recovered", |studio| {
+            !fault_stands(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok()
+        });
+    }
 }

@@ -10,8 +10,8 @@ use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text, explain};
+use crate::device::hiperdrive::Reading;
 use crate::device::hiperdrive::dead_man::Ended;
-use crate::device::hiperdrive::{DriveStatus, Reading};
 use crate::link::TraceEntry;
 use crate::protocol::hiperdrive::{DriveNumber, KIND, State};
 use crate::sim::hiperdrive::Target;
@@ -22,6 +22,11 @@ use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutp
 const PACE: Duration = Duration::from_millis(200);
 /// What is told where the rules of a drive in hand cannot be read: true no more once they were.
 const RULES: &str = "hd_end.rules";
+
+/// A drive in this state does not move until somebody has acknowledged.
+const fn has_failed(state: State) -> bool {
+    matches!(state, State::Fault | State::Locked)
+}
 
 /// What is kept of a session beside its thread.
 pub struct Aside {
@@ -131,6 +136,14 @@ impl Unit {
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
+    /// A fault that was told is over once no drive has one: they are told alike, whichever has it.
+    fn settle_fault(&self, failed: bool, services: &mut Services) {
+        let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
+        if !failed && !self.drives().iter().any(fails) {
+            services.log.settle("hd_end.fault", Some(&self.session.name()));
+        }
+    }
+
     fn tell_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
         let weight = explain::hiperdrive::weight(ended);
         if weight == Severity::Note {
@@ -179,9 +192,9 @@ impl OnLine for Unit {
         self.notice_rules();
         for (drive, before) in before {
             self.notice_fault(drive, before);
-            let is_over = |state: State| !matches!(state, State::Fault | State::Locked);
-            if before.is_some_and(|before| !is_over(before)) && self.state(drive).is_some_and(is_over) {
-                services.log.settle("hd_end.fault", Some(&self.session.name()));
+            if before.is_some_and(has_failed) && self.state(drive).is_some_and(|state| !has_failed(state)) {
+                let failed = self.drives().into_iter().any(|drive| self.state(drive).is_some_and(has_failed));
+                self.settle_fault(failed, services);
             }
         }
         if let Some((drive, ended)) = self.moves.take_end() {
@@ -218,10 +231,8 @@ impl OnLine for Unit {
                 self.submit(HiperdriveJob::Status, services);
             }
             HiperdriveOutput::Status(status) => {
-                let failed = |own: &DriveStatus| matches!(own.status.state(), State::Fault | State::Locked);
-                if !status.drives.iter().any(failed) {
-                    services.log.settle("hd_end.fault", Some(&self.session.name()));
-                }
+                let failed = status.drives.iter().any(|own| has_failed(own.status.state()));
+                self.settle_fault(failed, services);
                 self.status = Some(*status);
                 if !std::mem::replace(&mut self.has_polled, true) {
                     self.poll();
