@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use egui_kittest::kittest::Queryable;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
 use encoder_studio::app::{Action, Severity, Studio, Tab, World};
 use encoder_studio::device::hiperdrive::Station;
@@ -17,6 +18,7 @@ use encoder_studio::worker::hiperdrive::Way;
 
 use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
 use crate::hiperdrive_motion::in_control;
+use crate::screen::Screen;
 use crate::support::{Desk, LONG, Outside};
 
 fn two() -> DriveNumber {
@@ -206,4 +208,26 @@ fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
             !fault_stands(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok()
         });
     }
+}
+
+/// A drive that is locked for two reasons has one place at which its limits are confirmed.
+#[test]
+fn limits_are_confirmed_at_one_place() {
+    let mut screen = Screen::opened_in(Tab::Hiperdrive, "sim:", [1280.0, 900.0]);
+    let is_ready = |studio: &Studio, open: bool| {
+        let own = studio.hiperdrive();
+        own.is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.moves.is_open() == open)
+    };
+    screen.until("it is read", |studio| is_ready(studio, false));
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
+    for (of, value) in [(154, 400), (156, 256), (186, 255)] {
+        target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
+    }
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    screen.until("it is locked", |studio| {
+        is_ready(studio, true) && studio.hiperdrive().unwrap().moves.locks(ONE).len() == 2
+    });
+    let confirm = screen.say("hd_limits.confirm");
+    assert_eq!(screen.harness.query_all_by_label(&confirm).count(), 1);
 }

@@ -6,7 +6,7 @@ use super::{figures, jog};
 use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::app::{Action, SessionId, Text};
-use crate::device::hiperdrive::dead_man::{Effort, Goal, Motive, Phase};
+use crate::device::hiperdrive::dead_man::{Effort, Goal, Lock, Motive, Phase};
 use crate::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
@@ -78,7 +78,9 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 ui.label(RichText::new(icons::LOCK_SIMPLE).color(skin.palette.warn));
                 paragraph(ui, skin.words(&explain::lock(lock)));
             });
-            if let Some((low, high)) = unit.limits_to_confirm(drive) {
+            if lock == Lock::LimitsUnconfirmed
+                && let Some((low, high)) = unit.limits_to_confirm(drive)
+            {
                 let [low, high] = [low, high].map(|steps| {
                     let places = unit.in_all_units(drive, steps);
                     places.iter().map(|place| skin.words(place)).collect::<Vec<_>>().join("   ")
