@@ -230,12 +230,13 @@ impl Moves {
         }
     }
 
-    /// A person has looked at the limits.
-    pub(super) fn confirm_limits(&mut self, drive: DriveNumber) {
-        self.unconfirmed.remove(&drive);
-        if let Some(motion) = &self.motion {
-            motion.confirm_limits(drive);
+    /// A person has looked at the limits, by the scale that was shown. Whether that counts.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: (i64, i64)) -> bool {
+        let counts = self.motion.as_ref().is_none_or(|motion| motion.confirm_limits(drive, seen));
+        if counts {
+            self.unconfirmed.remove(&drive);
         }
+        counts
     }
 
     /// Drives whose limits nobody has looked at since their scaling was changed.

@@ -96,23 +96,28 @@ impl Unit {
     /// # Errors
     /// Why not, in words.
     pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
-        let lacks = self.limits(drive).is_none() || self.scale_as_read(drive).is_none();
-        let unread = || lacks.then(|| explain::hiperdrive::lock(Lock::Unread));
-        self.why_unread(drive).or_else(unread).map_or(Ok(()), Err)
+        self.confirms(drive).map(|_| ())
+    }
+
+    /// The scale by which the limits are shown that would be confirmed.
+    fn confirms(&self, drive: DriveNumber) -> Result<(i64, i64), Text> {
+        self.why_unread(drive).map_or(Ok(()), Err)?;
+        let scale = self.limits(drive).and_then(|_| self.scale_as_read(drive));
+        scale.ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
     }
 
     /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         self.moves.look();
         self.notice_rules();
-        match self.may_confirm(drive) {
-            Ok(()) => self.moves.confirm_limits(drive),
-            Err(why) => {
-                services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
-                return false;
-            }
+        let counts = self.confirms(drive).and_then(|seen| {
+            let counts = self.moves.confirm_limits(drive, seen);
+            counts.then_some(()).ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
+        });
+        if let Err(why) = &counts {
+            services.tell(Severity::Warning, vec![why.clone()], Some(&self.session.name()));
         }
-        true
+        counts.is_ok()
     }
 
     /// A drive was asked where it is.

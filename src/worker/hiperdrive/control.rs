@@ -98,11 +98,8 @@ impl Control {
     pub(super) fn rule(&mut self, identity: &Identity, drive: DriveNumber, rules: Rules) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         let before = self.rules.insert(drive, rules);
-        if before.is_some_and(|before| before.scale.is_some() && before.scale != rules.scale) {
-            self.motion.limits_changed(drive);
-        }
-        self.motion.scaled(drive, rules.scale);
-        self.motion.permit(drive, rules.permit(identity.topology, variant));
+        let moved = before.is_some_and(|before| before.scale.is_some() && before.scale != rules.scale);
+        self.motion.rule(drive, rules.scale, moved, rules.permit(identity.topology, variant));
     }
 }
 

@@ -142,12 +142,18 @@ impl Motion {
         self.lock().scales.get(&drive).copied()
     }
 
-    pub(super) fn scaled(&self, drive: DriveNumber, scale: Option<(i64, i64)>) {
+    /// What a drive may do from now on, and in which scale; `moved`: its limits lie elsewhere than before. All at once: nobody
+    /// confirms limits between two of these.
+    pub(super) fn rule(&self, drive: DriveNumber, scale: Option<(i64, i64)>, moved: bool, permit: Permit) {
         let mut cell = self.lock();
+        if moved || permit.locks.contains(&Lock::LimitsUnconfirmed) {
+            cell.unconfirm(drive);
+        }
         match scale {
             Some(scale) => cell.scales.insert(drive, scale),
             None => cell.scales.remove(&drive),
         };
+        cell.permits.insert(drive, permit);
     }
 
     /// What rules a drive was read within the last seconds. It is read each second while there is a cyclic connection; where
@@ -181,9 +187,15 @@ impl Motion {
         self.lock().unconfirm(drive);
     }
 
-    /// A person has looked at the limits of a drive in their own units.
-    pub fn confirm_limits(&self, drive: DriveNumber) {
-        self.lock().unconfirmed.retain(|unconfirmed| *unconfirmed != drive);
+    /// A person has looked at the limits of a drive in their own units, by the scale that was shown. Whether that counts: not
+    /// where the drive has another scale by now.
+    pub fn confirm_limits(&self, drive: DriveNumber, seen: (i64, i64)) -> bool {
+        let mut cell = self.lock();
+        let is_so = cell.scales.get(&drive).is_none_or(|scale| *scale == seen);
+        if is_so {
+            cell.unconfirmed.retain(|unconfirmed| *unconfirmed != drive);
+        }
+        is_so
     }
 
     /// Somebody knows what an endless run is. It may begin where limits and scaling are the factory's too.

@@ -193,7 +193,9 @@ fn what_rules_motion_is_known_after_every_write() {
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
     stand.survey();
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "reading confirms nothing");
-    motion.confirm_limits(drive(1));
+    assert!(!motion.confirm_limits(drive(1), (256, 1)), "they were shown under the scale of before");
+    assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
+    assert!(motion.confirm_limits(drive(1), (100, 1)));
     assert!(motion.permitted(drive(1)).locks.is_empty());
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert!(motion.permitted(drive(1)).locks.is_empty(), "the scale is as it was saved");
