@@ -10,7 +10,8 @@ use crate::protocol::hiperdrive::DriveNumber;
 use crate::units::Moment;
 use crate::worker::Desk;
 
-/// From one group of the parameters that rule a drive to the next: all of them each second.
+/// The time is cut into turns of this length, which belong to one group after the other of the parameters that rule a drive:
+/// all of them have one each second.
 const TURN: Duration = Duration::from_millis(250);
 /// Behind a look that failed.
 const REST: Duration = Duration::from_millis(500);
@@ -49,16 +50,22 @@ impl Looks {
         self.drives.remove(&drive);
     }
 
-    /// The groups of a drive that are to be read now, the oldest first; `None`: all at once, since none is known.
+    /// The groups of a drive that are to be read now, the oldest first: those one of whose turns has begun since they were
+    /// read. `None`: all at once, since none is known.
     fn due(&self, drive: DriveNumber, now: Moment) -> Option<Vec<usize>> {
         let read = self.drives.get(&drive)?;
-        let newest = read.iter().max().copied().unwrap_or(now);
-        let turns = now.since(newest).as_millis() / TURN.as_millis();
-        let mut groups: Vec<usize> = (0..GROUPS).collect();
-        groups.sort_by_key(|group| read.get(*group).copied());
-        groups.truncate(usize::try_from(turns).unwrap_or(GROUPS));
-        Some(groups)
+        let is_due = |(group, at): &(usize, Moment)| turns(*group, now) > turns(*group, *at);
+        let mut groups: Vec<(usize, Moment)> = read.iter().copied().enumerate().filter(is_due).collect();
+        groups.sort_by_key(|(_, at)| *at);
+        Some(groups.into_iter().map(|(group, _)| group).collect())
     }
+}
+
+/// How many turns of a group have begun until then.
+fn turns(group: usize, at: Moment) -> u128 {
+    let begun = at.since_start().as_nanos() / TURN.as_nanos();
+    let groups = GROUPS as u128;
+    (begun + groups - group as u128) / groups
 }
 
 impl Hiperdrive {
@@ -159,21 +166,25 @@ mod tests {
     #[test]
     fn every_group_comes_once_a_second_however_often_somebody_looks() {
         let one = DriveNumber::FIRST;
-        for step in [10, 100, 250, 500, 2000] {
+        for (step, first) in
+            [10, 100, 200, 249, 250, 300, 500, 2000].into_iter().flat_map(|step| [(step, 0), (step, 777)])
+        {
             let mut looks = Looks::default();
-            assert_eq!(looks.due(one, at(0)), None, "nobody knows any");
-            assert_eq!(looks.all_read(one, at(0)), Some(at(0)));
-            let (mut now, mut asked) = (0, 0);
-            while now < 10_000 {
+            assert_eq!(looks.due(one, at(first)), None, "nobody knows any");
+            assert_eq!(looks.all_read(one, at(first)), Some(at(first)));
+            let (mut now, mut asked) = (first, 0);
+            while now < first + 10_000 {
                 now += step;
-                for group in looks.due(one, at(now)).unwrap() {
+                let age = at(now).since(looks.known_since(one).unwrap());
+                assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
+                let groups = looks.due(one, at(now)).unwrap();
+                assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");
+                for group in groups {
                     looks.read(one, group, at(now));
                     asked += 1;
                 }
-                let age = at(now).since(looks.known_since(one).unwrap());
-                assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
             }
-            assert!((16..=40).contains(&asked), "{step}: {asked} in ten seconds");
+            assert!((20..=41).contains(&asked), "{step}: {asked} in ten seconds");
             looks.forget(one);
             assert_eq!((looks.known_since(one), looks.due(one, at(now))), (None, None));
         }
