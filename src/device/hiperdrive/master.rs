@@ -90,7 +90,7 @@ impl<'a> Master<'a> {
     }
 
     /// Does what leads to a safe end: in it, a wish to end is not heard.
-    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
         self.line.shield(before);

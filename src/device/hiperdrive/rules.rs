@@ -52,22 +52,20 @@ impl Rules {
     }
 }
 
-/// Reads what rules a drive. A wish to end is not heard: whoever has changed something has to know how it is now.
+/// Reads what rules a drive.
 ///
 /// # Errors
 /// The way.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
-    master.shielded(|master| {
-        let mut values = Vec::new();
-        for base in [152, 154, 156, 158, 160, 186] {
-            match master.read_number(of(base, drive)?) {
-                Ok(value) => values.push((base, value)),
-                Err(error) if error.is_unsaid() => {}
-                Err(error) => return Err(error),
-            }
+    let mut values = Vec::new();
+    for base in [152, 154, 156, 158, 160, 186] {
+        match master.read_number(of(base, drive)?) {
+            Ok(value) => values.push((base, value)),
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
         }
-        Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
-    })
+    }
+    Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
 }
 
 /// What rules a drive is read again in so many groups: what belongs together is read together.

@@ -139,14 +139,14 @@ impl Hiperdrive {
         self.look_at_rules(desk);
     }
 
-    /// Reads what rules all drives.
+    /// Reads what rules all drives. A wish to end is not heard: whoever has changed something has to know how it is now.
     ///
     /// # Errors
     /// The way.
     pub(super) fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = desk.clock.now();
-            let rules = read_rules(&mut self.master(desk), drive.number)?;
+            let rules = self.master(desk).shielded(|master| read_rules(master, drive.number))?;
             self.control.rule(identity, drive.number, rules);
             let since = self.control.looks.all_read(drive.number, began);
             self.control.motion().ruled(drive.number, since);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::hiperdrive::{Asked, Damage, Error, Master, Station};
+use encoder_studio::device::hiperdrive::{Asked, Damage, Error, Master, Station, read_rules};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
 use encoder_studio::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
 use encoder_studio::protocol::hiperdrive::{Topology, Value};
@@ -125,7 +125,11 @@ impl Desk {
     }
 
     fn ask<T>(&mut self, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
-        let (cancel, mut trace) = (Cancel::default(), Trace::default());
+        self.ask_until(Cancel::default(), work)
+    }
+
+    fn ask_until<T>(&mut self, cancel: Cancel, work: impl FnOnce(&mut Master<'_>) -> T) -> T {
+        let mut trace = Trace::default();
         let ctx = Ctx { wire: &mut *self.wire, clock: &*self.clock, cancel: &cancel, trace: &mut trace };
         work(&mut Master::new(ctx, &mut self.station))
     }
@@ -253,6 +257,19 @@ fn broken_frames_are_asked_again_and_silence_ends_in_time() {
     let error = desk.read(107).unwrap_err();
     assert_eq!(error, Error::NoReply { asked: Asked::Parameter(number(107)), tries: 5, late: None });
     assert!(error.is_lost() && desk.clock.now() < Moment::after_start(Duration::from_secs(10)));
+}
+
+/// What a silent device is asked again and again holds up nobody who wishes something else.
+#[test]
+fn reading_what_rules_a_drive_can_be_cut_short() {
+    let mut desk = Desk::with([]);
+    let cancel = Cancel::default();
+    cancel.request();
+    assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
+    assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
+    // Behind a write it is known how it is now.
+    let ended = desk.ask_until(cancel, |master| master.shielded(|master| read_rules(master, drive(1))));
+    assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 
 /// ForwardOpen as the reference has it, but for what differs from connection to connection: numbers of both ways, of the
