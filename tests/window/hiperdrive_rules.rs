@@ -151,6 +151,25 @@ fn what_cannot_be_read_stops_what_moves_until_it_can() {
     assert!(unit(&desk).moves.is_open() && began.elapsed() < LONG);
 }
 
+fn rules_stand(studio: &Studio) -> bool {
+    studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
+}
+
+#[test]
+fn what_could_not_be_read_is_over_where_the_control_is_given_back() {
+    let (mut desk, bad) = over_a_bad_stream();
+    bad.store(true, Ordering::SeqCst);
+    desk.until("that is told", rules_stand);
+    // Before anybody looks again.
+    bad.store(false, Ordering::SeqCst);
+    act(&mut desk, Hiperdrive::Give);
+    desk.until("it is given back", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        !own.moves.is_open() && own.session.is_ready()
+    });
+    assert!(!rules_stand(&desk.studio));
+}
+
 fn fail(desk: &Desk, own: DriveNumber) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));

@@ -20,7 +20,7 @@ use crate::worker::hiperdrive::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutp
 
 /// How often a drive is asked where it is, to begin with.
 const PACE: Duration = Duration::from_millis(200);
-/// What is told where the rules of a drive in hand cannot be read: true no more once they were.
+/// What is told where the rules of a drive in hand cannot be read: true no more once they were, or are not needed.
 const RULES: &str = "hd_end.rules";
 
 /// A drive in this state does not move until somebody has acknowledged.
@@ -266,6 +266,8 @@ impl OnLine for Unit {
             }
             HiperdriveOutput::Given => {
                 self.moves.beat();
+                // Nobody looks at them any more.
+                services.log.settle(RULES, Some(&self.session.name()));
                 // What was not read while somebody had it is read now.
                 self.looks_at_all |= self.is_stale;
             }
