@@ -181,10 +181,11 @@ fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     }
 }
 
-/// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide, counts when it is
-/// pressed, not when it is let go, and ends nothing but motion.
+/// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide; while one moves
+/// by this window it counts when it is pressed, not when it is let go, and ends nothing but motion.
 fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let moves = studio.moves();
+    // What somebody else moves cannot be stopped from here: that is no reason to let a job run on.
+    let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
         (skin.say("hd_bar.stop"), skin.say("hd_bar.stop_hint"))
@@ -203,9 +204,9 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
     ui.data_mut(|data| data.insert_temp(stop_place(), response.rect.min));
     let pressed = goes_down(ui, &response);
     let clicked = name(response, active, &word).clicked();
-    if clicked || pressed && moves {
+    if clicked || pressed && by_hand {
         // What is shown of a drive goes on while it is stopped, and so does all else that runs.
-        let motion = means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
+        let motion = means_motion(ui.ctx(), by_hand, pressed_at(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }
 }

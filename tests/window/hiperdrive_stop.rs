@@ -186,9 +186,8 @@ fn escape_that_is_held_stops_what_begins_meanwhile() {
     assert!(matches!(ended, Some((_, Ended::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
-/// What somebody else moves cannot be stopped from here: Esc is for what is open.
-#[test]
-fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
+/// A drive that is watched here, and moved by another master.
+fn moved_by_somebody_else() -> Screen {
     let mut screen = Screen::opened_in(Tab::Hiperdrive, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
     screen.until("it is read", own);
@@ -198,9 +197,30 @@ fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
         target.with(|station| station.drive(ONE).unwrap().command(Moment::default(), out));
     }
     screen.until("it is seen to move", Studio::moves);
+    screen
+}
+
+/// What somebody else moves cannot be stopped from here: Esc is for what is open.
+#[test]
+fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
+    let mut screen = moved_by_somebody_else();
     screen.key(Key::F1);
     screen.key(Key::Escape);
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "the help is closed, and it is still watched");
     screen.key(Key::Escape);
     assert!(!screen.studio().hiperdrive().unwrap().session.is_polling(), "nothing else was open");
+}
+
+/// Nor does STOP let a job run on because of it; it counts as any other click does.
+#[test]
+fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
+    let mut screen = moved_by_somebody_else();
+    let polls = |screen: &Screen| screen.studio().hiperdrive().unwrap().session.is_polling();
+    let place = stop(&screen);
+    screen.harness.hover_at(place);
+    screen.harness.step();
+    pointer(&mut screen, place, true);
+    assert!(polls(&screen) && moves(&screen), "it may still be let go elsewhere");
+    pointer(&mut screen, place, false);
+    assert!(!polls(&screen));
 }
