@@ -135,13 +135,14 @@ fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: 
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
+                let item = skin.words(&line.item);
                 let short = match line.changes.as_slice() {
-                    [change] if change.part.is_none() => short(ui, skin, change, ink),
+                    [change] if change.part.is_none() => short(ui, skin, &item, change, ink),
                     _ => None,
                 };
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(icon).color(colour));
-                    ui.label(skin.words(&line.item));
+                    ui.label(&item);
                     if let Some(words) = &short {
                         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                             ui.add(egui::Label::new(words.clone()).selectable(true));
@@ -164,7 +165,7 @@ fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: 
 }
 
 /// What is there and what will be, on one line: where they have room beside what they are of.
-fn short(ui: &Ui, skin: &Skin, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
+fn short(ui: &Ui, skin: &Skin, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(skin.sizes.body);
     let parts = [
@@ -177,7 +178,9 @@ fn short(ui: &Ui, skin: &Skin, change: &ChangeWords, ink: Rgb) -> Option<Arc<Gal
     }
     job.wrap.max_width = f32::INFINITY;
     let galley = ui.painter().layout_job(job);
-    (galley.rows.len() == 1 && galley.size().x <= ui.available_width() * SHORT).then_some(galley)
+    let item = ui.painter().layout_no_wrap(item.to_owned(), FontId::proportional(skin.sizes.body), ink.into());
+    let beside = item.size().x + ICON + skin.space.groups;
+    (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
 /// One thing that changes: what it is, what is there before, and what after it.
@@ -205,8 +208,8 @@ fn change_ui(ui: &mut Ui, skin: &Skin, change: &ChangeWords, heads: [&'static st
 const LEAST: f32 = 200.0;
 const MOST: f32 = 440.0;
 const REST: f32 = 400.0;
-/// The share of a line that old and new may have together.
-const SHORT: f32 = 0.6;
+/// Width of the icon before an item, with what lies between them.
+const ICON: f32 = 24.0;
 /// Width of the column that says which is old and which is new.
 const HEADS: f32 = 56.0;
 

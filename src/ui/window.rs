@@ -306,8 +306,8 @@ impl Window {
             return;
         }
         let means_motion = stopping::means_motion(ctx, moves, ctx.input(|input| input.time));
-        // A key that is held stops what has begun since it went down, and nothing else; nor does one that is hit again, and
-        // what was asked for in this picture may be about to move.
+        // A held key stops what has begun since it went down, and nothing else. A further press within the half second means
+        // no more than motion either: also what was asked for in this very picture and does not move yet.
         if !goes_down || means_motion && !moves {
             actions.push(Action::StopMotion);
             return;

@@ -65,7 +65,7 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
-    /// Nothing is to do: looks after what goes on without being asked, and tells what there is to say of it.
+    /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
     pub fn idle(&mut self) -> Option<D::Remark> {
         self.device.idle(&mut self.desk)
     }

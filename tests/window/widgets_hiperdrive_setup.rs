@@ -192,6 +192,17 @@ fn parameters_are_typed_into_their_table() {
     // What is only read cannot be typed over, and says so.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) can only be read"));
+    // What is being typed counts before other lines are shown, and before there are none.
+    begin(&mut screen, "172 Jog 1, speed");
+    screen.put("172 Jog 1, speed", "50");
+    screen.press(Role::RadioButton, "Show: Changed");
+    assert_eq!(edits(&screen), [(166, Some(350), Some(300)), (172, Some(100), Some(50))]);
+    begin(&mut screen, "172 Jog 1, speed");
+    screen.put("172 Jog 1, speed", "100");
+    screen.press(Role::RadioButton, "Show: Scale");
+    assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
+    assert!(screen.shows("Spindle pitch"));
+    screen.press(Role::RadioButton, "Show: All");
     // Another drive has other lines; nothing is typed into them.
     begin(&mut screen, "158 Lower limit");
     screen.put("158 Lower limit", "17");

@@ -35,7 +35,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
     screen.click("memory.review");
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     let byte = screen.words(&Text::new("op.byte").with("field", 0).with("first", 0));
-    for words in [byte.as_str(), "45", "58"] {
+    for words in [byte.as_str(), "45  →  58"] {
         screen.harness.query_all_by_label(words).next().unwrap_or_else(|| panic!("{words} is not in the review"));
     }
     assert_eq!(screen.outside.wire(PORT).wear(), 0);

@@ -120,7 +120,7 @@ impl Moves {
         self.view = view;
         self.ruled_lately.clear();
         for drive in self.view.drives.iter().map(|own| own.number) {
-            // Asked first: what was read until then is seen by what comes.
+            // The age before the permit, so that the permit is at least as new as that.
             if motion.is_ruled_lately(drive) {
                 self.ruled_lately.insert(drive);
             }

@@ -169,7 +169,7 @@ impl Unit {
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
             self.moves.let_go();
-            // Only what is shown is looked at again and again.
+            // Only the drive that is shown, and the one moved last, are looked at again and again.
             self.moves.doubt_rules(drive);
             self.drive = drive;
             self.record.forget();

@@ -46,7 +46,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         paragraph(ui, RichText::new(skin.words(refusal)).color(skin.palette.bad));
     }
     ui.add_space(skin.space.inside);
-    if view.shown == Shown::Scale {
+    if view.shows_scale() {
         ScrollArea::vertical().id_salt("scale").auto_shrink(false).show(ui, |ui| {
             scale::card_ui(ui, skin, unit, &mut view.scale, actions);
         });
@@ -85,16 +85,33 @@ fn head(ui: &mut Ui, skin: &Skin, view: &mut View) {
             (Shown::Changed, "hd_params.changed"),
             (Shown::Scale, "hd_scale.title"),
         ];
-        options(ui, &skin.say("hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, skin.say(id))));
+        if options(ui, &skin.say("hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, skin.say(id)))) {
+            // What is being typed counts before other lines are shown.
+            ui.memory_mut(|memory| memory.stop_text_input());
+        }
     });
-    if let Some(problem) = view.table.problem(skin) {
+    if let Some(problem) = view.table.problem(skin).filter(|_| !view.shows_scale()) {
         let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
         paragraph(ui, RichText::new(words).color(skin.palette.bad));
     }
 }
 
 impl View {
+    /// The table goes once what is typed into it is taken or refused.
+    fn shows_scale(&self) -> bool {
+        self.shown == Shown::Scale && (self.table.typed().is_none() || self.table.is_refused())
+    }
+
+    /// What is being typed, or was refused.
+    fn typed(&self) -> Option<ParameterNumber> {
+        let place = self.table.typed()?;
+        self.lines.get(place.group)?.get(place.row).copied()
+    }
+
     fn shows(&self, skin: &Skin, row: &Row) -> bool {
+        if self.typed() == Some(row.number) {
+            return true;
+        }
         let sought = self.sought.trim().to_lowercase();
         let fits = sought.is_empty()
             || row.number.get().to_string().contains(&sought)

@@ -254,6 +254,7 @@ fn body(
         let behind = ((viewport.bottom() / LINE).ceil().max(0.0) as usize).min(lines.total());
         let groups = lines.group_at(first).zip(lines.group_at(behind.saturating_sub(1)));
         output.groups = groups.map_or(0..0, |(first, last)| first..last + 1);
+        let was_refused = view.is_refused();
         for line in first..behind {
             let Some(kind) = lines.at(line) else { continue };
             let rect = at(line);
@@ -278,6 +279,14 @@ fn body(
             let cell = Rect::from_x_y_ranges(own.left() + range.min..=own.left() + range.max, own.y_range());
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), skin, id, cell, table, view, take);
+        }
+        // What was refused by that stays to be seen, and gives way to the next press.
+        let refused_now = view.is_refused() && !was_refused;
+        if let Some(place) = view.wanted.take()
+            && !refused_now
+            && view.edit.as_ref().is_none_or(|edit| edit.place != place)
+        {
+            keys::begin_at(table, view, place, None);
         }
         response
     });
@@ -339,7 +348,8 @@ fn row(
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
     if in_box || response.double_clicked() {
-        keys::begin_at(table, view, place, None);
+        // What is being typed elsewhere is heard first.
+        view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
     paint::row(ui, skin, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));

@@ -6,6 +6,7 @@ use egui::{
 
 use super::columns::{Column, Columns};
 use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
+use crate::app::Text;
 use crate::ui::{Skin, icons};
 
 /// Height of the line with the names of the columns.
@@ -235,8 +236,11 @@ pub(super) fn tip(ui: &mut Ui, skin: &Skin, (kind, columns): (RegisterKind, &Col
     if row.edited {
         note(ui, icons::PENCIL_SIMPLE, &skin.say("widget.register_edited"), palette.staged.into());
     } else if row.changed {
-        let before = if row.before.is_empty() { String::new() } else { format!(": {}", row.before) };
-        note(ui, icons::INFO, &format!("{}{before}", skin.say("widget.register_changed")), palette.accent.into());
+        let words = match row.before.as_str() {
+            "" => skin.say("widget.register_changed"),
+            before => skin.words(&Text::new("widget.register_changed_from").with("value", before)),
+        };
+        note(ui, icons::INFO, &words, palette.accent.into());
     }
     if row.differs {
         note(ui, icons::INFO, &skin.say("widget.register_differs"), palette.text.into());

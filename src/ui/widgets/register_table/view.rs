@@ -15,6 +15,8 @@ pub struct RegisterView {
     /// Registers whose bit fields are shown.
     pub(super) open: BTreeSet<Place>,
     pub(super) edit: Option<Edit>,
+    /// The register that was pressed to be edited.
+    pub(super) wanted: Option<Place>,
     /// Why the value that should be edited cannot be.
     pub(super) refused: Option<String>,
     /// What is selected has moved and has to be seen.
@@ -64,6 +66,16 @@ impl RegisterView {
     pub fn problem(&self, skin: &Skin) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| skin.words(problem));
         typed.or_else(|| self.refused.clone())
+    }
+
+    /// The register whose value is being typed, or was refused.
+    pub fn typed(&self) -> Option<Place> {
+        self.edit.as_ref().map(|edit| edit.place)
+    }
+
+    /// What was typed was refused, and stays with its reason.
+    pub fn is_refused(&self) -> bool {
+        self.edit.as_ref().is_some_and(|edit| edit.problem.is_some())
     }
 
     /// Selects a register, unfolds its group and brings it in sight.

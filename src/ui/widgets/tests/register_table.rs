@@ -234,6 +234,31 @@ fn the_box_of_a_number_is_pressed_once() {
     }
 }
 
+/// Types over the value of a box, and presses another one.
+#[test]
+fn what_is_typed_counts_when_another_box_is_pressed() {
+    let mut harness = table_of(RegisterKind::Numbers);
+    let entry = |harness: &Harness<'_, Registers>| {
+        harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
+    };
+    let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
+    let value = 232.0 + (spare * 0.45).floor() + 30.0;
+    click(&mut harness, "00:05 register 5", value, 1);
+    harness.event(Event::Text("7A".to_owned()));
+    harness.run();
+    click(&mut harness, "00:08 register 8", value, 1);
+    assert_eq!(harness.state().edits.get(&place(0, 5)), Some(&0x7A));
+    assert_eq!(entry(&harness).as_deref(), Some("00:08 register 8"));
+    // What is refused stays with its reason, and gives way only to a further press.
+    harness.event(Event::Text("xy".to_owned()));
+    harness.run();
+    click(&mut harness, "00:10 register 16", value, 1);
+    assert!(problem(&harness).is_some() && !harness.state().edits.contains_key(&place(0, 8)));
+    assert_eq!(entry(&harness).as_deref(), Some("00:08 register 8"));
+    click(&mut harness, "00:10 register 16", value, 1);
+    assert_eq!((entry(&harness).as_deref(), problem(&harness)), (Some("00:10 register 16"), None));
+}
+
 #[test]
 fn what_is_typed_stays_with_its_register_when_the_lines_are_other_ones() {
     let mut harness = table();
