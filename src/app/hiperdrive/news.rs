@@ -132,6 +132,7 @@ impl Unit {
         self.take_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
+        services.log.settle(RULES, Some(&self.session.name()));
         let text = explain::hiperdrive::lost(self.moves.view().lost.as_ref());
         services.tell(Severity::Error, vec![text], Some(&self.session.name()));
     }

@@ -15,7 +15,7 @@ const STOP: egui::Vec2 = vec2(112.0, 44.0);
 pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
-        stop(ui, skin, (unit.moves.is_open(), studio.moves()), actions);
+        stop(ui, skin, (unit.moves.is_open(), studio.moves_by_hand()), actions);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = skin.space.inside;
             ui.horizontal_wrapped(|ui| {
