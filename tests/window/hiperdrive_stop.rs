@@ -92,14 +92,20 @@ fn until_it_stands(screen: &Screen) {
     }
 }
 
-#[test]
-fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
+/// A drive that stands while the button that has stopped it is still down; where that is.
+fn stopped_by_a_press() -> (Screen, Pos2) {
     let mut screen = moving();
     let place = stop(&screen);
     screen.harness.hover_at(place);
     screen.harness.step();
     pointer(&mut screen, place, true);
     until_it_stands(&screen);
+    (screen, place)
+}
+
+#[test]
+fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
+    let (mut screen, place) = stopped_by_a_press();
     // Two pictures of a quarter of a second: still a click.
     screen.harness.step();
     screen.harness.step();
@@ -114,12 +120,7 @@ fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
 
 #[test]
 fn a_second_click_in_a_fright_ends_nothing_else() {
-    let mut screen = moving();
-    let place = stop(&screen);
-    screen.harness.hover_at(place);
-    screen.harness.step();
-    pointer(&mut screen, place, true);
-    until_it_stands(&screen);
+    let (mut screen, place) = stopped_by_a_press();
     for pressed in [false, true, false] {
         pointer(&mut screen, place, pressed);
     }
