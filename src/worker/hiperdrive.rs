@@ -20,7 +20,7 @@ pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Remark,
     WEAR_WARNING, device_key,
 };
-pub use motion::{DriveView, Motion, View};
+pub use motion::{DriveView, Glance, Motion, View};
 pub use open::{check, open};
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};

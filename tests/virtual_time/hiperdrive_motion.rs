@@ -142,7 +142,7 @@ fn a_job_waits_and_goes_on() {
 #[test]
 fn what_may_not_be_is_refused() {
     let none = Effort { speed: Percent::NONE, ..FULL };
-    let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), endless: false };
+    let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), ..Permit::within(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
     let outside = |target| Refusal::Outside { target, low: -TURN, high: TURN };
     for (label, wish, permit, refusal) in [

@@ -92,7 +92,7 @@ impl Unit {
             Motor::Stop => return self.moves.stop(),
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
-            Motor::Expert(expert) => return self.moves.set_expert(expert),
+            Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;

@@ -7,8 +7,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::device::hiperdrive::dead_man::{Effort, Ended, Lock, Permit, Phase, Wish};
+use crate::device::hiperdrive::{DriveLimits, LimitsSeen};
 use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Setpoint, State};
-use crate::worker::hiperdrive::{DriveView, Motion, View};
+use crate::units::Moment;
+use crate::worker::hiperdrive::{DriveView, Glance, Motion, View};
 
 /// The drives of a session as a person moves them.
 pub struct Moves {
@@ -19,15 +21,13 @@ pub struct Moves {
     act: Option<Act>,
     jog: Effort,
     job: Effort,
-    expert: bool,
-    /// Drives whose scaling was changed since somebody looked at their limits. They outlive a session.
-    unconfirmed: BTreeSet<DriveNumber>,
-    /// What drives might do at the last look, and in which scale.
-    rules: BTreeMap<DriveNumber, (Permit, Option<(i64, i64)>)>,
-    /// Drives for which that has become another since somebody asked.
-    ruled_anew: BTreeSet<DriveNumber>,
-    /// Drives for which that had been read just before the last look.
-    ruled_lately: BTreeSet<DriveNumber>,
+    /// Drives for which a person has allowed an endless run.
+    experts: BTreeSet<DriveNumber>,
+    /// What drives might do at the last look, and when that was. Limits to be confirmed outlive a session.
+    limits: BTreeMap<DriveNumber, DriveLimits>,
+    looked: Moment,
+    /// Drives whose limits have changed since somebody asked.
+    limits_changed: BTreeSet<DriveNumber>,
     /// The cyclic connection was opened since somebody asked.
     taken: bool,
 }
@@ -61,11 +61,10 @@ impl Default for Moves {
             act: None,
             jog: Effort::JOG,
             job: Effort::MOVE,
-            expert: false,
-            unconfirmed: BTreeSet::new(),
-            rules: BTreeMap::new(),
-            ruled_anew: BTreeSet::new(),
-            ruled_lately: BTreeSet::new(),
+            experts: BTreeSet::new(),
+            limits: BTreeMap::new(),
+            looked: Moment::START,
+            limits_changed: BTreeSet::new(),
             taken: false,
         }
     }
@@ -74,14 +73,14 @@ impl Default for Moves {
 impl Moves {
     /// A session is open. Limits that nobody has looked at stay so, and nobody is an expert yet.
     pub(super) fn begin(&mut self, motion: Motion) {
-        for drive in &self.unconfirmed {
-            motion.limits_changed(*drive);
+        for drive in self.unconfirmed() {
+            motion.unconfirm_limits(drive);
         }
-        (self.expert, self.act) = (false, None);
-        self.rules.clear();
-        self.ruled_anew.clear();
+        (self.experts, self.act) = (BTreeSet::new(), None);
+        self.limits_changed.clear();
         self.taken = false;
-        self.view = motion.view();
+        let Glance { at, view, limits } = motion.glance();
+        (self.looked, self.view, self.limits) = (at, view, limits);
         self.motion = Some(motion);
     }
 
@@ -96,8 +95,8 @@ impl Moves {
     /// Another device: its limits are others.
     pub(super) fn forget(&mut self) {
         self.stop();
-        self.unconfirmed.clear();
-        self.ruled_anew.clear();
+        self.limits.clear();
+        self.limits_changed.clear();
     }
 
     /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.
@@ -115,33 +114,20 @@ impl Moves {
     /// Looks at what the drives say, and at what they may do.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
-        let view = motion.view();
+        let Glance { at, view, limits } = motion.glance();
         self.taken |= view.open && !self.view.open;
-        self.view = view;
-        self.ruled_lately.clear();
-        for drive in self.view.drives.iter().map(|own| own.number) {
-            // The age before the permit, so that the permit is at least as new as that.
-            if motion.is_ruled_lately(drive) {
-                self.ruled_lately.insert(drive);
+        for (drive, own) in &limits {
+            let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));
+            if before.is_some_and(|before| before != (own.rules(), own.locks())) {
+                self.limits_changed.insert(*drive);
             }
-            let permit = motion.permitted(drive);
-            if permit.locks.contains(&Lock::LimitsUnconfirmed) {
-                self.unconfirmed.insert(drive);
-            }
-            let scale = motion.scale(drive);
-            let is_other = |(before, at): &(Permit, _)| {
-                (before.limits, &before.locks, *at) != (permit.limits, &permit.locks, scale)
-            };
-            if self.rules.get(&drive).is_some_and(is_other) {
-                self.ruled_anew.insert(drive);
-            }
-            self.rules.insert(drive, (permit, scale));
         }
+        (self.looked, self.view, self.limits) = (at, view, limits);
     }
 
-    /// Drives that may do something else since this was asked last: their parameters were changed, here or by somebody else.
-    pub(super) fn take_ruled_anew(&mut self) -> BTreeSet<DriveNumber> {
-        std::mem::take(&mut self.ruled_anew)
+    /// Drives whose limits have changed since this was asked last: here, or by another master.
+    pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
+        std::mem::take(&mut self.limits_changed)
     }
 
     /// The cyclic connection was opened since this was asked last.
@@ -222,26 +208,24 @@ impl Moves {
         }
     }
 
-    /// The scaling of a drive is another one than it was.
+    /// The limits of a drive are to be confirmed before it moves.
     pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
-        self.unconfirmed.insert(drive);
+        self.limits.entry(drive).or_default().unconfirm();
         if let Some(motion) = &self.motion {
-            motion.limits_changed(drive);
+            motion.unconfirm_limits(drive);
         }
     }
 
-    /// A person has looked at the limits, by the scale that was shown. Whether that counts.
-    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: (i64, i64)) -> bool {
-        let counts = self.motion.as_ref().is_none_or(|motion| motion.confirm_limits(drive, seen));
-        if counts {
-            self.unconfirmed.remove(&drive);
-        }
+    /// A person confirms the limits as they were shown. Returns whether that counts.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+        let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
+        self.look();
         counts
     }
 
-    /// Drives whose limits nobody has looked at since their scaling was changed.
-    pub fn unconfirmed(&self) -> &BTreeSet<DriveNumber> {
-        &self.unconfirmed
+    /// Drives whose limits are to be confirmed.
+    pub fn unconfirmed(&self) -> BTreeSet<DriveNumber> {
+        self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
 
     pub(super) fn set_jog_effort(&mut self, effort: Effort) {
@@ -252,10 +236,14 @@ impl Moves {
         self.job = effort;
     }
 
-    pub(super) fn set_expert(&mut self, expert: bool) {
-        self.expert = expert;
+    pub(super) fn set_expert(&mut self, drive: DriveNumber, expert: bool) {
+        if expert {
+            self.experts.insert(drive);
+        } else {
+            self.experts.remove(&drive);
+        }
         if let Some(motion) = &self.motion {
-            motion.expert(expert);
+            motion.allow_endless(drive, expert);
         }
     }
 
@@ -299,21 +287,21 @@ impl Moves {
         self.motion.as_ref().map(|motion| motion.permitted(drive))
     }
 
-    /// The scale in which a drive has its limits, by parameters 154 and 156; `None` where it was not read.
-    pub(super) fn scale(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        self.motion.as_ref().and_then(|motion| motion.scale(drive))
+    /// What a drive might do at the last look; `None` where nothing is known of it.
+    pub fn limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
+        self.limits.get(&drive)
     }
 
-    /// What rules a drive was read within the last seconds, and looked at here since.
-    pub(super) fn is_ruled_lately(&self, drive: DriveNumber) -> bool {
-        self.ruled_lately.contains(&drive)
+    /// A motion of a drive may begin by what was read of its limits at the last look.
+    pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
+        self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
 
-    /// What rules a drive is to be read before it moves.
-    pub(super) fn doubt_rules(&mut self, drive: DriveNumber) {
-        self.ruled_lately.remove(&drive);
+    /// The limits of a drive are to be read before it moves.
+    pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
+        self.limits.entry(drive).or_default().doubt();
         if let Some(motion) = &self.motion {
-            motion.doubt_rules(drive);
+            motion.doubt_limits(drive);
         }
     }
 
@@ -356,8 +344,8 @@ impl Moves {
         self.job
     }
 
-    /// Somebody has said that they know what an endless run is.
-    pub fn is_expert(&self) -> bool {
-        self.expert
+    /// A person has allowed an endless run of a drive.
+    pub fn is_expert(&self, drive: DriveNumber) -> bool {
+        self.experts.contains(&drive)
     }
 }

@@ -190,7 +190,7 @@ impl OnLine for Unit {
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.beat();
-        self.notice_rules();
+        self.notice_limits();
         for (drive, before) in before {
             self.notice_fault(drive, before);
             if before.is_some_and(has_failed) && self.state(drive).is_some_and(|state| !has_failed(state)) {
@@ -256,7 +256,7 @@ impl OnLine for Unit {
             HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
             HiperdriveOutput::Taken => {
                 self.moves.beat();
-                self.notice_rules();
+                self.notice_limits();
                 for lost in explain::hiperdrive::LOST.into_iter().chain([RULES]) {
                     services.log.settle(lost, Some(&self.session.name()));
                 }

@@ -5,6 +5,7 @@ use super::unit::Unit;
 use crate::app::number::decimals_of;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text, explain};
+use crate::device::hiperdrive::DriveLimits;
 use crate::device::hiperdrive::dead_man::{Goal, Lock, Phase as Doing, Wish};
 use crate::protocol::hiperdrive::{DriveNumber, Percent, RunEnd, State, effective_torque};
 
@@ -83,7 +84,7 @@ impl Unit {
     /// # Errors
     /// Why not, in words.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
-        let could = self.moves.motion().is_some_and(|motion| motion.could_run_endlessly(drive));
+        let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
     }
 

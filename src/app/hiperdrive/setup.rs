@@ -50,7 +50,6 @@ impl Unit {
             Doing::Moving(Motive::Run { direction, .. }) => Some(direction),
             _ => None,
         };
-        let image = self.staged.base();
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
         Seen {
             connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
@@ -62,7 +61,7 @@ impl Unit {
             turns,
             actual: self.actual(drive),
             requested: self.number(drive, 152).map(|value| value == 1),
-            scale: image.and_then(|image| image.scale(drive)),
+            scale: self.scale(drive),
             limits: self.limits(drive),
             family,
             locks: self.moves.locks(drive),

@@ -7,7 +7,7 @@ use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved};
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::dead_man::Lock;
-use crate::device::hiperdrive::{Identity, Reading, Survey};
+use crate::device::hiperdrive::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, State, Value};
 
@@ -28,7 +28,7 @@ impl Unit {
         self.survey = Some(survey);
         self.readings.clear();
         // What the control has read may be newer than what the survey did.
-        let differs = self.drives().into_iter().any(|drive| self.is_ruled_otherwise(drive));
+        let differs = self.drives().into_iter().any(|drive| self.is_limited_otherwise(drive));
         (self.is_stale, self.looks_at_all) = (differs, differs);
         if !self.drives().contains(&self.drive)
             && let Some(drive) = self.drives().first().copied()
@@ -55,37 +55,33 @@ impl Unit {
         }
     }
 
-    /// Whoever has the control reads again and again what rules the drives. Where that is not what is shown here, everything
-    /// is read anew: nothing moves by limits, and no limits are confirmed, that a person cannot see. So it is from the moment
-    /// at which the control is there.
-    pub(super) fn notice_rules(&mut self) {
+    /// While there is control, the worker reads again and again what a drive may do. Where that is no longer what the table of
+    /// parameters shows, everything is read anew. So it is from the moment at which control was taken.
+    pub(super) fn notice_limits(&mut self) {
         self.is_stale |= self.moves.take_taken();
-        for drive in self.moves.take_ruled_anew() {
-            if self.is_ruled_otherwise(drive) {
+        for drive in self.moves.take_limits_changed() {
+            if self.is_limited_otherwise(drive) {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
         }
     }
 
-    /// Whoever has the control has read other limits of a drive than those that are shown, or that they lie elsewhere.
-    fn is_ruled_otherwise(&self, drive: DriveNumber) -> bool {
-        let held = self.moves.permit(drive).filter(|_| self.moves.is_open());
-        held.and_then(|permit| permit.limits).is_some_and(|limits| {
-            Some(limits) != self.limits(drive) || self.moves.scale(drive) != self.scale_as_read(drive)
+    /// The drive has other limits or another scale than the table of parameters shows.
+    fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
+        let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
+        held.and_then(DriveLimits::seen).is_some_and(|own| {
+            let shown = self.staged.base();
+            let scale = shown.and_then(|image| image.of_drive(drive, 154).zip(image.of_drive(drive, 156)));
+            Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
         })
-    }
-
-    fn scale_as_read(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        let image = self.staged.base()?;
-        image.of_drive(drive, 154).zip(image.of_drive(drive, 156))
     }
 
     /// Why what is known of a drive's parameters is no ground to move it on; `None` where it is.
     pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(explain::hiperdrive::lock(Lock::Unread))
-        } else if self.moves.is_open() && !self.moves.is_ruled_lately(drive) {
-            Some(Text::new("hd_lock.old"))
+        } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
+            Some(explain::hiperdrive::lock(Lock::Outdated))
         } else {
             None
         }
@@ -99,18 +95,20 @@ impl Unit {
         self.confirms(drive).map(|_| ())
     }
 
-    /// The scale by which the limits are shown that would be confirmed.
-    fn confirms(&self, drive: DriveNumber) -> Result<(i64, i64), Text> {
+    /// The limits that are shown, and would be confirmed.
+    fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
         self.why_unread(drive).map_or(Ok(()), Err)?;
-        let scale = self.limits(drive).and_then(|_| self.scale_as_read(drive));
-        scale.ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
+        let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
+        seen.ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
     }
 
     /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
+        // As shown, before another look: what has changed since then was not seen.
+        let shown = self.confirms(drive);
         self.moves.look();
-        self.notice_rules();
-        let counts = self.confirms(drive).and_then(|seen| {
+        self.notice_limits();
+        let counts = self.confirms(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
             counts.then_some(()).ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
         });

@@ -16,7 +16,7 @@ use crate::app::line::Line;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
-use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Network, Reading, Status, Survey};
+use crate::device::hiperdrive::{DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey};
 use crate::link::LinkUrl;
 use crate::profile::hiperdrive::{HiperdriveProfile, Image, ProfileIdentity};
 use crate::profile::{Body, Document};
@@ -170,7 +170,7 @@ impl Unit {
         if self.drive != drive {
             self.moves.let_go();
             // Only the drive that is shown, and the one moved last, are looked at again and again.
-            self.moves.doubt_rules(drive);
+            self.moves.doubt_limits(drive);
             self.drive = drive;
             self.record.forget();
         }
@@ -232,8 +232,7 @@ impl Unit {
 
     /// Steps and what a person measures in, of a drive as it is.
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {
-        let scale = self.staged.base().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
-        Ruler { scale, pitch: self.pitch(drive) }
+        Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
     /// The same as its scale is wanted.
@@ -254,10 +253,24 @@ impl Unit {
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 
+    /// What a drive may do, as the worker read it last; `None` for a profile, and before anything was read.
+    pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
+        self.moves.limits(drive)
+    }
+
+    /// How a drive's position is scaled; `None` where that was not read.
+    pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
+        let as_read = || self.staged.base()?.scale(drive);
+        self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
+    }
+
     /// A drive's limits as it has them, in steps as scaled; `None` where they were not read.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
-        let (lower, upper) = self.staged.base()?.limits(drive)?;
-        Some((i32::try_from(lower).ok()?, i32::try_from(upper).ok()?))
+        let as_read = || {
+            let (lower, upper) = self.staged.base()?.limits(drive)?;
+            Some((i32::try_from(lower).ok()?, i32::try_from(upper).ok()?))
+        };
+        self.drive_limits(drive).and_then(DriveLimits::limits).or_else(as_read)
     }
 
     /// The limits that a person has to look at before the drive moves; `None` where there is nothing to look at.

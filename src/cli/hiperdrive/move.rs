@@ -16,8 +16,9 @@ use crate::cli::output::Output;
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperdrive::dead_man::{Effort, Ended, Goal, Permit, Phase, Refusal, Wish};
-use crate::device::hiperdrive::{Identity, Rules};
+use crate::device::hiperdrive::{DriveLimits, Identity, Rules};
 use crate::protocol::hiperdrive::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
+use crate::units::Moment;
 use crate::worker::hiperdrive::{DriveView, HiperdriveJob, HiperdriveOutput};
 
 /// How often it is said that the motion is wanted still.
@@ -103,7 +104,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
     format!("drive {} goes to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
-/// What the drive may do, and its scale: by its parameters as they are now.
+/// What the drive may do by its parameters as they are now, and its scale.
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
     let variant = identity.named(drive).map_err(|error| failed(&explain::hiperdrive::device(&error)))?.variant;
     let mut values = Vec::new();
@@ -113,10 +114,11 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
             values.push((base, value));
         }
     }
-    let read = |base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value);
-    let word = |base| read(base).and_then(|value| u16::try_from(value).ok());
-    let scale = word(154).zip(word(156)).and_then(|(one, other)| PositionScale::new(one, other).ok());
-    Ok((Rules::by(read).permit(identity.topology, variant), scale))
+    let rules = Rules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
+    // They were read just now.
+    let now = Moment::START;
+    let limits = DriveLimits::of(rules, (identity.topology, variant), now);
+    Ok((limits.permit(now, false), limits.scale()))
 }
 
 /// A target beyond what 32 bits hold is beyond the limits too, whichever they are.

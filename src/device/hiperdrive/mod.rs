@@ -13,6 +13,7 @@ pub mod dead_man;
 mod discover;
 mod error;
 mod identify;
+mod limits;
 mod master;
 mod network;
 mod rules;
@@ -25,6 +26,7 @@ pub use error::{Asked, Damage, Error, Late, Refusal};
 pub use identify::{
     DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
 };
+pub use limits::{DriveLimits, LimitsSeen};
 pub use master::{Master, Opened};
 pub use network::{Network, network, settings};
 pub use rules::{GROUPS, Rules, read_rule, read_rules};

@@ -221,7 +221,7 @@ pub(super) fn why_not(ui: &mut Ui, skin: &Skin, allowed: &Result<(), Text>) {
 /// At a speed, to the end of the range or, for experts, without one.
 fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
-    let mut expert = unit.moves.is_expert();
+    let mut expert = unit.moves.is_expert(unit.drive());
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];

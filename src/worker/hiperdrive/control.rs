@@ -1,15 +1,13 @@
 //! The cyclic connection of a session: it is opened and closed by a person, and what the drives may do comes from their
 //! parameters, as they were read last.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::commit::commit as carry_through;
 use super::looks::Looks;
 use super::{Commit, Committed, Cyclic, Hiperdrive, JobError, Motion, Remark, Told};
 use crate::device::hiperdrive::cyclic::CyclicLost;
-use crate::device::hiperdrive::dead_man::Permit;
-use crate::device::hiperdrive::{Error, Identity, Rules, Survey, identify};
+use crate::device::hiperdrive::{DriveLimits, Error, GROUPS, Identity, Rules, Survey, identify};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::protocol::ethernet_ip::ForwardClose;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, ParameterNumber, Value};
@@ -22,11 +20,9 @@ pub(super) struct Control {
     clock: Arc<dyn Clock>,
     motion: Motion,
     open: Option<Open>,
-    /// What rules the drives, as it was read last.
-    rules: BTreeMap<DriveNumber, Rules>,
     /// The device and its drives, as they were when it was opened last.
     identity: Option<Identity>,
-    /// When they were looked at.
+    /// When what rules them could not be read.
     pub(super) looks: Looks,
 }
 
@@ -42,7 +38,6 @@ impl Control {
             clock: clock.clone(),
             motion: Motion::new(clock),
             open: None,
-            rules: BTreeMap::new(),
             identity: None,
             looks: Looks::default(),
         }
@@ -77,29 +72,19 @@ impl Control {
                 Value::Number(value) => Some(*value),
                 Value::Text(_) => None,
             };
-            self.rule(&survey.identity, drive.number, Rules::by(read));
-            self.motion.ruled(drive.number, self.looks.all_read(drive.number, began));
+            self.limit(&survey.identity, drive.number, Rules::by(read), [began; GROUPS]);
         }
     }
 
-    /// What a drive may do nobody knows any more.
+    /// Nothing is known of what a drive may do any more.
     pub(super) fn forget(&mut self, drive: DriveNumber) {
-        self.looks.forget(drive);
-        self.motion.ruled(drive, None);
-        self.motion.permit(drive, Permit::default());
+        self.motion.with_limits(drive, DriveLimits::forget);
     }
 
-    /// What rules a drive, as it was read last.
-    pub(super) fn rules(&self, drive: DriveNumber) -> Rules {
-        self.rules.get(&drive).copied().unwrap_or_default()
-    }
-
-    /// Where the scale is another one than before, limits lie elsewhere: nobody has looked at them yet.
-    pub(super) fn rule(&mut self, identity: &Identity, drive: DriveNumber, rules: Rules) {
+    /// Publishes what a drive may do by its parameters, and when they were read.
+    pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
-        let before = self.rules.insert(drive, rules);
-        let moved = before.is_some_and(|before| before.scale.is_some() && before.scale != rules.scale);
-        self.motion.rule(drive, rules.scale, moved, rules.permit(identity.topology, variant));
+        self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
     }
 }
 
@@ -115,6 +100,7 @@ impl Hiperdrive {
         }
         let identity = identify(&mut self.master(desk), told)?;
         self.control.looks = Looks::default();
+        identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
         self.read_rules(desk, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
         let opened = self.master(desk).forward_open(identity.topology, packets.port())?;
@@ -169,8 +155,9 @@ impl Hiperdrive {
     pub(super) fn commit(&mut self, desk: &mut Desk, commit: &Commit, tell: Told<'_>) -> Result<Committed, JobError> {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
+            // As they are before the plan: a scale that it changes is told from this one.
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
-            self.control.rule(identity, drive.number, rules);
+            self.control.limit(identity, drive.number, rules, [desk.clock.now(); GROUPS]);
             self.control.forget(drive.number);
         }
         let ended = carry_through(self, desk, commit, tell);

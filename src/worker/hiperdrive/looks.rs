@@ -1,7 +1,6 @@
 //! What rules drives is read again and again while they may be moved, because somebody else may change it meanwhile: of the
 //! drive that is shown, and of the one that was moved last. It has a pace of its own, whatever else is polled.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::{Hiperdrive, Remark};
@@ -16,49 +15,19 @@ const TURN: Duration = Duration::from_millis(250);
 /// Behind a look that failed.
 const REST: Duration = Duration::from_millis(500);
 
-/// When was looked at what rules drives.
+/// Whether what rules drives could be read.
 #[derive(Debug, Default)]
 pub(super) struct Looks {
-    /// When each group of them was read; none of a drive whose rules nobody knows.
-    drives: BTreeMap<DriveNumber, [Moment; GROUPS]>,
     /// Until when nothing is asked, behind a look that failed.
     rests: Option<Moment>,
 }
 
-impl Looks {
-    /// All that rules a drive was read, which began at that moment. Since when that is known.
-    pub(super) fn all_read(&mut self, drive: DriveNumber, began: Moment) -> Option<Moment> {
-        self.drives.insert(drive, [began; GROUPS]);
-        self.known_since(drive)
-    }
-
-    /// One group was read. Since when all of them are known.
-    fn read(&mut self, drive: DriveNumber, group: usize, now: Moment) -> Option<Moment> {
-        if let Some(at) = self.drives.get_mut(&drive).and_then(|own| own.get_mut(group)) {
-            *at = now;
-        }
-        self.known_since(drive)
-    }
-
-    /// What rules a drive is known by nothing older than this.
-    fn known_since(&self, drive: DriveNumber) -> Option<Moment> {
-        self.drives.get(&drive)?.iter().min().copied()
-    }
-
-    /// What rules a drive nobody knows any more.
-    pub(super) fn forget(&mut self, drive: DriveNumber) {
-        self.drives.remove(&drive);
-    }
-
-    /// The groups of a drive that are to be read now, the oldest first: those one of whose turns has begun since they were
-    /// read. `None`: all at once, since none is known.
-    fn due(&self, drive: DriveNumber, now: Moment) -> Option<Vec<usize>> {
-        let read = self.drives.get(&drive)?;
-        let is_due = |(group, at): &(usize, Moment)| turns(*group, now) > turns(*group, *at);
-        let mut groups: Vec<(usize, Moment)> = read.iter().copied().enumerate().filter(is_due).collect();
-        groups.sort_by_key(|(_, at)| *at);
-        Some(groups.into_iter().map(|(group, _)| group).collect())
-    }
+/// The groups that are to be read now, by when each was read last, the oldest first: those one of whose turns has begun since.
+fn due(read: [Moment; GROUPS], now: Moment) -> Vec<usize> {
+    let is_due = |(group, at): &(usize, Moment)| turns(*group, now) > turns(*group, *at);
+    let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
+    groups.sort_by_key(|(_, at)| *at);
+    groups.into_iter().map(|(group, _)| group).collect()
 }
 
 /// How many turns of a group have begun until then.
@@ -98,21 +67,21 @@ impl Hiperdrive {
             self.control.forget(drive);
             return Ok(());
         }
-        let Some(groups) = self.control.looks.due(drive, desk.clock.now()) else {
+        let known = self.control.motion().limits(drive);
+        let Some(mut times) = known.times() else {
             let began = desk.clock.now();
             let rules = read_rules(&mut self.master(desk), drive)?;
-            self.control.rule(identity, drive, rules);
-            let since = self.control.looks.all_read(drive, began);
-            self.control.motion().ruled(drive, since);
+            self.control.limit(identity, drive, rules, [began; GROUPS]);
             return Ok(());
         };
-        for group in groups {
+        let mut rules = known.rules();
+        for group in due(times, desk.clock.now()) {
             let now = desk.clock.now();
-            let known = self.control.rules(drive);
-            let rules = read_rule(&mut self.master(desk), drive, known, group)?;
-            self.control.rule(identity, drive, rules);
-            let since = self.control.looks.read(drive, group, now);
-            self.control.motion().ruled(drive, since);
+            rules = read_rule(&mut self.master(desk), drive, rules, group)?;
+            if let Some(at) = times.get_mut(group) {
+                *at = now;
+            }
+            self.control.limit(identity, drive, rules, times);
         }
         Ok(())
     }
@@ -120,8 +89,7 @@ impl Hiperdrive {
     fn cannot_look(&mut self, desk: &mut Desk, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
         // All of it is read before anything moves again.
-        self.control.looks.forget(drive);
-        self.control.motion().ruled(drive, None);
+        self.control.motion().doubt_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
             // Nothing more can be asked: that is told as a loss.
             return self.control.lose_session();
@@ -134,8 +102,7 @@ impl Hiperdrive {
 
     /// Reads all that rules a drive before anything else: it is shown from now on.
     pub(super) fn look_anew(&mut self, desk: &mut Desk, drive: DriveNumber) {
-        self.control.looks.forget(drive);
-        self.control.motion().ruled(drive, None);
+        self.control.motion().doubt_limits(drive);
         self.look_at_rules(desk);
     }
 
@@ -147,9 +114,7 @@ impl Hiperdrive {
         for drive in &identity.drives {
             let began = desk.clock.now();
             let rules = self.master(desk).shielded(|master| read_rules(master, drive.number))?;
-            self.control.rule(identity, drive.number, rules);
-            let since = self.control.looks.all_read(drive.number, began);
-            self.control.motion().ruled(drive.number, since);
+            self.control.limit(identity, drive.number, rules, [began; GROUPS]);
         }
         Ok(())
     }
@@ -165,28 +130,23 @@ mod tests {
 
     #[test]
     fn every_group_comes_once_a_second_however_often_somebody_looks() {
-        let one = DriveNumber::FIRST;
         for (step, first) in
             [10, 100, 200, 249, 250, 300, 500, 2000].into_iter().flat_map(|step| [(step, 0), (step, 777)])
         {
-            let mut looks = Looks::default();
-            assert_eq!(looks.due(one, at(first)), None, "nobody knows any");
-            assert_eq!(looks.all_read(one, at(first)), Some(at(first)));
+            let mut read = [at(first); GROUPS];
             let (mut now, mut asked) = (first, 0);
             while now < first + 10_000 {
                 now += step;
-                let age = at(now).since(looks.known_since(one).unwrap());
+                let age = at(now).since(read.into_iter().min().unwrap());
                 assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
-                let groups = looks.due(one, at(now)).unwrap();
+                let groups = due(read, at(now));
                 assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");
                 for group in groups {
-                    looks.read(one, group, at(now));
+                    read[group] = at(now);
                     asked += 1;
                 }
             }
             assert!((20..=41).contains(&asked), "{step}: {asked} in ten seconds");
-            looks.forget(one);
-            assert_eq!((looks.known_since(one), looks.due(one, at(now))), (None, None));
         }
     }
 }

@@ -1,13 +1,13 @@
 //! The handle through which a person moves drives: what is wanted goes into a cell, of which the latest counts, and what the
 //! drives say comes back. The thread of the cyclic connection reads the one and fills the other; nobody waits.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use crate::device::hiperdrive::cyclic::{CyclicLost, Drives, LinkFigures};
-use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
+use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Permit, Phase, Wish};
+use crate::device::hiperdrive::{DriveLimits, LimitsSeen};
 use crate::link::Clock;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, Setpoint};
 use crate::units::Moment;
@@ -23,20 +23,24 @@ struct Shared {
 
 struct Cell {
     intent: Intent,
-    permits: BTreeMap<DriveNumber, Permit>,
-    /// Parameters 154 and 156, as they were read with those.
-    scales: BTreeMap<DriveNumber, (i64, i64)>,
-    /// What rules a drive is known by nothing older than this.
-    ruled: BTreeMap<DriveNumber, Moment>,
-    /// Drives whose limits have to be looked at.
-    unconfirmed: Vec<DriveNumber>,
-    expert: bool,
+    /// What each drive may do: the only place where it stands.
+    limits: BTreeMap<DriveNumber, DriveLimits>,
+    /// Drives for which a person has allowed an endless run.
+    experts: BTreeSet<DriveNumber>,
     punctual: bool,
     view: View,
 }
 
-/// For so long what was read of what rules a drive counts: longer than a device may take to say all of it.
-const LATELY: Duration = Duration::from_secs(4);
+/// The drives at one moment: what they do, and what they may do.
+#[derive(Clone, Debug)]
+pub struct Glance {
+    /// The moment.
+    pub at: Moment,
+    /// What they do.
+    pub view: View,
+    /// What they may do.
+    pub limits: BTreeMap<DriveNumber, DriveLimits>,
+}
 
 /// What the drives do, and how well their connection works.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,11 +80,8 @@ impl Motion {
         let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
             intent,
-            permits: BTreeMap::new(),
-            scales: BTreeMap::new(),
-            ruled: BTreeMap::new(),
-            unconfirmed: Vec::new(),
-            expert: false,
+            limits: BTreeMap::new(),
+            experts: BTreeSet::new(),
             punctual: false,
             view: View::default(),
         };
@@ -128,53 +129,26 @@ impl Motion {
         self.lock().view.open
     }
 
-    /// What a drive may do from now on: by its parameters. Limits that have to be confirmed stay so.
-    pub fn permit(&self, drive: DriveNumber, permit: Permit) {
-        let mut cell = self.lock();
-        if permit.locks.contains(&Lock::LimitsUnconfirmed) {
-            cell.unconfirm(drive);
-        }
-        cell.permits.insert(drive, permit);
+    /// What the drives do and may do, at one moment.
+    pub fn glance(&self) -> Glance {
+        let at = self.0.clock.now();
+        let cell = self.lock();
+        Glance { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
-    /// The scale in which a drive has its limits (parameters 154 and 156); `None` where it was not read.
-    pub fn scale(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        self.lock().scales.get(&drive).copied()
+    /// What a drive may do, with the time of reading; the default for one of which nothing is known.
+    pub fn limits(&self, drive: DriveNumber) -> DriveLimits {
+        self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
 
-    /// What a drive may do from now on, and in which scale; `moved`: its limits lie elsewhere than before. All at once: nobody
-    /// confirms limits between two of these.
-    pub(super) fn rule(&self, drive: DriveNumber, scale: Option<(i64, i64)>, moved: bool, permit: Permit) {
-        let mut cell = self.lock();
-        if moved || permit.locks.contains(&Lock::LimitsUnconfirmed) {
-            cell.unconfirm(drive);
-        }
-        match scale {
-            Some(scale) => cell.scales.insert(drive, scale),
-            None => cell.scales.remove(&drive),
-        };
-        cell.permits.insert(drive, permit);
+    /// Changes what a drive may do, as one step: nobody reads or confirms limits in the middle of it.
+    pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
+        change(self.lock().limits.entry(drive).or_default())
     }
 
-    /// What rules a drive was read within the last seconds. It is read each second while there is a cyclic connection; where
-    /// it is not, somebody else may have changed it.
-    pub fn is_ruled_lately(&self, drive: DriveNumber) -> bool {
-        let now = self.0.clock.now();
-        self.lock().ruled.get(&drive).is_some_and(|since| now.since(*since) <= LATELY)
-    }
-
-    /// Nothing that was read of what rules a drive counts any more: it is to be read before the drive moves.
-    pub fn doubt_rules(&self, drive: DriveNumber) {
-        self.lock().ruled.remove(&drive);
-    }
-
-    /// What rules a drive is known by nothing older than this; `None` where it is not known.
-    pub(super) fn ruled(&self, drive: DriveNumber, since: Option<Moment>) {
-        let mut cell = self.lock();
-        match since {
-            Some(since) => cell.ruled.insert(drive, since),
-            None => cell.ruled.remove(&drive),
-        };
+    /// The limits of a drive are to be read before its next motion: another master may have changed them.
+    pub fn doubt_limits(&self, drive: DriveNumber) {
+        self.with_limits(drive, DriveLimits::doubt);
     }
 
     /// The drive of which something was wanted last.
@@ -182,30 +156,32 @@ impl Motion {
         self.lock().intent.drive
     }
 
-    /// The scaling of a drive was changed, and with it where its limits lie: nothing moves until they are confirmed.
-    pub fn limits_changed(&self, drive: DriveNumber) {
-        self.lock().unconfirm(drive);
+    /// The limits of a drive are to be confirmed before it moves.
+    pub fn unconfirm_limits(&self, drive: DriveNumber) {
+        self.with_limits(drive, DriveLimits::unconfirm);
     }
 
-    /// A person has looked at the limits of a drive in their own units, by the scale that was shown. Whether that counts: not
-    /// where the drive has another scale by now.
-    pub fn confirm_limits(&self, drive: DriveNumber, seen: (i64, i64)) -> bool {
+    /// A person confirms the limits of a drive as they were shown. Returns whether that counts: not where the drive has others
+    /// by now.
+    pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+        self.with_limits(drive, |limits| limits.confirm(seen))
+    }
+
+    /// A person allows an endless run of a drive, or does not any more. It is possible only where limits and scaling are the
+    /// factory's.
+    pub fn allow_endless(&self, drive: DriveNumber, allowed: bool) {
         let mut cell = self.lock();
-        let is_so = cell.scales.get(&drive).is_none_or(|scale| *scale == seen);
-        if is_so {
-            cell.unconfirmed.retain(|unconfirmed| *unconfirmed != drive);
+        if allowed {
+            cell.experts.insert(drive);
+        } else {
+            cell.experts.remove(&drive);
         }
-        is_so
-    }
-
-    /// Somebody knows what an endless run is. It may begin where limits and scaling are the factory's too.
-    pub fn expert(&self, expert: bool) {
-        self.lock().expert = expert;
     }
 
     /// What a drive may do at the moment, all things considered.
     pub fn permitted(&self, drive: DriveNumber) -> Permit {
-        self.lock().permitted(drive)
+        let now = self.0.clock.now();
+        self.lock().permitted(drive, now)
     }
 
     /// A connection begins: no act up to the number that comes back moves anything over it.
@@ -220,8 +196,9 @@ impl Motion {
 
     /// What is wanted at this moment, for whoever makes the next packet of it.
     pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+        let now = self.0.clock.now();
         let cell = self.lock();
-        make(&cell.intent, &|drive| cell.permitted(drive))
+        make(&cell.intent, &|drive| cell.permitted(drive, now))
     }
 
     /// What has become of the drives.
@@ -262,11 +239,6 @@ impl Motion {
         self.lock().view.lost.clone()
     }
 
-    /// Whether its parameters allow an endless run, whoever asks for it.
-    pub fn could_run_endlessly(&self, drive: DriveNumber) -> bool {
-        self.lock().permits.get(&drive).is_some_and(|permit| permit.endless)
-    }
-
     /// No drive was sent a word with which it moves: a stop that was asked for is on the wire.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
@@ -280,20 +252,9 @@ impl Motion {
 }
 
 impl Cell {
-    fn unconfirm(&mut self, drive: DriveNumber) {
-        if !self.unconfirmed.contains(&drive) {
-            self.unconfirmed.push(drive);
-        }
-    }
-
-    fn permitted(&self, drive: DriveNumber) -> Permit {
-        let mut permit = self.permits.get(&drive).cloned().unwrap_or_default();
-        permit.locks.retain(|lock| *lock != Lock::LimitsUnconfirmed);
-        if self.unconfirmed.contains(&drive) {
-            permit.locks.push(Lock::LimitsUnconfirmed);
-        }
-        permit.endless &= self.expert;
-        permit
+    fn permitted(&self, drive: DriveNumber, now: Moment) -> Permit {
+        let limits = self.limits.get(&drive);
+        limits.map_or_else(Permit::default, |limits| limits.permit(now, self.experts.contains(&drive)))
     }
 }
 
@@ -305,6 +266,8 @@ impl fmt::Debug for Motion {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use crate::device::hiperdrive::dead_man::Effort;
     use crate::link::VirtualClock;

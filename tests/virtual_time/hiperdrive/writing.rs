@@ -1,7 +1,7 @@
 //! What is written: exactly what was planned, each read back, then one save; and what is refused names why.
 
-use encoder_studio::device::hiperdrive::Error;
 use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::device::hiperdrive::{Error, LimitsSeen};
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
@@ -189,13 +189,15 @@ fn what_rules_motion_is_known_after_every_write() {
     assert_eq!((permit.locks.as_slice(), permit.limits), (&[][..], Some((-33_488_896, 33_488_896))));
     stand.change(Change::Write(image(&[(186, 255)]))).unwrap();
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::NoTimeout]);
+    let before = motion.limits(drive(1)).seen().unwrap();
     stand.change(Change::Write(image(&[(186, 20), (154, 100)]))).unwrap();
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
     stand.survey();
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "reading confirms nothing");
-    assert!(!motion.confirm_limits(drive(1), (256, 1)), "they were shown under the scale of before");
+    assert!(!motion.confirm_limits(drive(1), before), "they were shown under the scale of before");
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed]);
-    assert!(motion.confirm_limits(drive(1), (100, 1)));
+    let shown = LimitsSeen { scale: (100, 1), ..before };
+    assert!(motion.confirm_limits(drive(1), shown));
     assert!(motion.permitted(drive(1)).locks.is_empty());
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert!(motion.permitted(drive(1)).locks.is_empty(), "the scale is as it was saved");

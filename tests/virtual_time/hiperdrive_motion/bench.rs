@@ -46,7 +46,7 @@ impl Bench {
             man: DeadMan::new(DriveNumber::FIRST, 7),
             now: Moment::START,
             intent,
-            permit: Permit { limits: Some((-20_000_000, 20_000_000)), locks: Vec::new(), endless: false },
+            permit: Permit::within(-20_000_000, 20_000_000),
             absent: false,
             cut_out: false,
             cut_back: false,

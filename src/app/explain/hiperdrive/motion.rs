@@ -14,6 +14,7 @@ pub fn lock(lock: Lock) -> Text {
         Lock::NoTimeout => "hd_lock.no_timeout",
         Lock::LimitsUnconfirmed => "hd_lock.limits",
         Lock::NotRequested => "hd_lock.not_requested",
+        Lock::Outdated => "hd_lock.old",
     })
 }
 

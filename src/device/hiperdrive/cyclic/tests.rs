@@ -110,7 +110,7 @@ fn deadlines_do_not_drift() {
 }
 
 fn permit(_: DriveNumber) -> Permit {
-    Permit { limits: Some((-1_000_000, 1_000_000)), locks: Vec::new(), endless: false }
+    Permit::within(-1_000_000, 1_000_000)
 }
 
 /// An adapter whose drive follows at once, cycle by cycle.

@@ -96,6 +96,8 @@ pub struct Permit {
     pub locks: Vec<Lock>,
     /// It may run past its limits.
     pub endless: bool,
+    /// Steps of one degree as scaled, at least 1: how exactly a drive repeats a position (manual, technical data).
+    pub degree: u32,
 }
 
 /// Why a drive may not move.
@@ -109,6 +111,8 @@ pub enum Lock {
     LimitsUnconfirmed,
     /// Parameter 152 is 0.
     NotRequested,
+    /// Its parameters were read too long ago: another master may have changed them since.
+    Outdated,
 }
 
 /// What a drive does for its person.
@@ -308,11 +312,16 @@ const fn percent(percent: u8) -> Percent {
 impl Default for Permit {
     /// Nothing: as long as a drive's parameters were not read.
     fn default() -> Self {
-        Permit { limits: None, locks: vec![Lock::Unread], endless: false }
+        Permit { limits: None, locks: vec![Lock::Unread], endless: false, degree: 1 }
     }
 }
 
 impl Permit {
+    /// Motion within these limits, with nothing against it; a degree is a step.
+    pub const fn within(low: i32, high: i32) -> Self {
+        Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, degree: 1 }
+    }
+
     /// Whether a motion may begin, or go on. `target` is where it leads, for what leads somewhere.
     ///
     /// # Errors

@@ -101,7 +101,7 @@ fn nothing_begins_with_a_word_that_stands() {
 #[test]
 fn out_of_speed_mode_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
-    let permit = Permit { limits: Some((-1000, 1000)), locks: Vec::new(), endless: false };
+    let permit = Permit::within(-1000, 1000);
     let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG };
     let mut status = 0x2A37;
     let mut words = Vec::new();
@@ -128,7 +128,7 @@ fn out_of_speed_mode_through_ready() {
 /// Between two looks of a thread that was kept from looking, a stop may have been said, and something else behind it.
 #[test]
 fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
-    let permit = Permit { limits: Some((-1000, 1000)), locks: Vec::new(), endless: false };
+    let permit = Permit::within(-1000, 1000);
     for (waits, next) in [(true, Wish::Resume), (false, Wish::Pause)] {
         let mut man = DeadMan::new(DriveNumber::FIRST, 0);
         let mut now = Moment::START;
@@ -191,7 +191,7 @@ proptest! {
                 intent.refreshed = now;
             }
             let locks = if locked { vec![Lock::NotRequested] } else { Vec::new() };
-            let permit = Permit { limits: Some((-1000, 1000)), locks, endless };
+            let permit = Permit { locks, endless, ..Permit::within(-1000, 1000) };
             let sent = man.next(now, heard(said), &intent, &permit);
             let word = sent.control;
             prop_assert_eq!(word.word() & NEVER, 0);
