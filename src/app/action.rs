@@ -8,7 +8,7 @@ use super::connect;
 use super::hiperdrive;
 use super::hiperface;
 use super::interbus;
-use super::keep::SettingsRead;
+use super::keep::{SettingsRead, SettingsWritten};
 use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::session::{DraftDone, Kind, Listed};
@@ -16,7 +16,7 @@ use super::signals;
 use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
-use super::{Language, Picture, Text, Theme};
+use super::{Language, Picture, Settings, Text, Theme};
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
 use crate::protocol::biss::Descriptions;
@@ -196,7 +196,9 @@ pub enum Done {
     /// The settings were read, later than the start could wait for them.
     SettingsRead(SettingsRead),
     /// The settings were kept.
-    SettingsKept(Result<(), FileError>),
+    SettingsKept(Result<SettingsWritten, FileError>),
+    /// The settings were read while drives are in hand; `None` where there are none to read.
+    SettingsSeen(Option<Box<Settings>>),
     /// About the draft of a session.
     Draft(SessionId, DraftDone),
     /// Backups and writes of a device were listed.

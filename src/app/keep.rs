@@ -1,27 +1,44 @@
 //! Keeping the settings: written on a thread when they have changed, one write at a time.
+//!
+//! Other windows write the same file. What is written is what the file says at that moment with what was changed here since
+//! it was last read or written, and no window writes between the two. What others have changed comes into this window only
+//! where it locks drives, or is about devices that are not open.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
 use crossbeam_channel::bounded;
+use jiff::Zoned;
 
 use super::action::{Action, Done};
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
-use crate::store::{FileError, FileProblem, read_text, write_in_folder};
+use crate::store::{FileError, FileProblem, read_text, update_text};
 
 /// How long the start waits for the settings.
 const PATIENCE: Duration = Duration::from_millis(300);
 
+/// What was told of the settings where they cannot be kept.
+const NOT_KEPT: &str = "session.settings_not_kept";
+
 /// What is on disk, and whether a write is on its way.
 #[derive(Debug)]
 pub(super) struct Keeper {
-    kept: Settings,
+    /// The settings here as they were when the file was last read or written.
+    known: Settings,
+    /// What could not be written.
+    failed: Option<Settings>,
+    /// What is being written.
+    busy: Option<Settings>,
     /// The file has been read, or put aside: before that nothing is written over it.
     may_write: bool,
-    busy: bool,
     told: bool,
+    /// The file is being read, since then.
+    looking: Option<Zoned>,
+    /// When it was read last.
+    looked: Option<Zoned>,
 }
 
 /// What came of reading the settings.
@@ -44,6 +61,15 @@ pub enum SettingsRead {
     Unreadable(FileError),
 }
 
+/// What came of writing them.
+#[derive(Debug)]
+pub struct SettingsWritten {
+    /// What the file says now.
+    settings: Box<Settings>,
+    /// It was broken, and this was put aside of it.
+    aside: Option<(PathBuf, PathBuf)>,
+}
+
 impl Keeper {
     /// Reads the settings. A disk that does not answer at once comes back as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
@@ -57,7 +83,15 @@ impl Keeper {
             }
         });
         let mut settings = Settings::default();
-        let mut keeper = Keeper { kept: settings.clone(), may_write: false, busy: false, told: false };
+        let mut keeper = Keeper {
+            known: settings.clone(),
+            failed: None,
+            busy: None,
+            may_write: false,
+            told: false,
+            looking: None,
+            looked: None,
+        };
         match receiver.recv_timeout(PATIENCE) {
             Ok(read) => keeper.take(read, &mut settings, services),
             Err(_) => {
@@ -95,55 +129,164 @@ impl Keeper {
                 return;
             }
         };
-        self.kept = found.clone();
-        settings.stand_on(found);
+        *settings = found.clone().with_changes(&Settings::default(), settings);
+        self.known = found;
     }
 
     pub(super) fn keep(&mut self, settings: &Settings, services: &Services) {
-        if self.busy || !self.may_write || *settings == self.kept {
+        let is_written = *settings == self.known || self.failed.as_ref() == Some(settings);
+        if self.busy.is_some() || !self.may_write || is_written {
             return;
         }
-        self.kept = settings.clone();
-        self.busy = true;
-        let (path, text) = (services.world.store.settings_path(), settings.emit());
-        services.tasks.run("settings", move || {
-            let result = write_in_folder(&path, text.as_bytes());
-            Action::Done(Done::SettingsKept(result))
-        });
+        self.busy = Some(settings.clone());
+        let (path, known, ours) = (services.world.store.settings_path(), self.known.clone(), settings.clone());
+        services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours))));
     }
 
-    /// What to tell of a write that failed; once is enough.
-    pub(super) fn kept(&mut self, result: Result<(), FileError>) -> Option<Text> {
-        self.busy = false;
-        let error = result.err()?;
-        if std::mem::replace(&mut self.told, true) {
-            return None;
+    /// What has become of a write; that one failed is told once.
+    pub(super) fn kept(
+        &mut self,
+        result: Result<SettingsWritten, FileError>,
+        settings: &mut Settings,
+        services: &mut Services,
+    ) {
+        let Some(written) = self.busy.take() else { return };
+        match result {
+            Ok(SettingsWritten { settings: found, aside }) => {
+                self.known = written;
+                self.meet(&found, settings);
+                self.failed = None;
+                if let Some((path, aside)) = aside {
+                    let text = Text::new("session.settings_broken").with("aside", aside.display());
+                    services.tell(Severity::Warning, vec![text.with("path", path.display())], None);
+                }
+                if std::mem::take(&mut self.told) {
+                    services.log.settle(NOT_KEPT, None);
+                }
+            }
+            Err(error) => {
+                // Another program lets go of it some time: it is tried again.
+                self.failed = (error.problem != FileProblem::InUse).then_some(written);
+                if !std::mem::replace(&mut self.told, true) {
+                    let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
+                    services.tell(Severity::Warning, vec![text], None);
+                }
+            }
         }
-        Some(Text::new("session.settings_not_kept").with_text("why", explain::file(&error)))
+    }
+
+    /// Reads the settings as another window may have written them. Whether that begins now.
+    pub(super) fn look(&mut self, services: &Services) -> bool {
+        if self.looking.is_some() {
+            return false;
+        }
+        self.looking = Some(services.now());
+        let path = services.world.store.settings_path();
+        services.tasks.run("settings", move || Action::Done(Done::SettingsSeen(found(&path).map(Box::new))));
+        true
+    }
+
+    /// They were read. Whether that counts: not while a write is on its way, which may read what is there before.
+    pub(super) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> bool {
+        let began = self.looking.take();
+        if self.busy.is_some() {
+            return false;
+        }
+        self.looked = began;
+        if let Some(found) = found {
+            self.meet(&found, settings);
+        }
+        true
+    }
+
+    /// They were not read for so long.
+    pub(super) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
+        // A clock of the wall may be set back.
+        let age = self.looked.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
+        age.is_none_or(|age| age > than)
+    }
+
+    /// What others have written about drives is known here from now on.
+    fn meet(&mut self, found: &Settings, settings: &mut Settings) {
+        let ours = settings.clone();
+        settings.take_drives(found);
+        settings.change_drives(&self.known, &ours);
+        self.known.take_drives(found);
     }
 
     pub(super) fn is_idle(&self) -> bool {
-        !self.busy
+        self.busy.is_none()
     }
 }
 
 /// Reads the settings, and puts a broken file aside: as it is, beside itself.
 fn read(path: PathBuf) -> SettingsRead {
-    let settings = match read_text(&path) {
-        Ok(text) => match Settings::parse(&text) {
-            Some(settings) => return SettingsRead::Whole(Box::new(settings)),
-            None => Settings::salvage(&text),
-        },
-        Err(FileError { problem: FileProblem::NotFound, .. }) => return SettingsRead::Missing,
-        Err(FileError { problem: FileProblem::NotUtf8 { .. } | FileProblem::TooLarge { .. }, .. }) => {
-            Settings::default()
+    match understood(read_text(&path)) {
+        Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
+        Ok(Some((settings, false))) => {
+            let aside = aside_of(&path);
+            let copied = fs::copy(&path, &aside);
+            let aside = copied.map(|_| aside).map_err(|error| error.to_string());
+            SettingsRead::Broken { settings: Box::new(settings), path, aside }
         }
-        Err(error) => return SettingsRead::Unreadable(error),
-    };
-    let mut aside = path.clone().into_os_string();
+        Ok(None) => SettingsRead::Missing,
+        Err(error) => SettingsRead::Unreadable(error),
+    }
+}
+
+/// What can be read of a text, and whether that is all of it; `None` where there is no file.
+fn understood(text: Result<String, FileError>) -> Result<Option<(Settings, bool)>, FileError> {
+    match text {
+        Ok(text) => Ok(Some(match Settings::parse(&text) {
+            Some(settings) => (settings, true),
+            None => (Settings::salvage(&text), false),
+        })),
+        Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
+        Err(FileError { problem: FileProblem::NotUtf8 { .. } | FileProblem::TooLarge { .. }, .. }) => {
+            Ok(Some((Settings::default(), false)))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn found(path: &Path) -> Option<Settings> {
+    // What cannot be read is told where it is written.
+    understood(read_text(path)).ok()?.map(|(settings, _)| settings)
+}
+
+fn aside_of(path: &Path) -> PathBuf {
+    let mut aside = path.to_owned().into_os_string();
     aside.push(".broken");
-    let aside = PathBuf::from(aside);
-    let copied = std::fs::copy(&path, &aside);
-    let aside = copied.map(|_| aside).map_err(|error| error.to_string());
-    SettingsRead::Broken { settings: Box::new(settings), path, aside }
+    PathBuf::from(aside)
+}
+
+/// Writes what was changed in `ours` since `known` into the file as it is now.
+fn write(path: &Path, known: &Settings, ours: &Settings) -> Result<SettingsWritten, FileError> {
+    update_text(path, |text| {
+        let (there, is_whole) = match understood(text)? {
+            Some((found, is_whole)) => (Some(found), is_whole),
+            None => (None, true),
+        };
+        let aside = if is_whole { None } else { put_aside(path)? };
+        // Where the file is gone, nothing of it was changed by anybody.
+        let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
+        let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
+        Ok((text, SettingsWritten { settings: Box::new(merged), aside }))
+    })
+}
+
+/// Puts a broken file aside, unless that was done before: from where to where.
+fn put_aside(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
+    let aside = aside_of(path);
+    let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));
+    if is_there {
+        return Ok(None);
+    }
+    let failed = |error: std::io::Error| FileError {
+        path: aside.clone(),
+        task: crate::store::FileTask::Write,
+        problem: error.into(),
+    };
+    fs::copy(path, &aside).map_err(failed)?;
+    Ok(Some((path.to_owned(), aside)))
 }

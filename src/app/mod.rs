@@ -39,7 +39,7 @@ mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, Question, ReviewAction};
 pub use devices::{AnyDevice, Wish};
-pub use keep::SettingsRead;
+pub use keep::{SettingsRead, SettingsWritten};
 pub use leaving::Patience;
 pub use line::{Line, Progressing, Running};
 pub use look::{Look, Palette, Rgb, Spaces, TextSizes};

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Language;
-use super::hiperdrive::Remembered;
+use super::hiperdrive::{LocksAlone, Remembered};
 use super::tab::Tab;
 
 /// Dark or light.
@@ -89,22 +89,47 @@ impl Settings {
             layout: entry!(layout: Option<String>, usual.layout),
             tab: entry!(tab: Tab, usual.tab),
             size: entry!(size: Option<(u32, u32)>, usual.size),
-            drives: entry!(drives: BTreeMap<String, Remembered>, usual.drives),
+            drives: entry!(
+                drives: BTreeMap<String, Remembered>,
+                // Limits that nobody has confirmed stay so, whatever else is broken.
+                entry!(drives: BTreeMap<String, LocksAlone>, BTreeMap::new())
+                    .into_iter()
+                    .map(|(device, locks)| (device, locks.into()))
+                    .collect()
+            ),
         }
     }
 
-    /// Takes over what was found on disk wherever nothing was set since the start.
-    pub(super) fn stand_on(&mut self, found: Settings) {
-        let usual = Settings::default();
-        let since = std::mem::replace(self, found);
-        macro_rules! keep {
-            ($($name:ident),*) => { $(if since.$name != usual.$name { self.$name = since.$name; })* };
+    /// The same with what `ours` has changed since `known`: the rest may have been written by another window meanwhile.
+    #[must_use]
+    pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
+        macro_rules! take {
+            ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
-        keep!(theme, language, layout, tab, size);
-        self.drives.extend(since.drives);
-        for (tab, links) in &since.links {
-            links.iter().rev().for_each(|link| self.use_link(*tab, link));
+        take!(theme, language, layout, tab, size);
+        self.change_drives(known, ours);
+        for tab in ours.links.keys() {
+            let used = used_since(known.links(*tab), ours.links(*tab));
+            used.iter().rev().for_each(|link| self.use_link(*tab, link));
         }
+        self
+    }
+
+    /// What drives have changed in `ours` since `known`.
+    pub(super) fn change_drives(&mut self, known: &Settings, ours: &Settings) {
+        let none = Remembered::default();
+        for (device, own) in &ours.drives {
+            let before = known.drives.get(device).unwrap_or(&none);
+            if own != before || !known.drives.contains_key(device) {
+                let there = self.drives.remove(device).unwrap_or_default();
+                self.drives.insert(device.clone(), there.with_changes(before, own));
+            }
+        }
+    }
+
+    /// Takes over what is remembered of drives.
+    pub(super) fn take_drives(&mut self, from: &Settings) {
+        self.drives = from.drives.clone();
     }
 
     /// The settings as text.
@@ -113,8 +138,8 @@ impl Settings {
     }
 
     /// What is remembered of the drives behind a device.
-    pub(super) fn drives(&self, device: &str) -> Option<&Remembered> {
-        self.drives.get(device)
+    pub(super) fn drives(&self, device: &str) -> Remembered {
+        self.drives.get(device).cloned().unwrap_or_default()
     }
 
     /// What is to be remembered of them.
@@ -134,6 +159,17 @@ impl Settings {
         links.insert(0, link.to_owned());
         links.truncate(Self::LINKS);
     }
+}
+
+/// Links of `ours` that were used since they stood as in `known`: those before the rest, which stands as it did.
+fn used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
+    let is_rest = |at: &usize| {
+        let (used, rest) = ours.split_at(*at);
+        let mut before = known.iter().filter(|link| !used.contains(link));
+        rest.iter().all(|link| before.next() == Some(link))
+    };
+    let used = (0..=ours.len()).find(is_rest).unwrap_or(ours.len());
+    ours.get(..used).unwrap_or(ours)
 }
 
 #[cfg(test)]
@@ -169,12 +205,108 @@ mod tests {
         found.use_link(Tab::Hiperface, "tcp:host:1");
         let mut settings = Settings { language: Language::German, ..Settings::default() };
         settings.use_link(Tab::Hiperface, "sim:");
-        settings.stand_on(found);
+        let settings = found.with_changes(&Settings::default(), &settings);
         assert_eq!(
             (settings.theme, settings.language, settings.size),
             (Theme::Light, Language::German, Some((1500, 900)))
         );
         assert_eq!(settings.links(Tab::Hiperface), ["sim:", "tcp:host:1"]);
+    }
+
+    fn with_drives(drives: &str) -> Settings {
+        Settings::parse(&format!("(drives: {{\"HUB-4 7\": ({drives})}})")).unwrap()
+    }
+
+    /// Issue 21.11: what another window has written, what was known of it, and what was changed here.
+    #[test]
+    fn changes_are_merged_and_marks_only_tighten() {
+        let cases = [
+            ("marked there", "unconfirmed: [1], marks: {1: 1}", "", "", "unconfirmed: [1], marks: {1: 1}"),
+            ("marked here", "", "", "unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}"),
+            (
+                "marked on both sides",
+                "unconfirmed: [1], marks: {1: 1}",
+                "",
+                "unconfirmed: [1, 2], marks: {1: 1, 2: 1}",
+                "unconfirmed: [1, 2], marks: {1: 2, 2: 1}",
+            ),
+            (
+                "confirmed here",
+                "unconfirmed: [1, 3], marks: {1: 4, 3: 1}",
+                "unconfirmed: [1], marks: {1: 4}",
+                "marks: {1: 4}",
+                "unconfirmed: [3], marks: {1: 4, 3: 1}",
+            ),
+            (
+                "confirmed here, and marked there once more since",
+                "unconfirmed: [1], marks: {1: 5}",
+                "unconfirmed: [1], marks: {1: 4}",
+                "marks: {1: 4}",
+                "unconfirmed: [1], marks: {1: 5}",
+            ),
+            (
+                "confirmed there, and changed here otherwise",
+                "marks: {1: 4}",
+                "unconfirmed: [1], marks: {1: 4}",
+                "unconfirmed: [1], marks: {1: 4}, measure: Turns",
+                "marks: {1: 4}, measure: Turns",
+            ),
+            (
+                "by a program that does not count",
+                "unconfirmed: [1]",
+                "unconfirmed: [1], marks: {1: 4}",
+                "marks: {1: 4}",
+                "unconfirmed: [1]",
+            ),
+            (
+                "spindles of two drives, and one that is gone",
+                "pitches: {1: 4000000, 2: 5000000, 3: 1000000}, measure: Turns",
+                "pitches: {1: 3000000, 3: 1000000}",
+                "pitches: {1: 3000000, 4: 6000000}",
+                "pitches: {1: 4000000, 2: 5000000, 4: 6000000}, measure: Turns",
+            ),
+        ];
+        for (label, there, known, ours, expected) in cases {
+            let merged = with_drives(there).with_changes(&with_drives(known), &with_drives(ours));
+            assert_eq!(merged, with_drives(expected), "{label}");
+        }
+    }
+
+    /// Issue 21.11: whatever else cannot be read, limits that nobody has confirmed stay locked.
+    #[test]
+    fn marks_are_read_from_a_broken_entry() {
+        let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
+        assert_eq!(Settings::parse(broken), None);
+        assert_eq!(Settings::salvage(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
+    }
+
+    /// Issue 21.11: links that others have used meanwhile stay, behind those that were used here.
+    #[test]
+    fn links_of_two_windows_stand_together() {
+        let of = |links: &[&str]| {
+            let mut settings = Settings::default();
+            links.iter().rev().for_each(|link| settings.use_link(Tab::Biss, link));
+            settings
+        };
+        let cases: [(&[&str], &[&str], &[&str], &[&str]); 5] = [
+            (&["x", "a", "b"], &["a", "b"], &["a", "b"], &["x", "a", "b"]),
+            (&["x", "a", "b"], &["a", "b"], &["b", "a"], &["b", "x", "a"]),
+            (&["x", "a", "b"], &["a", "b"], &["n", "a", "b"], &["n", "x", "a", "b"]),
+            (&["b", "a"], &["a", "b"], &["n", "b", "a"], &["n", "b", "a"]),
+            (&["a"], &[], &[], &["a"]),
+        ];
+        for (there, known, ours, expected) in cases {
+            let merged = of(there).with_changes(&of(known), &of(ours));
+            assert_eq!(merged.links(Tab::Biss), expected, "{there:?} {known:?} {ours:?}");
+        }
+    }
+
+    /// Issue 21.11: a file of before has no marks.
+    #[test]
+    fn settings_without_marks_are_read() {
+        let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";
+        let settings = Settings::parse(before).unwrap();
+        assert_eq!(settings, with_drives("pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1], marks: {}"));
     }
 
     #[test]

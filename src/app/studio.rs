@@ -170,6 +170,7 @@ impl Studio {
         self.services.pump_leaving();
         self.feed_exports();
         self.remember_drives();
+        self.look_at_settings();
         self.hold_in_sight();
         self.keep();
     }
@@ -379,11 +380,8 @@ impl Studio {
                 })
             }
             Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
-            Done::SettingsKept(result) => {
-                if let Some(text) = self.keeper.kept(result) {
-                    self.services.tell(Severity::Warning, vec![text], None);
-                }
-            }
+            Done::SettingsKept(result) => self.keeper.kept(result, &mut self.settings, &mut self.services),
+            Done::SettingsSeen(found) => self.saw_settings(found.map(|found| *found)),
             Done::Draft(id, done) => self.draft_done(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {

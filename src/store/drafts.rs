@@ -1,10 +1,11 @@
 //! Drafts: what a user has begun and not yet written into a device, so that neither a crash nor a pulled cable takes it.
 //! One file each; what the text says is the caller's, and access codes are not to be in it.
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::path::PathBuf;
 
 use super::file_error::{FileError, FileProblem, FileTask};
+use super::file_lock::FileLock;
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, read_text, write_atomically};
 
@@ -13,7 +14,7 @@ const EXTENSION: &str = "ron";
 /// The right to keep a draft, which nobody else has while this lives; the system takes it back from a program that ends.
 #[derive(Debug)]
 pub struct Claim {
-    _locked: File,
+    _lock: FileLock,
 }
 
 /// The folder of drafts.
@@ -55,17 +56,7 @@ impl Drafts {
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));
-        let failed = |error: std::io::Error| FileProblem::from(error).of(FileTask::Write, &path);
-        let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(Claim { _locked: file })),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            // A disk that knows no locks.
-            Err(TryLockError::Error(error)) if error.kind() == std::io::ErrorKind::Unsupported => {
-                Ok(Some(Claim { _locked: file }))
-            }
-            Err(TryLockError::Error(error)) => Err(failed(error)),
-        }
+        Ok(FileLock::try_at(&path)?.map(|lock| Claim { _lock: lock }))
     }
 
     /// Removes a draft; there need not be one.

@@ -73,6 +73,9 @@ pub enum FileProblem {
     /// The disk is full, or this user's share of it.
     #[error("the disk is full")]
     DiskFull,
+    /// Another program has had it locked for seconds.
+    #[error("another program keeps it locked")]
+    InUse,
     /// The file is larger than any the program writes.
     #[error("it is larger than {limit} bytes")]
     TooLarge {

@@ -34,6 +34,8 @@ pub(crate) fn in_control(link: &str) -> Desk {
         own.moves.is_open()
             && own.session.is_ready()
             && own.moves.drive(ONE).is_some_and(|own| own.actual.status.is_present())
+            // The settings are read on a thread.
+            && !matches!(own.may_move(ONE), Err(why) if why.id() == "hd_lock.settings")
     });
     desk
 }

@@ -38,6 +38,7 @@ mod ssi;
 mod state;
 mod support;
 mod texts;
+mod two_windows;
 mod widgets_commutation;
 mod widgets_hiperdrive_setup;
 mod widgets_idle;

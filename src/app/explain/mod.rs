@@ -84,6 +84,7 @@ pub fn file(error: &FileError) -> Text {
         FileProblem::PermissionDenied => Text::new("file.permission").with("path", path),
         FileProblem::WriteProtected => Text::new("file.write_protected").with("path", path),
         FileProblem::DiskFull => Text::new("file.disk_full").with("path", path),
+        FileProblem::InUse => Text::new("file.in_use").with("path", path),
         FileProblem::TooLarge { limit } => Text::new("file.too_large").with("path", path).with("limit", limit),
         FileProblem::NotUtf8 { offset } => Text::new("file.not_utf8").with("path", path).with("offset", offset),
         FileProblem::Other { what, .. } => Text::new("file.other").with("path", path).with("why", what),

@@ -1,11 +1,19 @@
 //! HIPERDRIVE devices among those of the studio: which one is shown, what stops all of them, what is remembered of them.
 
+use std::time::Duration;
+
 use super::action::Action;
+use super::remembered::Marks;
 use super::unit::Unit;
-use crate::app::AnyDevice;
 use crate::app::services::Services;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
+use crate::app::{AnyDevice, Settings};
+
+/// How often the settings are read while drives are in hand.
+const PACE: Duration = Duration::from_secs(1);
+/// How long what they said counts: as long as what was read of the drives themselves.
+const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
     /// The device or profile that the HIPERDRIVE tab shows.
@@ -65,10 +73,40 @@ impl Studio {
     pub(in crate::app) fn remember_drives(&mut self) {
         for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
             let Some(key) = unit.remembered_as() else { continue };
-            if unit.take_remembered(self.settings.drives(&key)) {
-                self.settings.remember_drives(key, unit.remembered());
+            if let Some(changed) = unit.exchange_remembered(&self.settings.drives(&key)) {
+                self.settings.remember_drives(key, changed);
             }
         }
+    }
+
+    /// As long as drives are in hand the settings are read again and again: another window may have marked limits as
+    /// unconfirmed.
+    pub(in crate::app) fn look_at_settings(&mut self) {
+        let now = self.services.now();
+        let is_old = self.keeper.is_older(&now, STALE);
+        let mut is_due = self.is_in_control() && self.keeper.is_older(&now, PACE);
+        for unit in self.hiperdrives_in_hand() {
+            if is_old && unit.marks == Marks::Read {
+                unit.marks = Marks::Unread;
+            }
+            is_due |= unit.marks == Marks::Unread;
+        }
+        if is_due && self.keeper.look(&self.services) {
+            self.hiperdrives_in_hand().for_each(|unit| unit.marks = unit.marks.max(Marks::Reading));
+        }
+    }
+
+    /// The settings were read.
+    pub(in crate::app) fn saw_settings(&mut self, found: Option<Settings>) {
+        let marks = if self.keeper.saw(found, &mut self.settings) { Marks::Read } else { Marks::Unread };
+        self.remember_drives();
+        let reading = |unit: &&mut Unit| unit.marks == Marks::Reading;
+        self.hiperdrives_in_hand().filter(reading).for_each(|unit| unit.marks = marks);
+    }
+
+    fn hiperdrives_in_hand(&mut self) -> impl Iterator<Item = &mut Unit> {
+        let all = self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut);
+        all.filter(|unit| unit.moves.is_open())
     }
 
     pub(in crate::app) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {

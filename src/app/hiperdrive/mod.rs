@@ -29,6 +29,7 @@ mod write;
 pub use action::{Action, Motor};
 pub use moves::Moves;
 pub use record::Record;
+pub(in crate::app) use remembered::LocksAlone;
 pub use remembered::Remembered;
 pub use review::{Review, ReviewState};
 pub use rows::Row;

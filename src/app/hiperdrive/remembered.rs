@@ -1,7 +1,10 @@
 //! What is remembered of a device's drives beside what they keep themselves: the spindles behind them, what their positions
 //! are shown in, and limits that nobody has looked at since their scaling was changed.
+//!
+//! The device may be open in another session or another window too. What is typed in one of them does not change another;
+//! limits that are marked as unconfirmed in one of them lock all of them, and are confirmed in each.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +22,106 @@ pub struct Remembered {
     measure: Measure,
     /// Drives whose limits nobody has confirmed.
     unconfirmed: Vec<u8>,
+    /// How often each drive was marked so: tells a mark from the one before.
+    marks: BTreeMap<u8, u64>,
+}
+
+/// What can be read of a drive's entry whose other parts are broken.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(in crate::app) struct LocksAlone {
+    unconfirmed: Vec<u8>,
+    marks: BTreeMap<u8, u64>,
+}
+
+/// What a device's session and the settings told each other last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Exchanged {
+    /// What the settings said.
+    kept: Remembered,
+    pitches: BTreeMap<u8, u64>,
+    measure: Measure,
+    unconfirmed: BTreeSet<DriveNumber>,
+    /// The scales in which limits are unconfirmed, as they were read.
+    scales: BTreeMap<DriveNumber, (i64, i64)>,
+}
+
+/// Whether the settings were read since control was taken: another window may have marked limits in them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::app) enum Marks {
+    /// Not yet, or too long ago.
+    Unread,
+    /// They are being read.
+    Reading,
+    /// Yes.
+    Read,
+}
+
+impl From<LocksAlone> for Remembered {
+    fn from(LocksAlone { unconfirmed, marks }: LocksAlone) -> Self {
+        Remembered { unconfirmed, marks, ..Remembered::default() }
+    }
+}
+
+impl Remembered {
+    fn marks(&self, drive: u8) -> u64 {
+        self.marks.get(&drive).copied().unwrap_or_default()
+    }
+
+    fn is_unconfirmed(&self, drive: u8) -> bool {
+        self.unconfirmed.contains(&drive)
+    }
+
+    fn set_unconfirmed(&mut self, drive: u8, unconfirmed: bool) {
+        self.unconfirmed.retain(|own| *own != drive);
+        if unconfirmed {
+            self.unconfirmed.push(drive);
+            self.unconfirmed.sort_unstable();
+        }
+    }
+
+    fn mark(&mut self, drive: u8, times: u64) {
+        self.set_unconfirmed(drive, true);
+        self.marks.insert(drive, self.marks(drive).wrapping_add(times));
+    }
+
+    /// Drives that were marked since `before`. A program that does not count leaves out the numbers.
+    fn marked_since(&self, before: &Remembered) -> Vec<u8> {
+        let is_new = |drive: &u8| !before.is_unconfirmed(*drive) || self.marks(*drive) != before.marks(*drive);
+        self.unconfirmed.iter().copied().filter(is_new).collect()
+    }
+
+    /// The same with what `ours` has changed since `known`. Limits stay unconfirmed that were marked here meanwhile, whatever
+    /// `ours` has confirmed.
+    #[must_use]
+    pub(in crate::app) fn with_changes(mut self, known: &Remembered, ours: &Remembered) -> Self {
+        let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
+            maps.into_iter().flat_map(BTreeMap::keys).copied().collect()
+        };
+        for drive in drives([&known.pitches, &ours.pitches]) {
+            match (known.pitches.get(&drive), ours.pitches.get(&drive)) {
+                (before, now) if before == now => {}
+                (_, Some(pitch)) => drop(self.pitches.insert(drive, *pitch)),
+                (_, None) => drop(self.pitches.remove(&drive)),
+            }
+        }
+        if ours.measure != known.measure {
+            self.measure = ours.measure;
+        }
+        let locked = known.unconfirmed.iter().chain(&ours.unconfirmed).copied();
+        for drive in drives([&known.marks, &ours.marks]).into_iter().chain(locked).collect::<BTreeSet<_>>() {
+            let marked_here = ours.marks(drive).wrapping_sub(known.marks(drive));
+            let is_marked = ours.is_unconfirmed(drive) && (marked_here > 0 || !known.is_unconfirmed(drive));
+            let is_confirmed = known.is_unconfirmed(drive) && !ours.is_unconfirmed(drive);
+            let is_same = self.marks(drive) == known.marks(drive);
+            if is_marked {
+                self.mark(drive, marked_here);
+            } else if is_confirmed && is_same {
+                self.set_unconfirmed(drive, false);
+            }
+        }
+        self
+    }
 }
 
 impl Unit {
@@ -29,29 +132,54 @@ impl Unit {
         Some(format!("{kind}{} {}", own.category, own.serial_number))
     }
 
-    /// What is to be remembered.
-    pub(in crate::app) fn remembered(&self) -> Remembered {
-        Remembered {
-            pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),
-            measure: self.measure,
-            unconfirmed: self.moves.unconfirmed().iter().map(|drive| drive.get()).collect(),
+    /// Takes what is remembered, and gives what is to be from now on where that is something else. All of it is taken once for
+    /// a device; later only limits that were marked elsewhere.
+    pub(in crate::app) fn exchange_remembered(&mut self, kept: &Remembered) -> Option<Remembered> {
+        let before = match self.exchanged.take() {
+            Some(before) => before,
+            None => self.take_remembered(kept),
+        };
+        let mut next = kept.clone();
+        let now = self.to_remember();
+        let known = Remembered { pitches: before.pitches, measure: before.measure, ..Remembered::default() };
+        let ours = Remembered { pitches: now.pitches.clone(), measure: now.measure, ..Remembered::default() };
+        next = next.with_changes(&known, &ours);
+        let scaled_anew =
+            |drive: &DriveNumber| before.scales.get(drive).is_some_and(|scale| now.scales.get(drive) != Some(scale));
+        for drive in now.unconfirmed.iter().filter(|own| !before.unconfirmed.contains(own) || scaled_anew(own)) {
+            next.mark(drive.get(), 1);
         }
+        for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
+            // What was marked again elsewhere is not what a person has looked at here.
+            if kept.marks(drive) == before.kept.marks(drive) {
+                next.set_unconfirmed(drive, false);
+            }
+        }
+        let elsewhere = kept.marked_since(&before.kept);
+        elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.unconfirm(drive));
+        self.exchanged = Some(Exchanged { kept: next.clone(), ..self.to_remember() });
+        (next != *kept).then_some(next)
     }
 
-    /// Takes what was remembered, once for a device; true where there is something new to remember since.
-    pub(in crate::app) fn take_remembered(&mut self, found: Option<&Remembered>) -> bool {
-        if std::mem::replace(&mut self.is_remembered, true) {
-            return found.cloned().unwrap_or_default() != self.remembered();
-        }
-        if let Some(found) = found {
-            for (drive, nanometres) in &found.pitches {
-                if let Some(drive) = DriveNumber::new(*drive) {
-                    self.pitches.entry(drive).or_insert(Length { nanometres: *nanometres });
-                }
+    fn take_remembered(&mut self, kept: &Remembered) -> Exchanged {
+        for (drive, nanometres) in &kept.pitches {
+            if let Some(drive) = DriveNumber::new(*drive) {
+                self.pitches.entry(drive).or_insert(Length { nanometres: *nanometres });
             }
-            self.measure = found.measure;
-            found.unconfirmed.iter().copied().filter_map(DriveNumber::new).for_each(|own| self.moves.unconfirm(own));
         }
-        false
+        self.measure = kept.measure;
+        Exchanged { pitches: kept.pitches.clone(), measure: kept.measure, ..Exchanged::default() }
+    }
+
+    fn to_remember(&self) -> Exchanged {
+        let unconfirmed = self.moves.unconfirmed();
+        let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.seen()?.scale));
+        Exchanged {
+            kept: Remembered::default(),
+            pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),
+            measure: self.measure,
+            scales: unconfirmed.iter().filter_map(scale).collect(),
+            unconfirmed,
+        }
     }
 }

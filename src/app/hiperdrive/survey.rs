@@ -1,5 +1,6 @@
 //! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
 
+use super::remembered::Marks;
 use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
@@ -58,7 +59,9 @@ impl Unit {
     /// While there is control, the worker reads again and again what a drive may do. Where that is no longer what the table of
     /// parameters shows, everything is read anew. So it is from the moment at which control was taken.
     pub(super) fn notice_limits(&mut self) {
-        self.is_stale |= self.moves.take_taken();
+        if self.moves.take_taken() {
+            (self.is_stale, self.marks) = (true, Marks::Unread);
+        }
         for drive in self.moves.take_limits_changed() {
             if self.is_limited_otherwise(drive) {
                 (self.is_stale, self.looks_at_all) = (true, true);
@@ -80,6 +83,8 @@ impl Unit {
     pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(explain::hiperdrive::lock(Lock::Unread))
+        } else if self.moves.is_open() && self.marks != Marks::Read {
+            Some(Text::new("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
             Some(explain::hiperdrive::lock(Lock::Outdated))
         } else {
@@ -159,7 +164,7 @@ impl Unit {
         self.readings.clear();
         self.pitches.clear();
         self.axes.clear();
-        (self.is_remembered, self.measure) = (false, Measure::default());
+        (self.exchanged, self.measure) = (None, Measure::default());
         (self.session.backups, self.session.writes) = (None, None);
     }
 

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use super::axis::Axis;
 use super::moves::Moves;
 use super::record::Record;
+use super::remembered::{Exchanged, Marks};
 use super::review::Review;
 use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
@@ -55,8 +56,10 @@ pub struct Unit {
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     /// Set-ups of axes that somebody has begun.
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
-    /// What was remembered of it has been looked for.
-    pub(super) is_remembered: bool,
+    /// What the settings remember of it, and what of that was told them; `None` before they were asked.
+    pub(super) exchanged: Option<Exchanged>,
+    /// Whether another window has marked limits since control was taken is known.
+    pub(super) marks: Marks,
     /// What was read last of each drive while nobody had control.
     pub(super) readings: BTreeMap<DriveNumber, Reading>,
     /// Limits and scaling may be others than those that were read: control was taken since.
@@ -93,7 +96,8 @@ impl Unit {
             drive: DriveNumber::FIRST,
             pitches: BTreeMap::new(),
             axes: BTreeMap::new(),
-            is_remembered: false,
+            exchanged: None,
+            marks: Marks::Unread,
             readings: BTreeMap::new(),
             is_stale: false,
             watched: DriveNumber::FIRST,

@@ -1,0 +1,156 @@
+//! Locks among programs that use the same files. The system takes a lock back from a program that ends, however it ends.
+
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::file_error::{FileError, FileProblem, FileTask};
+use super::files::{create_folder, read_text, write_atomically};
+
+/// How long another program may take to read a file and to write it.
+const PATIENCE: Duration = Duration::from_secs(2);
+const RETRY: Duration = Duration::from_millis(5);
+
+/// A lock that no other program has while this lives.
+#[derive(Debug)]
+pub(super) struct FileLock {
+    _locked: File,
+}
+
+impl FileLock {
+    /// Locks by a file, which is made where it is missing; `None` where another one has it, in this program or another.
+    pub(super) fn try_at(path: &Path) -> Result<Option<Self>, FileError> {
+        let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Write, path);
+        let file = open(path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => Ok(Some(FileLock { _locked: file })),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            // A disk that knows no locks.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
+                Ok(Some(FileLock { _locked: file }))
+            }
+            Err(TryLockError::Error(error)) => Err(failed(error)),
+        }
+    }
+}
+
+fn open(path: &Path) -> io::Result<File> {
+    match File::options().create(true).truncate(false).write(true).open(path) {
+        // Made by another user: a lock needs no right to write.
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path),
+        result => result,
+    }
+}
+
+/// Replaces a text by what `make` makes of the one that is there, and of why it cannot be read. No other program that
+/// writes by this function does so in between. The text is written as by [`write_atomically`], in a folder that is made
+/// where it is missing; `None`: it stays as it is.
+///
+/// # Errors
+/// [`FileProblem::InUse`] where another program keeps the lock, and as [`write_atomically`]; or what `make` gives.
+pub fn update_text<T>(
+    path: &Path,
+    make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
+) -> Result<T, FileError> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    let _lock = wait_for(path)?;
+    let (text, made) = make(read_text(path))?;
+    if let Some(text) = text {
+        write_atomically(path, text.as_bytes())?;
+    }
+    Ok(made)
+}
+
+fn wait_for(path: &Path) -> Result<FileLock, FileError> {
+    let beside = lock_of(path);
+    let began = Instant::now();
+    loop {
+        // Whoever reads of it knows the file, not the one beside it.
+        let tried = FileLock::try_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
+        match tried {
+            Some(lock) => return Ok(lock),
+            None if began.elapsed() > PATIENCE => return Err(FileProblem::InUse.of(FileTask::Write, path)),
+            None => thread::sleep(RETRY),
+        }
+    }
+}
+
+/// The file is replaced with each write, so that it cannot be locked itself.
+fn lock_of(path: &Path) -> PathBuf {
+    let mut beside = path.to_owned().into_os_string();
+    beside.push(".lock");
+    PathBuf::from(beside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn appended(text: Result<String, FileError>, more: &str) -> Result<(Option<String>, usize), FileError> {
+        let text = text.or_else(|error| match error.problem {
+            FileProblem::NotFound => Ok(String::new()),
+            _ => Err(error),
+        })?;
+        Ok((Some(text.clone() + more), text.len()))
+    }
+
+    #[test]
+    fn each_update_sees_the_one_before() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("config/a.ron");
+        let writers: Vec<_> = (0..4)
+            .map(|_| {
+                let path = path.clone();
+                thread::spawn(move || {
+                    for _ in 0..25 {
+                        update_text(&path, |text| appended(text, "x")).unwrap();
+                    }
+                })
+            })
+            .collect();
+        writers.into_iter().for_each(|writer| writer.join().unwrap());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "x".repeat(100));
+        assert_eq!(update_text(&path, |_| Ok((None, 7))), Ok(7));
+        assert_eq!(fs::read_to_string(&path).unwrap().len(), 100, "as it was");
+    }
+
+    #[test]
+    fn a_lock_that_another_one_keeps_is_waited_for_and_given_up() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.ron");
+        fs::write(&path, "old").unwrap();
+        let lock = FileLock::try_at(&lock_of(&path)).unwrap();
+        assert!(lock.is_some() && FileLock::try_at(&lock_of(&path)).unwrap().is_none());
+        let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
+        assert_eq!((&error.path, error.problem), (&path, FileProblem::InUse));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        drop(lock);
+        assert_eq!(update_text(&path, |text| appended(text, "x")), Ok(3));
+    }
+
+    #[test]
+    fn what_stands_in_the_way_names_the_file() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.ron");
+        fs::create_dir_all(lock_of(&path)).unwrap();
+        let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
+        assert_eq!((error.path, error.problem), (path, FileProblem::IsFolder));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_lock_that_may_not_be_written_is_a_lock() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.ron.lock");
+        fs::write(&path, "").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+        let lock = FileLock::try_at(&path).unwrap();
+        assert!(lock.is_some() && FileLock::try_at(&path).unwrap().is_none());
+    }
+}

@@ -1,0 +1,269 @@
+//! Two windows on one settings file: in this process and in processes of their own. What one of them has changed survives
+//! what the other writes, and limits that are unconfirmed in one lock the other.
+
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use std::{env, fs, thread};
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Measure, Motor};
+use encoder_studio::app::{Action, Language, Settings, Studio, Tab, Theme, World};
+use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::protocol::hiperdrive::{DriveNumber, Length, Value};
+use encoder_studio::store::Store;
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
+use crate::support::{Desk, LONG, Outside};
+
+const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
+
+/// Two windows over one folder.
+fn two() -> (Desk, Desk) {
+    let first = Desk::fresh("");
+    let second = Desk { studio: first.outside.studio(), outside: Outside::new("") };
+    (first, second)
+}
+
+/// What another window finds that is opened now.
+fn found(desk: &Desk) -> Settings {
+    desk.outside.studio().settings
+}
+
+/// Looks at both windows until it is so.
+#[track_caller]
+fn together(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk) -> bool) {
+    let [first, second] = windows;
+    let began = Instant::now();
+    while !condition(first, second) {
+        assert!(began.elapsed() < LONG, "never: {what}\n{}", crate::support::log(&second.studio));
+        first.studio.poll();
+        second.studio.poll();
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The file says so.
+fn says(desk: &Desk, words: &[&str]) -> bool {
+    let text = fs::read_to_string(desk.outside.store().settings_path()).unwrap_or_default();
+    words.iter().all(|word| text.contains(word))
+}
+
+fn with_drives(desk: &mut Desk) {
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open(HUB);
+    until_read(desk);
+}
+
+fn take(desk: &mut Desk) {
+    act(desk, Hiperdrive::Take);
+    desk.until("the drives are in hand", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && !matches!(own.may_move(ONE), Err(why) if why.id() != "hd_lock.limits")
+    });
+}
+
+/// What another master writes into the drive, and a survey of it.
+fn scale(desk: &mut Desk, numerator: i64) {
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
+    act(desk, Hiperdrive::Read);
+    desk.until("it is read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.number(ONE, 154) == Some(numerator)
+    });
+}
+
+fn is_locked(desk: &Desk) -> bool {
+    unit(desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed)
+}
+
+/// Issue 21.11: settings are merged by key, however often the windows take turns.
+#[test]
+fn what_each_window_has_changed_survives_the_others_write() {
+    let (mut first, mut second) = two();
+    first.act(Action::SetTheme(Theme::Light));
+    first.studio.settings.use_link(Tab::Hiperface, "tcp:first:1");
+    second.act(Action::SetLanguage(Language::German));
+    second.act(Action::KeepSize(1500, 900));
+    second.studio.settings.use_link(Tab::Hiperface, "tcp:second:1");
+    let all = ["Light", "German", "1500", "tcp:first:1", "tcp:second:1"];
+    together([&mut first, &mut second], "both are kept", |first, _| says(first, &all));
+    first.act(Action::KeepLayout("(a layout)".to_owned()));
+    together([&mut first, &mut second], "it is kept", |first, _| says(first, &["(a layout)"]));
+    let kept = found(&first);
+    assert_eq!((kept.theme, kept.language, kept.size), (Theme::Light, Language::German, Some((1500, 900))));
+    assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
+    let mut links = kept.links(Tab::Hiperface).to_vec();
+    links.sort();
+    assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
+    // Nothing changes under the hands of a person.
+    assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, Theme::Dark));
+}
+
+/// Issue 21.11: limits that one window has marked are locked in another one that has the drives in hand, without its
+/// having written or read anything, and in one that is opened later, whatever the other writes.
+#[test]
+fn limits_that_another_window_marks_are_locked_here() {
+    let (mut first, mut second) = two();
+    let mut bystander = first.outside.studio();
+    let path = first.outside.store().settings_path();
+    with_drives(&mut first);
+    with_drives(&mut second);
+    take(&mut second);
+    assert!(!is_locked(&first) && !is_locked(&second));
+    scale(&mut first, 400);
+    assert!(is_locked(&first));
+    together([&mut first, &mut second], "the other one is locked", |_, second| is_locked(second));
+    drive(&mut second, Motor::Step { by: 64 });
+    assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
+    second.act(Action::SetTheme(Theme::Light));
+    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light"]));
+    bystander.act(Action::SetLanguage(Language::German));
+    first.until("that is kept", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains("German")));
+    let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
+    with_drives(&mut later);
+    assert!(is_locked(&later));
+}
+
+/// Issue 21.11: a person confirms for the window that they look at. Another one keeps its lock, and marks it anew where the
+/// scale changes again.
+#[test]
+fn limits_are_confirmed_in_each_window() {
+    let (mut first, mut second) = two();
+    with_drives(&mut first);
+    with_drives(&mut second);
+    take(&mut second);
+    scale(&mut first, 400);
+    together([&mut first, &mut second], "both are locked", |_, second| is_locked(second));
+    drive(&mut second, Motor::ConfirmLimits(ONE));
+    assert!(!is_locked(&second));
+    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["unconfirmed: []"]));
+    assert!(is_locked(&first) && !is_locked(&second));
+    // Whatever is written on either side.
+    first.act(Action::SetTheme(Theme::Light));
+    second.act(Action::SetLanguage(Language::German));
+    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light", "German"]));
+    let began = Instant::now();
+    together([&mut first, &mut second], "some time passes", |_, _| began.elapsed() > Duration::from_secs(3));
+    assert!(is_locked(&first) && !is_locked(&second));
+    scale(&mut first, 100);
+    together([&mut first, &mut second], "the other one is locked again", |_, second| is_locked(second));
+    assert!(says(&first, &["unconfirmed: [", "1,"]));
+}
+
+/// Issue 21.11: what is typed for a drive in one window stays in it, and is kept beside what another one has typed.
+#[test]
+fn what_is_typed_for_a_drive_stays_in_its_window() {
+    let (mut first, mut second) = two();
+    with_drives(&mut first);
+    with_drives(&mut second);
+    let two = DriveNumber::new(2).unwrap();
+    let pitch = |nanometres| Some(Length { nanometres });
+    act(&mut first, Hiperdrive::SetPitch(ONE, pitch(4_000_000)));
+    act(&mut second, Hiperdrive::SetPitch(two, pitch(5_000_000)));
+    act(&mut second, Hiperdrive::SetMeasure(Measure::Degrees));
+    let all = ["1: 4000000", "2: 5000000", "Degrees"];
+    together([&mut first, &mut second], "both are kept", |first, _| says(first, &all));
+    assert_eq!((unit(&first).pitch(two), unit(&second).pitch(ONE)), (None, None));
+    assert_eq!(unit(&first).measure, Measure::Steps);
+    let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
+    with_drives(&mut later);
+    assert_eq!((unit(&later).pitch(ONE), unit(&later).pitch(two)), (pitch(4_000_000), pitch(5_000_000)));
+    assert_eq!(unit(&later).measure, Measure::Degrees);
+}
+
+const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";
+const NAME: &str = "ENCODER_STUDIO_TEST_NAME";
+
+/// A window in a process of its own, over this folder.
+fn process(desk: &Desk, test: &str, name: &str) -> Child {
+    let mut own = Command::new(env::current_exe().unwrap());
+    own.args(["--ignored", "--exact", &format!("two_windows::{test}")]);
+    own.env(FOLDER, desk.outside.folder.path()).env(NAME, name).stdout(Stdio::null()).spawn().unwrap()
+}
+
+fn studio_of_process() -> (Studio, String) {
+    let folder = env::var_os(FOLDER).expect("run by a test of this module");
+    let world = World::real(Store::at(folder.as_ref()));
+    (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
+}
+
+#[test]
+#[ignore = "run in processes of their own by `processes_that_write_at_once_lose_nothing`"]
+fn a_process_that_uses_links() {
+    let (mut studio, name) = studio_of_process();
+    let path = Store::at(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
+    for number in 0..6 {
+        let link = format!("tcp:{name}:{number}");
+        studio.settings.use_link(Tab::Hiperface, &link);
+        let began = Instant::now();
+        while !fs::read_to_string(&path).is_ok_and(|text| text.contains(&link)) {
+            assert!(began.elapsed() < LONG, "{link}");
+            studio.poll();
+        }
+    }
+}
+
+/// Issue 21.11: twice six links, as many as are remembered, written by two processes as fast as they can.
+#[test]
+fn processes_that_write_at_once_lose_nothing() {
+    let desk = Desk::fresh("");
+    let windows = ["one", "two"].map(|name| process(&desk, "a_process_that_uses_links", name));
+    for mut window in windows {
+        assert!(window.wait().unwrap().success());
+    }
+    let mut links = found(&desk).links(Tab::Hiperface).to_vec();
+    links.sort();
+    let expected = ["one", "two"].iter().flat_map(|name| (0..6).map(move |number| format!("tcp:{name}:{number}")));
+    assert_eq!(links, expected.collect::<Vec<_>>());
+}
+
+#[test]
+#[ignore = "run in a process of its own by `a_process_that_is_killed_leaves_a_whole_file_and_no_lock`"]
+fn a_process_that_writes_for_ever() {
+    let (mut studio, name) = studio_of_process();
+    for number in 0_u32.. {
+        studio.act(Action::KeepSize(number, 900));
+        studio.settings.use_link(Tab::Biss, &format!("tcp:{name}:{}", number % 7));
+        studio.poll();
+    }
+}
+
+/// Issue 21.11: a writer that is killed at whatever moment.
+#[test]
+fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.store().settings_path();
+    for round in 0..8_u64 {
+        let _ = fs::remove_file(&path);
+        let mut window = process(&desk, "a_process_that_writes_for_ever", "killed");
+        let began = Instant::now();
+        while !path.exists() {
+            assert!(began.elapsed() < LONG, "it never wrote");
+            thread::sleep(Duration::from_millis(1));
+        }
+        thread::sleep(Duration::from_micros(1_700 * round));
+        window.kill().unwrap();
+        window.wait().unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        let kept = Settings::parse(&text).expect("a whole file");
+        assert!(kept.size.is_some() && kept.links(Tab::Biss).iter().all(|link| link.starts_with("tcp:killed:")));
+        let layout = format!("(layout {round})");
+        desk.act(Action::KeepLayout(layout.clone()));
+        desk.until("it is written", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains(&layout)));
+    }
+}
+
+/// Issue 21.11: a folder that cannot be written costs what is remembered, and no motion.
+#[cfg(unix)]
+#[test]
+fn settings_that_cannot_be_kept_keep_no_drive_from_moving() {
+    let mut desk = Desk::fresh("");
+    fs::write(desk.outside.path("config"), "a file in the way").unwrap();
+    with_drives(&mut desk);
+    take(&mut desk);
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    scale(&mut desk, 400);
+    assert!(is_locked(&desk), "here all the same");
+}
