@@ -341,7 +341,7 @@ def serve(options):
                 del buffers[client], peers[client]
 
 
-def main():
+def arguments():
     def refusals(text):
         return {int(number): int(status, 0) for number, status in (pair.split(":") for pair in text.split(","))}
 
@@ -372,7 +372,11 @@ def main():
     add("--late", type=lambda text: tuple(int(part) for part in text.split(":")), help="MS:N: every Nth reply is late")
     add("--pieces", action="store_true", help="replies come byte by byte")
     add("--garbage", action="store_true", help="answer what is no frame")
-    options = parser.parse_args()
+    return parser
+
+
+def main():
+    options = arguments().parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
     serve(options)
 
