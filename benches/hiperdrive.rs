@@ -12,13 +12,13 @@ use std::thread::{JoinHandle, sleep, spawn};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, unbounded};
-use encoder_studio::device::hiperdrive::Opened;
 use encoder_studio::device::hiperdrive::cyclic::{Drives, Histogram};
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Intent, Permit, Wish};
+use encoder_studio::device::hiperdrive::{DriveLimits, Opened, Rules};
 use encoder_studio::link::{Clock, DatagramPort, Datagrams, RealClock, UdpPort};
 use encoder_studio::protocol::ethernet_ip::{ForwardClose, IoPacket, Owner, Path, RealTimeFormat, RequestTimeout};
 use encoder_studio::protocol::hiperdrive::{
-    ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology,
+    ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
 };
 use encoder_studio::sim::hiperdrive::{Setup, Station};
 use encoder_studio::worker::hiperdrive::{Cyclic, Motion};
@@ -98,7 +98,7 @@ impl Drop for Target {
 }
 
 fn permit() -> Permit {
-    Permit { limits: Some((-33_000_000, 33_000_000)), locks: Vec::new(), endless: false }
+    Permit::within(-33_000_000, 33_000_000)
 }
 
 /// A way to keep a cyclic connection.
@@ -182,7 +182,11 @@ fn port() -> (Box<dyn Datagrams>, Target, Arc<RealClock>) {
 fn ours() -> (Box<dyn Way>, Target) {
     let (packets, target, clock) = port();
     let motion = Motion::new(clock.clone());
-    motion.permit(DriveNumber::FIRST, permit());
+    let rules =
+        Rules { requested: Some(1), scale: Some((256, 1)), limits: Some((-33_000_000, 33_000_000)), timeout: Some(20) };
+    // Nothing reads them again here: as if they had been read at the end.
+    let read = clock.now() + Duration::from_secs(3600);
+    motion.publish_limits(DriveNumber::FIRST, DriveLimits::of(rules, (Topology::Adapter, Variant::new(7)), read));
     let cyclic = Cyclic::start(packets, &opened(target.port), &[DriveNumber::FIRST], clock, &motion).unwrap();
     (Box::new(Ours { motion, _cyclic: cyclic }), target)
 }
@@ -217,7 +221,7 @@ fn releases(way: &dyn Way, target: &Target, count: usize) -> Vec<f64> {
     let mut took = Vec::with_capacity(count);
     sleep(INTERVAL * 5);
     while took.len() < count {
-        way.intend(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG });
+        way.intend(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
         let held = Instant::now() + Duration::from_micros(random.u64(120_000..160_000));
         while Instant::now() < held {
             way.refresh();

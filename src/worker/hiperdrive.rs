@@ -9,10 +9,12 @@ mod looks;
 mod motion;
 mod open;
 mod prepare;
+mod session_watch;
 
 use std::convert::Infallible;
 use std::fmt;
 use std::sync::Arc;
+use std::time::Duration;
 
 use control::Control;
 pub use cyclic::{Cyclic, Pump};
@@ -22,8 +24,9 @@ pub use job::{
 };
 pub use motion::{DriveView, Glance, Motion, View};
 pub use open::{check, open};
+use session_watch::WatchedWire;
 
-use super::{Desk, Device, Progress, Session, Tell, Watched};
+use super::{Desk, Device, IDLE, Progress, Session, Tell, Watched};
 use crate::device::hiperdrive::check::check as check_device;
 use crate::device::hiperdrive::{
     Error, Master, Reading, Station, identify, network, position, read_status, save, survey,
@@ -50,6 +53,9 @@ impl fmt::Debug for Hiperdrive {
         write!(f, "Hiperdrive({})", self.station)
     }
 }
+
+/// How often is looked after drives in control: a fraction of what may pass between two requests.
+const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 /// What a job tells on its way.
 type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
@@ -79,6 +85,7 @@ impl Session<Hiperdrive> {
         let Way { wire, port, station, target } = way;
         let is_virtual = target.is_some();
         let control = Control::new(port, clock.clone());
+        let wire = Box::new(WatchedWire::new(wire, clock.clone(), control.motion()));
         let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
         Session::with(device, clock, store, is_virtual)
     }
@@ -172,6 +179,10 @@ impl Device for Hiperdrive {
 
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check().inspect_err(|_| self.control.lose_session())
+    }
+
+    fn idle_interval(&self) -> Duration {
+        if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
     fn idle(&mut self, desk: &mut Desk) -> Option<Remark> {

@@ -98,6 +98,11 @@ pub trait Device: Send + 'static {
     /// When it is not.
     fn check(&mut self) -> Result<(), LinkError>;
 
+    /// How often an idle worker looks after the device and its wire.
+    fn idle_interval(&self) -> Duration {
+        IDLE
+    }
+
     /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
     fn idle(&mut self, _desk: &mut Desk) -> Option<Self::Remark> {
         None
@@ -106,6 +111,9 @@ pub trait Device: Send + 'static {
     /// The session ends: what must not be left as it is.
     fn leave(&mut self, _desk: &mut Desk) {}
 }
+
+/// How often an idle worker looks after a device of which nothing is under way.
+const IDLE: Duration = Duration::from_millis(500);
 
 /// What a device says when it is asked for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]

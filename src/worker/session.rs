@@ -65,6 +65,11 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
+    /// How often an idle worker looks after the device and its wire.
+    pub(super) fn idle_interval(&self) -> Duration {
+        self.device.idle_interval()
+    }
+
     /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
     pub fn idle(&mut self) -> Option<D::Remark> {
         self.device.idle(&mut self.desk)

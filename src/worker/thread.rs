@@ -12,8 +12,6 @@ use super::outbox::Outbox;
 use super::{Device, Event, JobId, Ring, Session, Watched};
 use crate::link::Cancel;
 
-/// How often an idle worker looks whether its wire is still there.
-const CHECK: Duration = Duration::from_millis(500);
 /// How often it tries again to send what the full channel did not take.
 const RETRY: Duration = Duration::from_millis(5);
 
@@ -68,7 +66,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
     let mut known = 0;
     let mut paced = None;
     let mut lost = false;
-    let mut next_check = Instant::now() + CHECK;
+    let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
         // The token first, then what it may have been wished for: see `Live::interrupt_sample`.
         bench.live.sampling().reset();
@@ -76,7 +74,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             Ok(order) => {
                 bench.carry_out(order);
                 lost = false;
-                next_check = Instant::now() + CHECK;
+                next_check = Instant::now() + bench.session.idle_interval();
                 continue;
             }
             Err(TryRecvError::Disconnected) => break,
@@ -100,11 +98,11 @@ fn work<D: Device>(mut bench: Bench<D>) {
             }
             bench.look_after();
             lost = false;
-            next_check = Instant::now() + CHECK;
+            next_check = Instant::now() + bench.session.idle_interval();
             continue;
         }
         if now >= next_check {
-            next_check = now + CHECK;
+            next_check = now + bench.session.idle_interval();
             if !lost && let Err(error) = bench.session.check() {
                 lost = true;
                 bench.outbox.send(Event::Lost(error));

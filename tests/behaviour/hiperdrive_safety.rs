@@ -28,7 +28,7 @@ const RPI: &str = "rpi=50";
 /// Eight intervals, and the way in which it brakes.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
-const JOG: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FAST };
+const JOG: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
 /// A drive that somebody looks at.
 struct Drive {

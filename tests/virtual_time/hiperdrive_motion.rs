@@ -3,6 +3,7 @@
 mod any;
 mod bench;
 mod ladder;
+mod watch;
 
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish};
 use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, Percent, RunEnd};
@@ -14,7 +15,7 @@ const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
 const TURN: i32 = 65_536;
 
 fn jog(direction: Direction) -> Wish {
-    Wish::Jog { direction, effort: Effort::JOG }
+    Wish::Jog { direction, effort: Effort::JOG, outward: false }
 }
 
 fn run_endless() -> Wish {

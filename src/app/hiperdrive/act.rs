@@ -98,7 +98,9 @@ impl Unit {
                 return;
             }
             Motor::JogPress { repeated: true, .. } => return,
-            Motor::JogPress { direction, .. } => Wish::Jog { direction, effort: self.moves.jog_effort() },
+            Motor::JogPress { direction, .. } => {
+                Wish::Jog { direction, effort: self.moves.jog_effort(), outward: false }
+            }
             Motor::Lead(goal) => Wish::Lead(goal),
             Motor::Acknowledge => Wish::Acknowledge,
             Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort() },

@@ -159,7 +159,7 @@ impl Moves {
     /// A jog is pressed. While one is held, and by a key that repeats itself, nothing begins.
     pub(super) fn press(&mut self, drive: DriveNumber, direction: Direction, repeated: bool) {
         if !repeated && !self.is_held() {
-            self.intend(drive, Wish::Jog { direction, effort: self.jog }, Kind::Held);
+            self.intend(drive, Wish::Jog { direction, effort: self.jog, outward: false }, Kind::Held);
         }
     }
 

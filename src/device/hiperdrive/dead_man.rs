@@ -6,6 +6,7 @@
 //!   ([`ControlWord::is_standing`]): nothing begins with them whatever the drive says, also where it says it late;
 //! - with the call that learns of a reason to stop, the word is one that stands;
 //! - an act that has ended never begins again, nor does one that nobody kept fresh before it could begin;
+//! - a motion that leads beyond the limits, or away from its target, is stopped with the report that shows it ([`watch`]);
 //! - a drive that has run in speed mode is led through 0400 before anything else, which makes it forget the job that
 //!   clearing bit 12 would be; the target is where it stands whenever no job is under way.
 //!
@@ -17,15 +18,18 @@ mod lead;
 mod stage;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 use std::time::Duration;
 
 pub use act::{Effort, Ended, Goal, Intent, Lock, Motive, Permit, Phase, Refusal, Rung, Wish};
+pub use watch::{Side, outside};
 
 use crate::protocol::hiperdrive::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
 use crate::units::Moment;
 use lead::Lead;
 use stage::{Mark, Stage};
+use watch::Watch;
 
 /// A drive's dead-man, from the opening of a cyclic connection to its end.
 #[derive(Clone, Debug)]
@@ -45,6 +49,8 @@ pub struct DeadMan {
     effort: Effort,
     /// Speed mode was entered, and the drive may remember it: it has to go below operational.
     after_run: bool,
+    /// It is not heard at the moment: nothing that moves begins.
+    deaf: bool,
     ended: Option<(u64, Ended)>,
 }
 
@@ -56,6 +62,8 @@ struct Act {
     said: Wish,
     /// What moves, for what does.
     motion: Option<Motion>,
+    /// How it has gone, once it has begun.
+    watch: Option<Watch>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +100,7 @@ impl DeadMan {
             spent,
             effort: Effort::NONE,
             after_run: false,
+            deaf: false,
             ended: None,
         }
     }
@@ -174,8 +183,9 @@ impl DeadMan {
         }
     }
 
-    /// Nobody hears where the drive is, whoever is to blame: what moves is to stand.
+    /// Nobody hears where the drive is, whoever is to blame: what moves is to stand, and nothing that moves begins.
     pub fn fall_deaf(&mut self, now: Moment) {
+        self.deaf = true;
         if self.stage.has_motion() {
             self.stop(now, Ended::Deaf);
         }
@@ -183,6 +193,7 @@ impl DeadMan {
 
     fn hear(&mut self, now: Moment, actual: Actual) {
         self.reports += 1;
+        self.deaf = false;
         self.heard = Some((now, actual));
         let below = Goal::of_word(self.sent.control) < Goal::Operational;
         let forgotten = |bit| !actual.status.has(bit);
@@ -219,8 +230,10 @@ impl DeadMan {
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }
-        self.act = Some(Act { number: intent.number, said: intent.wish, motion: None });
-        if let Err(refusal) = self.begin(now, actual, intent.wish, permit) {
+        self.act = Some(Act { number: intent.number, said: intent.wish, motion: None, watch: None });
+        if self.deaf && intent.wish.moves() {
+            self.end(Ended::Deaf);
+        } else if let Err(refusal) = self.begin(now, actual, intent.wish, permit) {
             self.end(Ended::Refused(refusal));
         }
     }
@@ -242,6 +255,7 @@ impl DeadMan {
             Wish::Run { direction, end, .. } => Motive::Run { direction, end },
         };
         permit.check(wish, motive.target())?;
+        permit.check_place(wish, actual)?;
         if status.has(StatusBit::Fault) {
             return Err(Refusal::Fault);
         }

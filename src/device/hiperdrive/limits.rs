@@ -201,7 +201,8 @@ mod tests {
     fn parameters_lock_and_permit() {
         let whole = Some((-33_488_896, 33_488_896));
         // A degree of 65536 steps a turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
-        let permit = |limits, locks: &[Lock], endless, degree| Permit { limits, locks: locks.to_vec(), endless, degree };
+        let permit =
+            |limits, locks: &[Lock], endless, degree| Permit { limits, locks: locks.to_vec(), endless, degree };
         type Case<'c> = (&'c str, &'c [(u16, Option<i64>)], Permit);
         let cases: [Case<'_>; 8] = [
             ("factory", &[], permit(whole, &[], true, 183)),

@@ -13,11 +13,22 @@ pub struct Load {
     pub wall_above: Option<f64>,
     /// Degrees Celsius around the drive.
     pub ambient: f64,
+    /// What is wrong with the drive itself.
+    pub defect: Option<Defect>,
+}
+
+/// A drive that does not do what it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Defect {
+    /// It stops neither at its target nor at its limits.
+    RunsOn,
+    /// It turns the other way.
+    Reversed,
 }
 
 impl Default for Load {
     fn default() -> Self {
-        Load { percent: 10, wall_below: None, wall_above: None, ambient: 25.0 }
+        Load { percent: 10, wall_below: None, wall_above: None, ambient: 25.0, defect: None }
     }
 }
 
@@ -38,6 +49,18 @@ pub(super) enum Wanted {
     Place { at: f64, speed: f64 },
     /// That it turns like this, with its sign.
     Speed(f64),
+}
+
+impl Wanted {
+    /// What becomes of it in a drive with a defect, from this place.
+    pub(super) fn with(self, defect: Option<Defect>, place: f64) -> Wanted {
+        let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
+        match (self, defect) {
+            (wanted, None) | (wanted @ Wanted::Rest, _) => wanted,
+            (Wanted::Place { at, speed }, Some(_)) => Wanted::Speed(turned((at - place).signum() * speed)),
+            (Wanted::Speed(speed), Some(_)) => Wanted::Speed(turned(speed)),
+        }
+    }
 }
 
 /// What came of a millisecond.
@@ -87,10 +110,10 @@ impl Axis {
         let aim = match wanted {
             Wanted::Rest => 0.0,
             Wanted::Speed(speed) => speed,
-            // No faster than it can still stop.
+            // No faster than it can still stop, millisecond by millisecond.
             Wanted::Place { at, speed } => {
-                let way = at - self.place;
-                way.signum() * speed.min((2.0 * ACCELERATION * way.abs()).sqrt())
+                let (way, half) = (at - self.place, gain / 2.0);
+                way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)
             }
         };
         self.speed += (aim - self.speed).clamp(-gain, gain);

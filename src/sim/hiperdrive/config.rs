@@ -1,7 +1,7 @@
 //! The settings of virtual drives and what stands in front of them, as the query of a `sim:` link gives them:
 //! `hub=4&drives=1,0,1&position=65536`. It opens nothing.
 
-use super::axis::Load;
+use super::axis::{Defect, Load};
 use crate::protocol::hiperdrive::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
@@ -19,6 +19,7 @@ pub struct Config {
     pub(super) speed: Option<u16>,
     load: u8,
     blocked: bool,
+    defect: Option<Defect>,
     temperature: f64,
     pub(super) s3: u8,
     pub(super) switch: u8,
@@ -42,6 +43,7 @@ impl Default for Config {
             speed: None,
             load: Load::default().percent,
             blocked: false,
+            defect: None,
             temperature: Load::default().ambient,
             s3: 0,
             switch: 0,
@@ -69,6 +71,7 @@ impl Config {
     /// | `speed` | parameter 166: greatest speed in tenths of rpm, 5…350 |
     /// | `load` | percent of the nominal torque that the spindle takes, 0…200: above 100 no drive can move it |
     /// | `blocked` | `on`: the spindle is held where it stands |
+    /// | `defect` | `runs-on`: the drives stop neither at a target nor at a limit; `reversed`: they turn the other way |
     /// | `temperature` | degrees Celsius around the drives: from 80 on they fail |
     /// | `s3` | switch S3, 0…9; away from 0 nothing moves from the bus |
     /// | `switch` | address switch, 0…99 |
@@ -77,7 +80,7 @@ impl Config {
     /// | `order` | `little` or `big`: of the numbers in process data (`U`) |
     /// | `text` | `plain`, or `counted` by a byte in front: texts of parameters (`U`) |
     /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets |
-    pub const KEYS: [&str; 18] = [
+    pub const KEYS: [&str; 19] = [
         "hub",
         "drives",
         "variant",
@@ -86,6 +89,7 @@ impl Config {
         "speed",
         "load",
         "blocked",
+        "defect",
         "temperature",
         "s3",
         "switch",
@@ -129,6 +133,10 @@ impl Config {
             "speed" => self.speed = Some(setting.within(5..=350, "tenths of rpm from 5 to 350")?),
             "load" => self.load = setting.within(0..=200, "percent of the nominal torque from 0 to 200")?,
             "blocked" => self.blocked = setting.switch()?,
+            "defect" => {
+                let defects = [("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed)];
+                self.defect = Some(setting.one_of(&defects, "runs-on or reversed")?);
+            }
             "temperature" => self.temperature = setting.decimal(-40.0..=120.0, "degrees Celsius from -40 to 120")?,
             _ => return Ok(false),
         }
@@ -183,7 +191,7 @@ impl Config {
 
     fn load(&self) -> Load {
         let wall = self.blocked.then(|| self.place());
-        Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature }
+        Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature, defect: self.defect }
     }
 
     /// Where the drives stand, in steps of 65536 a turn.
@@ -227,7 +235,7 @@ mod tests {
 
     #[test]
     fn every_key_is_read() {
-        let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&\
+        let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&defect=reversed&\
                      temperature=-12.5&s3=2&switch=17&supply=23.5&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
                      fault=drop:0.25";
         assert_eq!(query.split('&').count(), Config::KEYS.len());
@@ -240,6 +248,7 @@ mod tests {
             speed: Some(200),
             load: 60,
             blocked: true,
+            defect: Some(Defect::Reversed),
             temperature: -12.5,
             s3: 2,
             switch: 17,

@@ -290,11 +290,12 @@ impl Drive {
     fn wanted(&self) -> Wanted {
         let rpm = f64::from(self.word(166)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
         let speed = rpm / 60.0 * TURN;
-        match self.motion {
+        let wanted = match self.motion {
             Motion::Rest | Motion::Paused { .. } => Wanted::Rest,
             Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => Wanted::Place { at, speed },
             Motion::Run { to: None, clockwise } => Wanted::Speed(if clockwise { speed } else { -speed }),
-        }
+        };
+        wanted.with(self.load.defect, self.axis.place())
     }
 
     /// Of speed and torque.

@@ -21,7 +21,7 @@ mod target;
 #[cfg(test)]
 mod tests;
 
-pub use axis::Load;
+pub use axis::{Defect, Load};
 pub use config::Config;
 pub use drive::Drive;
 pub use parameters::Refused;

@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use super::session_watch::REQUEST;
 use super::{Hiperdrive, Remark};
 use crate::device::hiperdrive::{Error, GROUPS, Identity, read_rule, read_rules};
 use crate::protocol::hiperdrive::DriveNumber;
@@ -12,6 +13,8 @@ use crate::worker::Desk;
 /// The time is cut into turns of this length, which belong to one group after the other of the parameters that rule a drive:
 /// all of them have one each second.
 const TURN: Duration = Duration::from_millis(250);
+/// As long is a turn while a drive moves: each is a request, and a device that does not answer ends the motion.
+const TURN_IN_MOTION: Duration = REQUEST;
 /// Behind a look that failed.
 const REST: Duration = Duration::from_millis(500);
 
@@ -23,16 +26,16 @@ pub(super) struct Looks {
 }
 
 /// The groups that are to be read now, by when each was read last, the oldest first: those one of whose turns has begun since.
-fn due(read: [Moment; GROUPS], now: Moment) -> Vec<usize> {
-    let is_due = |(group, at): &(usize, Moment)| turns(*group, now) > turns(*group, *at);
+fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
+    let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
     groups.sort_by_key(|(_, at)| *at);
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
 /// How many turns of a group have begun until then.
-fn turns(group: usize, at: Moment) -> u128 {
-    let begun = at.since_start().as_nanos() / TURN.as_nanos();
+fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
+    let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
     (begun + groups - group as u128) / groups
 }
@@ -75,7 +78,8 @@ impl Hiperdrive {
             return Ok(());
         };
         let mut rules = known.rules();
-        for group in due(times, desk.clock.now()) {
+        let turn = if self.control.motion().is_under_way() { TURN_IN_MOTION } else { TURN };
+        for group in due(times, desk.clock.now(), turn) {
             let now = desk.clock.now();
             rules = read_rule(&mut self.master(desk), drive, rules, group)?;
             if let Some(at) = times.get_mut(group) {
@@ -139,7 +143,7 @@ mod tests {
                 now += step;
                 let age = at(now).since(read.into_iter().min().unwrap());
                 assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
-                let groups = due(read, at(now));
+                let groups = due(read, at(now), TURN);
                 assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");
                 for group in groups {
                     read[group] = at(now);

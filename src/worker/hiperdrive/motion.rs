@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::session_watch::SessionWatch;
 use crate::device::hiperdrive::cyclic::{CyclicLost, Drives, LinkFigures};
-use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Permit, Phase, Wish};
+use crate::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
 use crate::device::hiperdrive::{DriveLimits, LimitsSeen};
 use crate::link::Clock;
 use crate::protocol::hiperdrive::{Actual, DriveNumber, Setpoint};
@@ -27,6 +28,8 @@ struct Cell {
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which a person has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
+    /// Whether explicit messages are answered.
+    session: SessionWatch,
     punctual: bool,
     view: View,
 }
@@ -82,6 +85,7 @@ impl Motion {
             intent,
             limits: BTreeMap::new(),
             experts: BTreeSet::new(),
+            session: SessionWatch::default(),
             punctual: false,
             view: View::default(),
         };
@@ -141,6 +145,11 @@ impl Motion {
         self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
 
+    /// Publishes what a drive may do; a session does so by itself.
+    pub fn publish_limits(&self, drive: DriveNumber, limits: DriveLimits) {
+        self.with_limits(drive, |own| *own = limits);
+    }
+
     /// Changes what a drive may do, as one step: nobody reads or confirms limits in the middle of it.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
@@ -198,7 +207,23 @@ impl Motion {
     pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
-        make(&cell.intent, &|drive| cell.permitted(drive, now))
+        let silent = cell.session.is_silent(now);
+        make(&cell.intent, &|drive| {
+            let mut permit = cell.permitted(drive, now);
+            permit.locks.extend(silent.then_some(Lock::NoAnswer));
+            permit
+        })
+    }
+
+    /// Notes a request or an answer of the explicit messages.
+    pub(super) fn with_session(&self, note: impl FnOnce(&mut SessionWatch)) {
+        note(&mut self.lock().session);
+    }
+
+    /// A drive was sent a word with which it moves, or is led to where it may.
+    pub(super) fn is_under_way(&self) -> bool {
+        let cell = self.lock();
+        cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
     }
 
     /// What has become of the drives.

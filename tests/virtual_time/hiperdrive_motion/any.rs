@@ -21,7 +21,7 @@ fn wish(dice: &mut fastrand::Rng) -> Wish {
         6 | 7 => Wish::Step { by: dice.i32(-TURN..TURN), effort },
         8 => Wish::Pause,
         9 => Wish::Resume,
-        10 | 11 => Wish::Jog { direction, effort },
+        10 | 11 => Wish::Jog { direction, effort, outward: false },
         12 => Wish::Run { direction, end: RunEnd::RangeEnd, effort },
         _ => Wish::Stop,
     }

@@ -15,6 +15,7 @@ pub fn lock(lock: Lock) -> Text {
         Lock::LimitsUnconfirmed => "hd_lock.limits",
         Lock::NotRequested => "hd_lock.not_requested",
         Lock::Outdated => "hd_lock.old",
+        Lock::NoAnswer => "hd_lock.no_answer",
     })
 }
 
@@ -25,6 +26,10 @@ pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
         Refusal::NoEffort => Text::new("hd_refused.no_effort"),
         Refusal::Outside { target, low, high } => Text::new("hd_refused.outside")
             .with_text("target", place(target))
+            .with_text("low", place(low))
+            .with_text("high", place(high)),
+        Refusal::Outward { position, low, high } => Text::new("hd_refused.outward")
+            .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
         Refusal::Endless => Text::new("hd_refused.endless"),
@@ -54,6 +59,8 @@ pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
         Ended::NotStarted => Text::new("hd_end.not_started"),
         Ended::Left(own) => Text::new("hd_end.left").with_text("state", state(own)),
         Ended::Short => Text::new("hd_end.short"),
+        Ended::Beyond { position } => Text::new("hd_end.beyond").with_text("position", place(position)),
+        Ended::WrongWay { position } => Text::new("hd_end.wrong_way").with_text("position", place(position)),
     }
 }
 
@@ -68,7 +75,9 @@ pub const fn weight(ended: Ended) -> Severity {
         | Ended::Fault
         | Ended::NoAnswer(_)
         | Ended::NotStarted
-        | Ended::Left(_) => Severity::Error,
+        | Ended::Left(_)
+        | Ended::Beyond { .. }
+        | Ended::WrongWay { .. } => Severity::Error,
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Connection {
     figures: LinkFigures,
 }
 
-/// Without a packet for so many intervals, the connection is lost.
+/// Without a packet for so many intervals, nothing moves, and a connection over which something moves is lost.
 const LOST: u32 = 3;
 /// Until the first packet comes.
 const FIRST: Duration = Duration::from_secs(1);
@@ -81,17 +81,18 @@ impl Connection {
         self.began && now.since(self.heard) > self.come_interval * LOST
     }
 
-    /// How long nothing has come, where that is too long: three intervals of listening. Whoever was kept from listening by a
-    /// busy computer cannot tell whether nothing came, and what came may still be on its way to him; but no longer than the
-    /// target waits for a packet of ours.
-    pub fn silent(&mut self, now: Moment) -> Option<Duration> {
+    /// How long nothing has come, where that is too long. While something moves that is three intervals of listening: whoever
+    /// was kept from listening by a busy computer cannot tell whether nothing came, and what came may still be on its way to
+    /// him. At rest, and in any case, it is as long as the target itself waits for a packet of ours.
+    pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
         }
+        let intervals = self.come_interval * LOST;
         let silence = now.since(self.heard);
-        let patience = if self.began { self.come_interval * LOST } else { FIRST.max(self.come_interval * LOST) };
         let listened = now.since(self.heard.max(self.awake));
-        (listened > patience || silence > self.timeout.max(patience)).then_some(silence)
+        let most = if self.began { self.timeout.max(intervals) } else { FIRST.max(self.timeout) };
+        (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
 
     /// A packet has come: what it says, where it counts.

@@ -109,7 +109,8 @@ impl Drives {
         if now < self.poll_at() || self.is_over() {
             return None;
         }
-        if let Some(after) = self.connection.silent(now) {
+        let moves = self.men().any(|man| !man.is_idle());
+        if let Some(after) = self.connection.silent(now, moves) {
             self.lose(now, CyclicLost::Silent { after });
         }
         if self.connection.is_quiet(now) {

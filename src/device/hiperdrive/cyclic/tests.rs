@@ -164,7 +164,7 @@ impl Bench {
 
     fn jogs() -> Self {
         let mut bench = Bench::new();
-        bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG });
+        bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
         assert_eq!(bench.cycles(40).join(" "), "0400 0401 0409 1419 1459");
         bench
     }
@@ -185,7 +185,7 @@ fn a_loss_stops_and_stays() {
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_over());
     bench.answers = true;
-    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG });
+    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
@@ -214,6 +214,29 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
     assert!(bench.drives.lost().is_none(), "listened for 20 ms");
     bench.cycles(2);
     assert!(bench.drives.lost().is_some(), "listened for 40 ms");
+}
+
+/// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing before.
+#[test]
+fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
+    let mut bench = Bench::new();
+    bench.act(Wish::Lead(Goal::Enabled));
+    bench.cycles(20);
+    for missing in [3, 5, 7] {
+        bench.answers = false;
+        bench.cycles(missing);
+        assert!(bench.drives.lost().is_none(), "{missing} missing");
+        bench.answers = true;
+        bench.cycles(3);
+    }
+    // Nothing begins meanwhile.
+    bench.answers = false;
+    bench.cycles(4);
+    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    assert_eq!(bench.cycles(3).join(" "), "0409");
+    assert_eq!(bench.drives.men().next().unwrap().ended(), Some((2, Ended::Deaf)));
+    bench.cycles(2);
+    assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
 }
 
 /// Closing is: stop, stand, off three times.
@@ -303,7 +326,10 @@ proptest! {
         let after = bench.drives.figures();
         prop_assert_eq!(after.malformed + after.received + after.stale, before.malformed + before.received + packets.len() as u64);
         prop_assert_eq!(after.received, before.received);
-        bench.cycles(5);
+        // At rest it is kept for as long as the target waits, which is eight intervals here.
+        bench.cycles(8);
+        prop_assert!(bench.drives.lost().is_none());
+        bench.cycles(2);
         prop_assert!(bench.drives.lost().is_some());
     }
 

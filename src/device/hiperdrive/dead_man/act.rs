@@ -49,8 +49,10 @@ pub enum Wish {
     Jog {
         /// Which way.
         direction: Direction,
-        /// How fast and how strong.
+        /// How fast and how strong; slowly ([`Effort::JOG`]) where it leads further out.
         effort: Effort,
+        /// From outside the limits it may lead further out: a wrong reference can make that the only way back.
+        outward: bool,
     },
     /// Turning in speed mode.
     Run {
@@ -113,6 +115,8 @@ pub enum Lock {
     NotRequested,
     /// Its parameters were read too long ago: another master may have changed them since.
     Outdated,
+    /// The device does not answer explicit messages any more.
+    NoAnswer,
 }
 
 /// What a drive does for its person.
@@ -198,6 +202,16 @@ pub enum Ended {
     Left(State),
     /// The drive stands, but has not reached its target.
     Short,
+    /// The drive is beyond its limits.
+    Beyond {
+        /// In steps as scaled.
+        position: i32,
+    },
+    /// The drive moves away from its target, or further out from outside its limits.
+    WrongWay {
+        /// In steps as scaled.
+        position: i32,
+    },
 }
 
 /// Why an act was refused.
@@ -211,6 +225,15 @@ pub enum Refusal {
     Outside {
         /// In steps as scaled.
         target: i32,
+        /// Parameter 158.
+        low: i32,
+        /// Parameter 160.
+        high: i32,
+    },
+    /// It is outside its limits, and this would lead further out.
+    Outward {
+        /// In steps as scaled.
+        position: i32,
         /// Parameter 158.
         low: i32,
         /// Parameter 160.
@@ -252,8 +275,9 @@ impl Wish {
     }
 
     /// How fast and how strong, where it says so.
-    pub const fn effort(self) -> Option<Effort> {
+    pub fn effort(self) -> Option<Effort> {
         match self {
+            Wish::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
             Wish::Move { effort, .. }
             | Wish::Step { effort, .. }
             | Wish::Jog { effort, .. }
@@ -296,6 +320,11 @@ impl Effort {
     /// torque that an axis may need.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
+    /// No faster and no stronger than another one.
+    pub fn at_most(self, other: Effort) -> Self {
+        Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
+    }
+
     /// 0 % of one of them: nothing would begin.
     pub const fn is_none(self) -> bool {
         self.speed.get() == 0 || self.torque.get() == 0
@@ -317,9 +346,9 @@ impl Default for Permit {
 }
 
 impl Permit {
-    /// Motion within these limits, with nothing against it; a degree is a step.
+    /// Motion within these limits, with nothing against it, under the factory's scale of 65536 steps a turn.
     pub const fn within(low: i32, high: i32) -> Self {
-        Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, degree: 1 }
+        Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, degree: 183 }
     }
 
     /// Whether a motion may begin, or go on. `target` is where it leads, for what leads somewhere.

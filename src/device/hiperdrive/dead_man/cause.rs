@@ -43,7 +43,7 @@ impl DeadMan {
         }
     }
 
-    fn cause(&self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) -> Option<Ended> {
+    fn cause(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let act = self.act?;
         let status = actual.status;
         let state = status.state();
@@ -77,7 +77,7 @@ impl DeadMan {
         }
         let motion = act.motion?;
         match permit.check(motion.wish, motion.motive.target()) {
-            Ok(()) => None,
+            Ok(()) => self.watch_motion(actual, permit),
             Err(Refusal::Locked(lock)) => Some(Ended::Locked(lock)),
             Err(refusal) => Some(Ended::Refused(refusal)),
         }

@@ -113,7 +113,8 @@ impl DeadMan {
                 if begun {
                     self.stage = Stage::Go { since: mark, acknowledged, stands: None };
                 } else if now.since(since.at) >= START {
-                    self.stop(now, Ended::NotStarted);
+                    let at_end = self.act.and_then(|act| act.watch).is_some_and(|watch| watch.at_end);
+                    self.stop(now, if at_end { Ended::RangeEnd } else { Ended::NotStarted });
                 }
             }
             Stage::Go { since, acknowledged, stands } => {

@@ -44,7 +44,11 @@ fn wish() -> impl Strategy<Value = Wish> {
         (0usize..4).prop_map(|goal| Wish::Lead(Goal::ALL[goal])),
         (any::<i32>(), effort.clone()).prop_map(|(target, effort)| Wish::Move { target: target % 2000, effort }),
         (any::<i32>(), effort.clone()).prop_map(|(by, effort)| Wish::Step { by: by % 500, effort }),
-        (direction.clone(), effort.clone()).prop_map(|(direction, effort)| Wish::Jog { direction, effort }),
+        (direction.clone(), effort.clone()).prop_map(|(direction, effort)| Wish::Jog {
+            direction,
+            effort,
+            outward: false
+        }),
         (direction, end, effort).prop_map(|(direction, end, effort)| Wish::Run { direction, end, effort }),
     ]
 }
@@ -102,7 +106,7 @@ fn nothing_begins_with_a_word_that_stands() {
 fn out_of_speed_mode_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
     let permit = Permit::within(-1000, 1000);
-    let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG };
+    let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
     let mut status = 0x2A37;
     let mut words = Vec::new();
     for at in 0..100u64 {

@@ -1,0 +1,189 @@
+//! The watch over a motion: the position of every report is held against the limits and the target, so that a drive that
+//! ignores its limits or turns the wrong way is stopped with the very next packet.
+//!
+//! | case | what holds |
+//! |---|---|
+//! | endless run | an expert's run without an end is not watched: there is no limit that it obeys |
+//! | unread limits | nothing moves, and what moves is stopped: the permit says so |
+//! | already outside | the way back in is free; further out only where that was freed for this press |
+//! | overrun while braking | a stop that is under way goes on; its reason stays |
+//!
+//! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
+//! ±1° (manual, technical data; reference 5).
+
+use super::{DeadMan, Ended, Motion, Motive, Permit, Refusal, Stage, Wish};
+use crate::protocol::hiperdrive::{Actual, Direction, RunEnd, StatusBit};
+
+/// A side of the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Below the lower limit.
+    Below,
+    /// Above the upper limit.
+    Above,
+}
+
+/// How a motion has gone so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    /// It began outside the limits, on this side, and has not been inside since.
+    outside: Option<Side>,
+    /// Of a motion that began outside: the place nearest to the range so far; of a job: the least distance to the target.
+    best: i64,
+    /// A run began at the end of the range to which it leads: there may be nowhere to go.
+    pub(super) at_end: bool,
+}
+
+/// Degrees of accuracy: ±2.5° (manual, technical data; reference 5), as whole degrees.
+const ACCURACY: i64 = 3;
+
+/// Where a drive is beyond its limits: by its position, or by status bit 15 alone, on the nearer side then.
+pub fn outside(actual: Actual, (low, high): (i32, i32)) -> Option<Side> {
+    let nearer = || {
+        let above =
+            Side::Above.beyond(actual.position, (low, high)) >= Side::Below.beyond(actual.position, (low, high));
+        if above { Side::Above } else { Side::Below }
+    };
+    let by_status = || actual.status.has(StatusBit::PositionLimit).then(nearer);
+    side(actual.position, (low, high)).or_else(by_status)
+}
+
+fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
+    (position > high).then_some(Side::Above).or_else(|| (position < low).then_some(Side::Below))
+}
+
+impl Side {
+    /// Steps beyond the limit of this side; negative inside.
+    fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
+        match self {
+            Side::Above => i64::from(position) - i64::from(high),
+            Side::Below => i64::from(low) - i64::from(position),
+        }
+    }
+
+    /// The direction that leads further out. Clockwise counts up (`U`: the manual does not say so; a drive that counts the
+    /// other way is seen by its positions).
+    pub const fn outward(self) -> Direction {
+        match self {
+            Side::Above => Direction::Clockwise,
+            Side::Below => Direction::Counterclockwise,
+        }
+    }
+}
+
+impl Motion {
+    /// The limits that this motion has to obey: none for an endless run.
+    fn limits(&self, permit: &Permit) -> Option<(i32, i32)> {
+        let endless = matches!(self.motive, Motive::Run { end: RunEnd::Endless, .. });
+        permit.limits.filter(|_| !endless)
+    }
+
+    /// A person has freed the way further out for this press.
+    const fn is_freed(&self) -> bool {
+        matches!(self.wish, Wish::Jog { outward: true, .. })
+    }
+}
+
+impl Watch {
+    /// At the beginning of a motion.
+    pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
+        let limits = motion.limits(permit);
+        let outside = limits.and_then(|limits| outside(actual, limits));
+        let best = match (motion.motive, outside, limits) {
+            (Motive::Job { target }, ..) => distance(actual, target),
+            (_, Some(side), Some(limits)) => side.beyond(actual.position, limits),
+            _ => 0,
+        };
+        let at_end = match (motion.motive, limits) {
+            (Motive::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
+                side.outward() == direction && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
+            }),
+            _ => false,
+        };
+        Watch { outside, best, at_end }
+    }
+
+    /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
+    pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let degree = i64::from(permit.degree);
+        let beyond = Some(Ended::Beyond { position: actual.position });
+        let wrong_way = Some(Ended::WrongWay { position: actual.position });
+        if let Motive::Job { target } = motion.motive {
+            let distance = distance(actual, target);
+            self.best = self.best.min(distance);
+            // Where it arrives it may overshoot by its accuracy.
+            let allowed = if self.best <= ACCURACY * degree { ACCURACY * degree } else { degree };
+            if distance > self.best.saturating_add(allowed) {
+                return wrong_way;
+            }
+            if distance <= degree {
+                // The target lies within the limits: a degree beside it is no overrun.
+                return None;
+            }
+        }
+        let limits = motion.limits(permit)?;
+        let Some(began) = self.outside else {
+            let steps = outside(actual, limits)?.beyond(actual.position, limits);
+            let at_end = matches!(motion.motive, Motive::Run { .. }) && steps.abs() <= degree;
+            return if at_end { Some(Ended::RangeEnd) } else { beyond };
+        };
+        match side(actual.position, limits) {
+            // Through the whole range, and out at the other side.
+            Some(side) if side != began => return beyond,
+            // Status bit 15 may be late.
+            None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
+            _ if matches!(motion.motive, Motive::Run { .. }) && !motion.is_freed() => {
+                let steps = began.beyond(actual.position, limits);
+                self.best = self.best.min(steps);
+                if steps > self.best.saturating_add(degree) {
+                    return wrong_way;
+                }
+            }
+            _ => {}
+        }
+        None
+    }
+}
+
+impl Permit {
+    /// Whether a motion may begin where the drive is: from outside its limits only back in, unless the way further out was
+    /// freed for this press.
+    ///
+    /// # Errors
+    /// [`Refusal::Outward`].
+    pub fn check_place(&self, wish: Wish, actual: Actual) -> Result<(), Refusal> {
+        let (direction, freed) = match wish {
+            Wish::Jog { direction, outward, .. } => (direction, outward),
+            Wish::Run { direction, end: RunEnd::RangeEnd, .. } => (direction, false),
+            _ => return Ok(()),
+        };
+        let Some(limits) = self.limits else { return Ok(()) };
+        match outside(actual, limits) {
+            Some(side) if side.outward() == direction && !freed => {
+                Err(Refusal::Outward { position: actual.position, low: limits.0, high: limits.1 })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl DeadMan {
+    /// Holds what the drive says now against the limits and the target of its motion.
+    pub(super) fn watch_motion(&mut self, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let act = self.act.as_mut()?;
+        let motion = act.motion.as_ref()?;
+        if !self.stage.moves() {
+            // Before it begins, and while a job waits.
+            act.watch = None;
+            return match self.stage {
+                Stage::Paused { .. } => None,
+                _ => permit.check_place(motion.wish, actual).err().map(Ended::Refused),
+            };
+        }
+        act.watch.get_or_insert_with(|| Watch::begin(motion, actual, permit)).look(motion, actual, permit)
+    }
+}
+
+fn distance(actual: Actual, target: i32) -> i64 {
+    i64::from(actual.position).abs_diff(i64::from(target)).try_into().unwrap_or(i64::MAX)
+}

@@ -1,0 +1,156 @@
+//! The watch over explicit messages while drives are in control: how long the device has left a request without an answer. A
+//! device that is silent there ends a motion as fast as any other loss, though its cyclic packets go on.
+//!
+//! | what | time |
+//! |---|---|
+//! | a request, at least, while a drive moves ([`REQUEST`]) | 80 ms |
+//! | without an answer, at most ([`PATIENCE`]), or twice what the device has taken lately | 140 ms |
+//! | together | 220 ms |
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::Motion;
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::protocol::ethernet_ip::Receiver;
+use crate::units::{CharacterFormat, Moment};
+
+/// While a drive moves, something is asked at least so often.
+pub(super) const REQUEST: Duration = Duration::from_millis(80);
+/// How long a device may leave a request unanswered while a drive moves.
+const PATIENCE: Duration = Duration::from_millis(140);
+/// No device is given more, however slow it was.
+const MOST_PATIENCE: Duration = Duration::from_secs(1);
+
+/// Requests and answers over one connection.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct SessionWatch {
+    /// When the first request was sent that has no answer yet.
+    asked: Option<Moment>,
+    /// The slowest answer, fading with each faster one.
+    slowest: Duration,
+    /// What came last was no frame.
+    broken: bool,
+}
+
+impl SessionWatch {
+    /// A request goes out.
+    pub(super) const fn ask(&mut self, now: Moment) {
+        if self.asked.is_none() {
+            self.asked = Some(now);
+        }
+    }
+
+    /// A frame came.
+    pub(super) fn answer(&mut self, now: Moment) {
+        self.broken = false;
+        if let Some(asked) = self.asked.take() {
+            self.slowest = now.since(asked).max(self.slowest * 7 / 8);
+        }
+    }
+
+    /// Bytes came that are no frame.
+    pub(super) const fn break_off(&mut self) {
+        self.broken = true;
+    }
+
+    /// The device has not answered for too long to move anything, or with bytes that are no frame.
+    pub(super) fn is_silent(&self, now: Moment) -> bool {
+        let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
+        self.broken || self.asked.is_some_and(|asked| now.since(asked) > patience)
+    }
+}
+
+/// A wire on which requests and answers are watched.
+pub(super) struct WatchedWire {
+    wire: Box<dyn ByteLink>,
+    clock: Arc<dyn Clock>,
+    motion: Motion,
+    frames: Receiver,
+}
+
+impl WatchedWire {
+    pub(super) fn new(wire: Box<dyn ByteLink>, clock: Arc<dyn Clock>, motion: Motion) -> Self {
+        WatchedWire { wire, clock, motion, frames: Receiver::default() }
+    }
+}
+
+impl ByteLink for WatchedWire {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let now = self.clock.now();
+        self.motion.with_session(|session| session.ask(now));
+        self.wire.send(bytes)
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let before = into.len();
+        self.wire.receive(until, into)?;
+        let now = self.clock.now();
+        self.frames.push(into.get(before..).unwrap_or_default());
+        loop {
+            match self.frames.next_frame() {
+                Ok(Some(_)) => self.motion.with_session(|session| session.answer(now)),
+                Ok(None) => return Ok(()),
+                Err(_) => {
+                    self.frames = Receiver::default();
+                    self.motion.with_session(SessionWatch::break_off);
+                }
+            }
+        }
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        self.wire.set_format(format)
+    }
+
+    fn sets_format(&self) -> bool {
+        self.wire.sets_format()
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    /// Issue 21.13: 140 ms of silence are too long, counted from the first request without an answer.
+    #[test]
+    fn silence_counts_from_the_first_request_without_an_answer() {
+        let mut watch = SessionWatch::default();
+        assert!(!watch.is_silent(at(10_000)), "nothing was asked");
+        watch.ask(at(100));
+        watch.ask(at(180));
+        assert!(!watch.is_silent(at(240)) && watch.is_silent(at(241)));
+        watch.answer(at(250));
+        assert!(!watch.is_silent(at(1000)), "it was answered");
+        watch.break_off();
+        assert!(watch.is_silent(at(1000)), "with bytes that are no frame");
+        watch.answer(at(1001));
+        assert!(!watch.is_silent(at(1001)));
+    }
+
+    /// A device that takes 300 ms for each answer is given 600, and less again when it has become fast.
+    #[test]
+    fn a_slow_device_is_given_more_time() {
+        let mut watch = SessionWatch::default();
+        watch.ask(at(0));
+        watch.answer(at(300));
+        watch.ask(at(1000));
+        assert!(!watch.is_silent(at(1600)) && watch.is_silent(at(1601)));
+        watch.answer(at(6000));
+        watch.ask(at(7000));
+        assert!(!watch.is_silent(at(8000)) && watch.is_silent(at(8001)), "never more than a second");
+        for step in 0..40 {
+            watch.answer(at(8100 + step * 100));
+            watch.ask(at(8190 + step * 100));
+        }
+        assert!(watch.is_silent(at(12_090 + 400)), "{watch:?}");
+    }
+}

@@ -1,0 +1,259 @@
+//! Drives that ignore their limits or turn the wrong way: the dead-man sees it in their positions (issues 21.4 and 21.5).
+//!
+//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps a millisecond, 382 in an interval of 10 ms.
+
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Permit, Phase, Refusal, Wish};
+use encoder_studio::protocol::hiperdrive::{Direction, RunEnd, StatusBit};
+use encoder_studio::sim::hiperdrive::{Defect, Load};
+
+use super::bench::Bench;
+use super::{FULL, TURN, to};
+
+const DEGREE: i32 = 183;
+/// 35 rpm · 65536 steps / 60 s / 100 intervals a second.
+const INTERVAL_AT_FULL_SPEED: i32 = 383;
+const LIMITS: (i32, i32) = (-TURN, TURN);
+
+fn jog(direction: Direction, effort: Effort, outward: bool) -> Wish {
+    Wish::Jog { direction, effort, outward }
+}
+
+fn run(direction: Direction, end: RunEnd) -> Wish {
+    Wish::Run { direction, end, effort: FULL }
+}
+
+/// A drive with a defect between ±1 turn.
+fn bench(defect: Option<Defect>) -> Bench {
+    let mut bench = Bench::new();
+    bench.write(158, LIMITS.0.into());
+    bench.write(160, LIMITS.1.into());
+    bench.permit = Permit::within(LIMITS.0, LIMITS.1);
+    bench.load(Load { defect, ..Load::default() });
+    bench
+}
+
+/// A drive that stands outside, so many steps beyond its upper limit (or below the lower one).
+fn bench_outside(beyond: i32, defect: Option<Defect>) -> Bench {
+    let mut bench = bench(None);
+    bench.act(to(if beyond > 0 { TURN } else { -TURN }));
+    assert_eq!(bench.until_over(), Ended::Arrived);
+    bench.run(100);
+    // The numbers of the places change, as with a limit that another master writes.
+    let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
+    bench.permit = Permit::within(low, high);
+    bench.load(Load { defect, ..Load::default() });
+    bench
+}
+
+/// Until the word commands no motion any more: how many intervals after the report that first showed a position beyond
+/// `limit`, and the position then.
+fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
+    let mut past = None;
+    for _ in 0..6000 {
+        let position = bench.position();
+        let sent = bench.cycle();
+        let is_past = if limit > 0 { position > limit } else { position < limit };
+        if is_past {
+            past = Some(past.map_or(0, |count: u32| count + 1));
+        }
+        if sent.control.is_standing() && past.is_some() {
+            return (past.unwrap(), position);
+        }
+    }
+    panic!("it is never stopped: {:?}", bench.man.phase());
+}
+
+/// Issue 21.4: the packet behind the report that shows a position beyond a limit commands no motion any more, though the
+/// drive goes on.
+#[test]
+fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
+    for effort in [Effort::JOG, FULL] {
+        for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
+            for wish in [jog(direction, effort, false), Wish::Run { direction, end: RunEnd::RangeEnd, effort }] {
+                let mut bench = bench(Some(Defect::RunsOn));
+                bench.act(wish);
+                let (intervals, position) = intervals_past(&mut bench, limit);
+                assert_eq!(intervals, 0, "{wish:?}");
+                let beyond = (position - limit).abs();
+                assert!(beyond <= INTERVAL_AT_FULL_SPEED, "{wish:?}: {beyond} steps beyond");
+                let (_, ended) = bench.man.ended().unwrap();
+                let expected = if beyond <= DEGREE { Ended::RangeEnd } else { Ended::Beyond { position } };
+                assert_eq!(ended, expected, "{wish:?}");
+                assert!(bench.actual().status.has(StatusBit::PositionLimit));
+                bench.run(500);
+                assert!(!bench.moves(), "{wish:?}");
+            }
+        }
+    }
+}
+
+/// Issue 21.4: status bit 15 ends a run as well, also where the position is within the limits that were read.
+#[test]
+fn bit_15_ends_a_run() {
+    let mut bench = bench(Some(Defect::RunsOn));
+    bench.permit = Permit::within(-9 * TURN, 9 * TURN);
+    bench.act(jog(Direction::Clockwise, FULL, false));
+    let (intervals, position) = intervals_past(&mut bench, TURN);
+    assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::Beyond { position }));
+}
+
+/// Issue 21.4, case *endless run*: an expert's run is not held against limits that it is to ignore.
+#[test]
+fn an_endless_run_is_not_watched() {
+    let mut bench = bench(None);
+    bench.permit.endless = true;
+    bench.act(run(Direction::Clockwise, RunEnd::Endless));
+    bench.run(5000);
+    assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.ended());
+}
+
+/// Issue 21.4, case *unread limits*: what moves is stopped with the next packet.
+#[test]
+fn a_run_ends_where_its_limits_are_not_known_any_more() {
+    let mut bench = bench(None);
+    bench.act(jog(Direction::Clockwise, FULL, false));
+    bench.run(1000);
+    bench.permit = Permit::default();
+    assert!(bench.cycle().control.is_standing());
+    assert!(matches!(bench.man.ended(), Some((_, Ended::Locked(_)))), "{:?}", bench.man.ended());
+}
+
+/// Issue 21.4, case *already outside*: back in is free, further out is refused before anything is sent.
+#[test]
+fn from_outside_only_the_way_in_is_free() {
+    for (beyond, inward, outward) in [
+        (5000, Direction::Counterclockwise, Direction::Clockwise),
+        (-5000, Direction::Clockwise, Direction::Counterclockwise),
+    ] {
+        for wish in [jog(outward, FULL, false), run(outward, RunEnd::RangeEnd)] {
+            let mut bench = bench_outside(beyond, None);
+            let (low, high) = bench.permit.limits.unwrap();
+            bench.act(wish);
+            let position = bench.position();
+            assert_eq!(bench.until_over(), Ended::Refused(Refusal::Outward { position, low, high }), "{wish:?}");
+            bench.run(300);
+            assert_eq!(bench.position(), position, "{wish:?}");
+        }
+        for wish in [jog(inward, FULL, false), run(inward, RunEnd::RangeEnd)] {
+            let mut bench = bench_outside(beyond, None);
+            bench.act(wish);
+            bench.run(1500);
+            assert!(matches!(bench.man.phase(), Phase::Moving(_)), "{wish:?}: {:?}", bench.man.ended());
+            let (low, high) = bench.permit.limits.unwrap();
+            assert!((low..=high).contains(&bench.position()), "{wish:?}: it is back in");
+        }
+        // A move to a target within the limits leads in as well.
+        let mut bench = bench_outside(beyond, None);
+        bench.act(to(0));
+        assert_eq!(bench.until_over(), Ended::Arrived);
+    }
+}
+
+/// Issue 21.4: the way out that was freed for one press is slow and weak, whatever is asked for, and for that press alone.
+#[test]
+fn the_way_out_can_be_freed_for_one_press() {
+    let mut bench = bench_outside(5000, None);
+    // The drive's own limit leaves room.
+    bench.write(160, (2 * TURN).into());
+    let stood = bench.position();
+    bench.act(jog(Direction::Clockwise, FULL, true));
+    bench.run(1500);
+    assert!(bench.position() > stood + 1000 && matches!(bench.man.phase(), Phase::Moving(_)));
+    assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+    bench.act(Wish::Stop);
+    bench.run(500);
+    bench.act(jog(Direction::Clockwise, FULL, false));
+    assert!(matches!(bench.until_over(), Ended::Refused(Refusal::Outward { .. })));
+    // Freed for nothing: from inside the limits hold.
+    let mut bench = super::watch::bench(Some(Defect::RunsOn));
+    bench.act(jog(Direction::Clockwise, FULL, true));
+    assert_eq!(intervals_past(&mut bench, TURN).0, 0);
+}
+
+/// Issue 21.4: a drive that counts the other way moves out where it should come in: stopped within a degree.
+#[test]
+fn the_way_in_that_leads_out_is_stopped() {
+    let mut bench = bench_outside(5000, Some(Defect::Reversed));
+    bench.write(160, (2 * TURN).into());
+    let stood = bench.position();
+    bench.act(jog(Direction::Counterclockwise, Effort::JOG, false));
+    let Ended::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.ended()) };
+    assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
+    // Freed, the other way leads in.
+    bench.run(500);
+    bench.act(jog(Direction::Clockwise, Effort::JOG, true));
+    bench.run(1500);
+    assert!(bench.position() < stood);
+}
+
+/// Issue 21.4, case *overrun while braking*: the stop goes on, and keeps its reason.
+#[test]
+fn an_overrun_while_braking_changes_nothing() {
+    let mut bench = bench(Some(Defect::RunsOn));
+    bench.act(jog(Direction::Clockwise, FULL, false));
+    // At 35 rpm it brakes within 0.1 s, and goes 1911 steps on.
+    while bench.position() < TURN - 1000 {
+        bench.cycle();
+    }
+    let act = bench.act(Wish::Stop) - 1;
+    assert!(bench.cycle().control.is_standing());
+    bench.run(500);
+    assert!(bench.position() > TURN, "{}", bench.position());
+    assert_eq!(bench.man.ended(), Some((act, Ended::Stopped)));
+    assert!(!bench.moves());
+}
+
+/// Issue 21.5: a move that goes the wrong way is stopped with the report that shows more than a degree.
+#[test]
+fn a_move_the_wrong_way_is_stopped_at_once() {
+    for target in [TURN / 2, -TURN / 2] {
+        let mut bench = bench(Some(Defect::Reversed));
+        bench.act(to(target));
+        let (intervals, _) = intervals_past(&mut bench, -target.signum() * DEGREE);
+        assert_eq!(intervals, 0, "{target}");
+        assert!(matches!(bench.man.ended(), Some((_, Ended::WrongWay { .. }))), "{:?}", bench.man.ended());
+        assert!(bench.position().abs() <= DEGREE + 2 * INTERVAL_AT_FULL_SPEED, "{}", bench.position());
+    }
+}
+
+/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit beyond that limit.
+#[test]
+fn a_move_that_runs_on_is_stopped() {
+    for target in [TURN / 2, TURN, -TURN] {
+        let mut bench = bench(Some(Defect::RunsOn));
+        bench.act(to(target));
+        // Its accuracy is 2.5°: three whole degrees are allowed where it arrives, but one beyond a limit.
+        let degrees = if target.abs() == TURN { 1 } else { 3 };
+        let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
+        assert_eq!(intervals, 0, "{target}: stopped at {position}");
+        let beyond = Ended::Beyond { position };
+        let wrong_way = Ended::WrongWay { position };
+        let how = bench.man.ended().unwrap().1;
+        assert!(how == beyond || how == wrong_way, "{target}: {how:?}");
+        bench.run(500);
+        assert!(!bench.moves());
+    }
+}
+
+/// A drive without a defect is never stopped by the watch: at its limits, at any target, with reports that come late.
+#[test]
+fn a_sound_drive_arrives_everywhere() {
+    let mut dice = fastrand::Rng::with_seed(21);
+    let mut bench = bench(None);
+    for _ in 0..60 {
+        bench.late = dice.usize(..4);
+        let target = [LIMITS.0, LIMITS.1, 0, dice.i32(LIMITS.0..=LIMITS.1)][dice.usize(..4)];
+        bench.act(to(target));
+        assert_eq!(bench.until_over(), Ended::Arrived, "{target}");
+        assert_eq!(bench.position(), target);
+        if dice.bool() {
+            let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
+            bench.act(jog(direction, FULL, false));
+            bench.run(dice.u64(..8000));
+            bench.act(Wish::Stop);
+            bench.run(500);
+            let how = bench.man.ended().unwrap().1;
+            assert!(matches!(how, Ended::Stopped | Ended::RangeEnd), "{how:?}");
+        }
+    }
+}
