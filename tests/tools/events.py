@@ -137,15 +137,15 @@ def keys(*names):
     return lambda rig: rig.screen.press(*names)
 
 
-def click(name):
-    """The moment the button goes down on it."""
+def click(name, counts_down=True):
+    """The moment the button goes down on it, or up where only that counts."""
     def fire(rig):
         rig.at(name)
         time.sleep(0.1)
-        when = rig.screen.button(True)
+        down = rig.screen.button(True)
         time.sleep(0.05)
-        rig.screen.button(False)
-        return when
+        up_again = rig.screen.button(False)
+        return down if counts_down else up_again
     return fire
 
 
@@ -236,6 +236,18 @@ def key_on_other_tab(name):
     return begin
 
 
+def edit(rig):
+    """A parameter is another one than in the drive, so that closing the window is asked about."""
+    rig.click("parameters")
+    time.sleep(4.0)
+    rig.click("register 24")
+    rig.screen.press("7")
+    rig.screen.press("Return")
+    time.sleep(0.5)
+    rig.click("page")
+    time.sleep(1.0)
+
+
 def now(_rig):
     return time.monotonic_ns()
 
@@ -253,7 +265,8 @@ def escape(rig):
 
 
 MOUSE, SPACE, ENTER, JOB, RUN = "jog by mouse", "jog by Space", "jog by Enter", "move to a position", "run at a speed"
-BEGINS = {MOUSE: by_mouse, SPACE: by_space, ENTER: by_enter, JOB: by_job, RUN: by_run}
+REST = "none"
+BEGINS = {REST: nothing, MOUSE: by_mouse, SPACE: by_space, ENTER: by_enter, JOB: by_job, RUN: by_run}
 
 
 def event(name, motion, fire, **more):
@@ -287,7 +300,7 @@ EVENTS = [
     event("tab", SPACE, keys("Control_L", "1"), afterwards=tab_back),
     event("file dialog (Ctrl+O)", MOUSE, keys("Control_L", "o"), afterwards=escape),
     event("file dialog (Ctrl+O)", SPACE, keys("Control_L", "o"), afterwards=escape),
-    event("dialog (Connect…)", SPACE, click("connect"), afterwards=escape),
+    event("dialog (Connect…)", SPACE, click("connect", counts_down=False), afterwards=escape),
     event("help card", SPACE, keys("F1"), afterwards=keys("F1")),
     event("Esc", MOUSE, keys("Escape")),
     event("Esc", SPACE, keys("Escape")),
@@ -320,9 +333,13 @@ EVENTS = [
     event("X server killed", JOB, kill_server, destroys="all"),
     event("window closed", MOUSE, close_window, destroys="studio"),
     event("window closed", JOB, close_window, destroys="studio"),
+    event("window closed with unsaved edits", MOUSE, close_window, prepare=edit, destroys="studio"),
+    event("window closed with unsaved edits", JOB, close_window, prepare=edit, destroys="studio"),
     event("SIGTERM", MOUSE, to_process("studio", signal.SIGTERM), destroys="studio"),
     event("SIGTERM", JOB, to_process("studio", signal.SIGTERM), destroys="studio"),
     *losses(),
+    event("60 ms without cyclic data", MOUSE, drive("pause 60"), destroys="studio"),
+    event("60 ms without cyclic data", REST, drive("pause 60"), destroys="studio", may_rest=True, is_timed=False),
     event("limit, the drive stops", MOUSE, told("STAND", press=press_pad), begin=nothing, prepare=near_limit(),
           destroys="studio"),
     event("limit ignored by the drive", MOUSE, told("BEYOND", press=press_pad), begin=nothing,

@@ -13,6 +13,7 @@ goes on …) while the pad or the key is still held, and a packet that commands 
 """
 
 import argparse
+import collections
 import csv
 import json
 import os
@@ -34,10 +35,13 @@ AFTERWARDS = 3.0
 # 250 ms and one interval of 10 ms.
 BOUND = 260.0
 
+# How the connection ended, by the drive's record.
+CONNECTION = {"CLOSE": "closed", "LOST": "watchdog"}
+
 
 class Trial:
-    def __init__(self, event, latency=None, resumed=None, words=""):
-        self.event, self.latency, self.resumed, self.words = event, latency, resumed, words
+    def __init__(self, event, latency=None, resumed=None, words="", connection=""):
+        self.event, self.latency, self.resumed, self.words, self.connection = event, latency, resumed, words, connection
 
 
 def last_of(packets, fired):
@@ -85,6 +89,10 @@ def trial_of(rig, event):
         trial.resumed = bool(again)
         if again:
             trial.words = f"{len(again)} packets from {(again[0].at - fired) / MS:.0f} ms on, {again[0].word:04X}"
+    trial.connection = "kept" if event.destroys else ""
+    for at, what in rig.drive.events:
+        if at >= fired and what in CONNECTION:
+            trial.connection = CONNECTION[what]
     return trial
 
 
@@ -115,23 +123,26 @@ def row_of(event, trials):
     faults = ["late"] * (longest > BOUND) + ["resumes"] * bool(resumed)
     shown = ["goes on" if value == float("inf") else f"{value:.0f}" for value in (statistics.median(times), longest)]
     verdict = f"**{', '.join(faults)}**" if faults else ""
-    return [event.name, event.motion, str(len(trials)), *(shown if event.is_timed else ["", ""]), f"{resumed}", verdict]
+    ends = collections.Counter(trial.connection for trial in trials if trial.connection)
+    connection = ", ".join(f"{how} {count}" for how, count in sorted(ends.items()))
+    shown = shown if event.is_timed else ["", ""]
+    return [event.name, event.motion, str(len(trials)), *shown, f"{resumed}", connection, verdict]
 
 
-HEAD = ["event", "motion", "trials", "median ms", "longest ms", "resumed within 3 s", "fault"]
+HEAD = ["event", "motion", "trials", "median ms", "longest ms", "resumed", "connection", "fault"]
 
 
 def markdown(trials):
     measured = [(event, [trial for trial in trials if trial.event == event]) for event in EVENTS]
     rows = [row_of(event, own) for event, own in measured if own]
-    lines = ["| " + " | ".join(HEAD) + " |", "|---|---|--:|--:|--:|--:|---|"]
+    lines = ["| " + " | ".join(HEAD) + " |", "|---|---|--:|--:|--:|--:|---|---|"]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binary", help="the studio")
-    parser.add_argument("--count", type=int, default=10, help="trials of a quick event; of one that ends the session half as many")
+    parser.add_argument("--count", type=int, default=10, help="trials of a quick event; of one that ends a session half as many")
     parser.add_argument("--only", default="", help="names of events, or their beginnings, with commas")
     parser.add_argument("--list", action="store_true", help="name the events and end")
     parser.add_argument("--points", type=json.loads, default={}, help='places in the window: {"plus": [640, 400]}')
@@ -174,15 +185,15 @@ def earlier(path):
         return []
     by_name = {(event.name, event.motion): event for event in EVENTS}
     with open(path, newline="", encoding="utf-8") as lines:
-        return [Trial(by_name[name, motion], float(latency), resumed == "yes", words)
-                for name, motion, latency, resumed, words in csv.reader(lines) if (name, motion) in by_name]
+        return [Trial(by_name[name, motion], float(latency), resumed == "yes", *more)
+                for name, motion, latency, resumed, *more in csv.reader(lines) if (name, motion) in by_name]
 
 
 def keep(path, trials):
     if path:
         with open(path, "a", newline="", encoding="utf-8") as out:
             rows = [[trial.event.name, trial.event.motion, f"{trial.latency:.3f}", "yes" if trial.resumed else "no",
-                     trial.words] for trial in trials]
+                     trial.words, trial.connection] for trial in trials]
             csv.writer(out).writerows(rows)
 
 

@@ -40,7 +40,7 @@ class Message(ctypes.Structure):
 
 
 class Screen:
-    """Xvfb with openbox. Keys repeat after `delay` milliseconds, every `interval`; `priority` runs in both before they begin."""
+    """Xvfb with openbox; `priority` runs in both before they begin. Keys repeat after `delay` milliseconds, every `interval`."""
 
     def __init__(self, size="1500x1150", delay=250, interval=30, priority=None):
         options = ["-screen", "0", f"{size}x24", "-nolisten", "tcp", "-ardelay", str(delay), "-arinterval", str(interval)]
