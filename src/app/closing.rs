@@ -31,10 +31,11 @@ impl Studio {
         if let Some(unit) = device.hiperdrive_mut() {
             unit.moves.stop();
         }
-        if device.is_busy() || device.is_dirty() {
+        if device.is_busy() || device.is_dirty() || device.has_recorded_much() {
             let text = match (device.source(), device.is_dirty() && !device.keeps_edits()) {
                 (_, true) => "question.session_lost",
                 _ if device.is_busy() => "question.session_busy",
+                _ if !device.is_dirty() => "question.session_recording",
                 (Source::Link(_), false) => "question.session_edits",
                 (Source::File { .. } | Source::New { .. }, false) => "question.profile_edits",
             };
@@ -59,7 +60,7 @@ impl Studio {
         self.stop_motion();
         let busy = self.devices.iter().any(AnyDevice::is_busy);
         let edits = self.devices.iter().any(AnyDevice::is_dirty);
-        let recorded = self.devices.iter().any(|device| device.recorder().unsaved() >= MUCH);
+        let recorded = self.devices.iter().any(AnyDevice::has_recorded_much);
         if busy || edits || recorded {
             let lost = |device: &AnyDevice| device.is_dirty() && !device.keeps_edits();
             let text = match self.devices.iter().find(|device| lost(device)) {

@@ -11,6 +11,7 @@ pub use wish::Wish;
 
 use super::action::{Known, ReadError, ReviewAction};
 use super::biss;
+use super::closing::MUCH;
 use super::hiperdrive;
 use super::hiperface;
 use super::interbus;
@@ -315,6 +316,26 @@ impl AnyDevice {
 
     pub(super) fn recorder_mut(&mut self) -> &mut Recorder {
         each!(self, own => own.record.recorder_mut())
+    }
+
+    /// Its recorders: the one of what is shown first.
+    pub(super) fn recorders(&self) -> Vec<&Recorder> {
+        match self.hiperdrive() {
+            Some(unit) => unit.recorders().collect(),
+            None => vec![self.recorder()],
+        }
+    }
+
+    pub(super) fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
+        match self {
+            AnyDevice::Hiperdrive(unit) => unit.recorders_mut().collect(),
+            other => vec![other.recorder_mut()],
+        }
+    }
+
+    /// There are minutes of a recording that no table has.
+    pub(super) fn has_recorded_much(&self) -> bool {
+        self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
     }
 
     pub(super) fn suggested_file(&self) -> PathBuf {

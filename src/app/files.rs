@@ -124,10 +124,14 @@ impl Studio {
     }
 
     pub(super) fn table_written(&mut self, desk: Desk, exported: Exported) {
-        let lost = self
-            .recorder_mut(desk)
-            .and_then(|recorder| recorder.end_export(exported.number, matches!(exported.rows, Ok(Some(_)))))
-            .unwrap_or(0);
+        let is_written = matches!(exported.rows, Ok(Some(_)));
+        // Another drive may be shown by now.
+        let recorders = match desk {
+            Desk::Device(id) => self.device_mut(id).map(AnyDevice::recorders_mut).unwrap_or_default(),
+            Desk::Signals => vec![&mut self.signals.scope_mut().recorder],
+        };
+        let ended = recorders.into_iter().find_map(|recorder| recorder.end_export(exported.number, is_written));
+        let lost = ended.unwrap_or(0);
         let path = exported.path.display();
         let (severity, mut texts) = match &exported.rows {
             Ok(Some(rows)) => {
@@ -156,7 +160,7 @@ impl Studio {
     /// Hands samples over to the tables that are being written.
     pub(super) fn feed_exports(&mut self) {
         for device in &mut self.devices {
-            device.recorder_mut().feed_export();
+            device.recorders_mut().into_iter().for_each(Recorder::feed_export);
         }
         self.signals.scope_mut().recorder.feed_export();
     }

@@ -3,13 +3,18 @@
 
 use std::time::Duration;
 
-use jiff::Zoned;
+use jiff::{SignedDuration, Zoned};
 
 use crate::app::Text;
-use crate::app::recorder::{self, GroupId, Line, LineId, Recorder, Scale};
+use crate::app::closing::MUCH;
+use crate::app::recorder::{self, GroupId, Line, LineId, Recorder};
 use crate::signal::history::{Flags, Kind, Part, Value};
 use crate::signal::{Motion, Rates, Time, Unwrap};
 use crate::units::Moment;
+
+mod meaning;
+
+pub(super) use meaning::Meaning;
 
 /// Positions that are kept: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
@@ -27,16 +32,8 @@ const WATCHED: usize = 500_000;
 /// Nanoseconds that are shown to begin with.
 const SPAN: i64 = 30_000_000_000;
 
-/// What the positions of a device are.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Meaning {
-    /// Positions from one zero to the next, after which they go round; `None` for a linear one.
-    pub(super) range: Option<i64>,
-    /// The units of position, speed and acceleration, whose samples are in steps.
-    pub(super) scales: [Vec<Scale>; 3],
-    /// It does not turn.
-    pub(super) is_linear: bool,
-}
+/// Columns of positions: themselves, speed, acceleration.
+const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +55,11 @@ pub(super) trait Watchable: Clone + PartialEq {
 
     /// What it is called, and in which units it is seen.
     fn line(&self, group: GroupId) -> Line;
+
+    /// Samples of this go on as samples of the other, which may be seen in other units.
+    fn continues(&self, other: &Self) -> bool {
+        self == other
+    }
 }
 
 /// A watched value, or that there is none at the moment.
@@ -79,6 +81,8 @@ pub(super) struct Track<W> {
     /// Position, speed and acceleration as lines.
     pub(super) recorder: Recorder,
     positions: GroupId,
+    /// The lines of position, speed and acceleration.
+    lines: [LineId; 3],
     watched: Vec<Watched<W>>,
     /// What positions mean; `None` until the first.
     follower: Option<Follower>,
@@ -99,6 +103,8 @@ struct Watched<W> {
     what: W,
     group: GroupId,
     line: LineId,
+    /// It is recorded; else it was, and its samples are there still.
+    active: bool,
 }
 
 /// Makes positions that go on from positions that go round.
@@ -137,58 +143,6 @@ impl Follower {
     }
 }
 
-impl Meaning {
-    /// Of steps whose place in a revolution nobody knows.
-    pub(super) fn of_steps(range: Option<i64>) -> Self {
-        let scales = [
-            vec![Scale::new("unit.steps", 1.0, 0)],
-            vec![Scale::new("unit.steps_per_second", 1.0, 0)],
-            vec![Scale::new("unit.steps_per_second_squared", 1.0, 0)],
-        ];
-        Meaning { range, scales, is_linear: false }
-    }
-
-    /// Of a shaft with so many steps in a revolution, at least a part of one.
-    pub(super) fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
-        let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
-        let scales = [
-            vec![
-                Scale::new("unit.turns", turns, 5),
-                Scale::new("unit.degrees", 360.0 * turns, 3),
-                Scale::new("unit.steps", 1.0, 0),
-            ],
-            vec![
-                Scale::new("unit.revolutions_per_minute", 60.0 * turns, 2),
-                Scale::new("unit.degrees_per_second", 360.0 * turns, 1),
-                Scale::new("unit.steps_per_second", 1.0, 0),
-            ],
-            vec![
-                Scale::new("unit.revolutions_per_second_squared", turns, 3),
-                Scale::new("unit.radians_per_second_squared", std::f64::consts::TAU * turns, 2),
-                Scale::new("unit.steps_per_second_squared", 1.0, 0),
-            ],
-        ];
-        Meaning { range, scales, is_linear: false }
-    }
-
-    /// Of a linear encoder with steps of so many millimetres.
-    pub(super) fn of_millimetres(millimetres: f64) -> Self {
-        let scales = [
-            vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
-            vec![
-                Scale::new("unit.millimetres_per_second", millimetres, 3),
-                Scale::new("unit.metres_per_minute", millimetres * 0.06, 4),
-                Scale::new("unit.steps_per_second", 1.0, 0),
-            ],
-            vec![
-                Scale::new("unit.millimetres_per_second_squared", millimetres, 1),
-                Scale::new("unit.steps_per_second_squared", 1.0, 0),
-            ],
-        ];
-        Meaning { range: None, scales, is_linear: true }
-    }
-}
-
 impl<W: Watchable> Default for Track<W> {
     fn default() -> Self {
         Track::about(&Meaning::of_steps(None))
@@ -199,17 +153,12 @@ impl<W: Watchable> Track<W> {
     /// A recorder for positions that have this meaning.
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
-        let columns = [Kind::Whole, Kind::Real, Kind::Real];
-        let positions = recorder.add_group(&columns, CAPACITY, Some(APART));
-        let [position, speed, acceleration] = meaning.scales.clone();
-        let line = |column, name, heading, scales| Line::of(positions, column, Text::new(name), heading, scales);
-        recorder.add_line(line(0, "recorder.position", "position", position));
-        let name = if meaning.is_linear { "recorder.speed_linear" } else { "recorder.speed" };
-        recorder.add_line(line(1, name, "speed", speed).derived());
-        recorder.add_line(line(2, "recorder.acceleration", "acceleration", acceleration).derived().hidden());
+        let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
+        let lines = meaning.lines(positions).map(|line| recorder.add_line(line));
         Track {
             recorder,
             positions,
+            lines,
             watched: Vec::new(),
             follower: None,
             dropped: 0,
@@ -301,33 +250,53 @@ impl<W: Watchable> Track<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Records these values too, and no others beside the position.
+    /// Records these values too, and no others beside the position. What was recorded of others stays.
     pub(super) fn watch(&mut self, wished: &[W]) {
-        for own in std::mem::take(&mut self.watched) {
-            if wished.contains(&own.what) {
-                self.watched.push(own);
+        let mut kept = Vec::new();
+        for mut own in std::mem::take(&mut self.watched) {
+            if !own.active || wished.iter().any(|what| own.what.continues(what)) {
+                kept.push(own);
+            } else if self.recorder.has_samples(own.line) {
+                self.end(own.line);
+                own.active = false;
+                kept.push(own);
             } else {
                 self.recorder.remove_line(own.line);
             }
         }
-        for what in wished {
-            if self.watched.iter().all(|own| own.what != *what) {
-                let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
-                let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));
-                let line = self.recorder.add_line(what.line(group));
-                self.watched.push(Watched { what: what.clone(), group, line });
-            }
+        // A recording that was cleared has no lines that have ended.
+        kept.retain(|own| self.recorder.line(own.line).is_some());
+        self.watched = kept;
+        wished.iter().for_each(|what| self.begin_to_watch(what));
+    }
+
+    fn begin_to_watch(&mut self, what: &W) {
+        let Some(own) = self.watched.iter_mut().find(|own| own.what.continues(what)) else {
+            let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
+            let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));
+            let line = self.recorder.add_line(what.line(group));
+            return self.watched.push(Watched { what: what.clone(), group, line, active: true });
+        };
+        let goes_on = std::mem::replace(&mut own.active, true);
+        if goes_on && own.what == *what {
+            return;
         }
+        own.what = what.clone();
+        let line = what.line(own.group);
+        if !goes_on {
+            self.recorder.resume_line(own.line, line.name.clone(), line.heading.clone());
+        }
+        self.recorder.rescale(own.line, line.scales().to_vec());
     }
 
     /// What is recorded beside the position.
     pub(super) fn watched(&self) -> Vec<W> {
-        self.watched.iter().map(|own| own.what.clone()).collect()
+        self.watched.iter().filter(|own| own.active).map(|own| own.what.clone()).collect()
     }
 
     /// Records a watched value.
     pub(super) fn add_watched(&mut self, what: &W, watching: &Watching) {
-        let Some(own) = self.watched.iter().find(|own| own.what == *what) else { return };
+        let Some(own) = self.watched.iter().find(|own| own.active && own.what == *what) else { return };
         let (group, line) = (own.group, own.line);
         let mut flags = if watching.value.is_some() { Flags::NONE } else { Flags::BAD };
         if watching.is_warned {
@@ -352,38 +321,88 @@ impl<W: Watchable> Track<W> {
 
     /// Positions that are recorded.
     pub(super) fn positions(&self) -> u64 {
-        let line = self.recorder.lines().first();
-        let all = line.and_then(|line| self.recorder.history(line)).map(|history| history.all());
+        let [line, ..] = self.lines;
+        let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Another device: nothing of what was recorded is about it. What is watched stays.
+    /// Another device: nothing of what was recorded is about it, and of minutes that no table has it stays. What is watched
+    /// is watched on.
     pub(super) fn forget(&mut self) {
-        let (began, watched) = (self.began.take(), self.watched());
-        *self = Track { began, ..Track::default() };
+        let watched = self.watched();
+        if self.recorder.unsaved() >= MUCH {
+            self.watch(&[]);
+            self.watched.clear();
+            self.part(&Meaning::of_steps(None));
+            self.follower = None;
+        } else {
+            let (began, shift, apart) = (self.began.take(), self.shift, self.apart);
+            *self = Track { began, shift, apart, ..Track::default() };
+        }
         self.watch(&watched);
     }
 
-    /// Everything that was recorded is read anew: the clocks stay as they are.
-    pub(super) fn begin_again(&mut self) {
+    /// What was recorded is read anew, as far as so many words are kept of it: the clocks stay as they are. Where that is not
+    /// all of it, what was recorded stays too.
+    pub(super) fn begin_again(&mut self, kept: usize) {
+        if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
+            self.part(&Meaning::of_steps(None));
+            (self.follower, self.newest) = (None, None);
+            return;
+        }
         let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.span());
         *self = Track { began, shift, apart, ..Track::default() };
         self.recorder.act(recorder::Action::SetSpan(span));
     }
 
-    /// Positions mean this from now on. What was recorded with another meaning cannot be seen in the same units.
+    /// Positions mean this from now on. What was recorded with another meaning stays as it was, in lines that end here.
     fn see(&mut self, meaning: &Meaning) {
-        if self.follower.as_ref().is_some_and(|follower| follower.meaning == *meaning) {
+        if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
+            if own.meaning != *meaning {
+                own.meaning = meaning.clone();
+                let lines = self.lines.into_iter().zip(meaning.scales.clone());
+                lines.for_each(|(line, scales)| self.recorder.rescale(line, scales));
+            }
             return;
         }
-        let watched = self.watched();
-        let before = std::mem::replace(self, Track::about(meaning));
-        self.recorder.act(recorder::Action::SetSpan(before.recorder.span()));
-        self.watch(&watched);
-        let Track { began, shift, newest, dropped, last, apart, .. } = before;
-        (self.began, self.shift, self.newest, self.dropped) = (began, shift, newest, dropped);
-        (self.last, self.apart) = (last, apart);
+        self.part(meaning);
         self.follower = Some(Follower::new(meaning.clone()));
+    }
+
+    /// Other lines for positions of this meaning, in the place of those that were.
+    fn part(&mut self, meaning: &Meaning) {
+        let has_samples = self.positions() > 0;
+        let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
+        let before = self.lines;
+        let mut lines = meaning.lines(group).into_iter().zip(before);
+        self.lines = before.map(|old| {
+            let Some((line, _)) = lines.next() else { return old };
+            let name = self.name_of_ended(old);
+            let new = self.recorder.succeed(old, line, name);
+            if !has_samples {
+                self.recorder.remove_line(old);
+            }
+            new
+        });
+        self.positions = group;
+    }
+
+    fn end(&mut self, line: LineId) {
+        let (name, heading) = self.name_of_ended(line);
+        self.recorder.end_line(line, name, heading);
+    }
+
+    /// The name of a line that ends now, and its heading.
+    fn name_of_ended(&self, line: LineId) -> (Text, String) {
+        let newest = self.newest.map_or(0, Time::nanoseconds);
+        let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
+        let until =
+            until.map_or_else(|| format!("{:.1} s", newest as f64 / 1e9), |at| at.strftime("%H:%M:%S").to_string());
+        let (name, heading) = match self.recorder.line(line) {
+            Some(line) => (line.name.clone(), line.heading.clone()),
+            None => (Text::new("recorder.position"), String::new()),
+        };
+        (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
     /// Samples are missing before those that come next.

@@ -17,6 +17,7 @@ mod hiperdrive;
 mod hiperdrive_axis;
 mod hiperdrive_control;
 mod hiperdrive_motion;
+mod hiperdrive_recording;
 mod hiperdrive_rules;
 mod hiperdrive_stop;
 mod interbus;

@@ -191,3 +191,29 @@ fn a_position_that_is_read_while_polling_disturbs_nothing() {
     let (slowest, fastest) = extent(recording, "speed");
     assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");
 }
+
+/// Issue 21.12: a session that is closed takes its recording with it. Two minutes are what is asked for elsewhere too.
+#[test]
+fn minutes_of_recording_are_asked_for_before_a_session_is_closed() {
+    let mut desk = Desk::begun("");
+    let id = desk.encoder().session.id;
+    desk.ask(FAST);
+    desk.until("samples come", |studio| recorded(studio) > 5);
+    desk.act(Action::Stop);
+    desk.until_ready();
+    desk.settle();
+    let clock = desk.wire().clock();
+    clock.sleep_until(clock.now() + Duration::from_secs(121));
+    let before = recorded(&desk.studio);
+    desk.ask(FAST);
+    desk.until("two minutes have passed", |studio| recorded(studio) > before + 5);
+    desk.act(Action::Stop);
+    desk.until_ready();
+    desk.act(Action::CloseSession(id));
+    assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_recording");
+    desk.act(Action::Escape);
+    assert!(desk.studio.question.is_none() && desk.studio.device(id).is_some());
+    desk.act(Action::CloseSession(id));
+    desk.act(Action::Confirm);
+    assert!(desk.studio.device(id).is_none());
+}

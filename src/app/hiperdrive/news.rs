@@ -94,6 +94,8 @@ impl Unit {
     pub(in crate::app) fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
+        self.records.values_mut().for_each(|record| record.begin(&opened.began));
+        self.began = Some(opened.began.clone());
         self.moves.begin(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
         // What was read over a link before says nothing any more.

@@ -65,8 +65,10 @@ impl Record {
             is_warned: status.has(crate::protocol::hiperdrive::StatusBit::Warning),
         };
         self.track.add(&[sighting], &meaning(ruler));
+        // A target that was recorded stays among what is watched while nobody has control.
+        let has_target = target.is_some() || self.track.watched().iter().any(|own| matches!(own, Beside::Target(_)));
         let mut beside = vec![Beside::Speed];
-        beside.extend(target.map(|_| Beside::Target(ruler)));
+        beside.extend(has_target.then_some(Beside::Target(ruler)));
         self.track.watch(&beside);
         let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
         self.track.add_watched(&Beside::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
@@ -86,7 +88,13 @@ impl Record {
         self.track.dropped()
     }
 
-    /// Another drive: nothing of what was recorded is about it.
+    /// Samples are missing before those that come next: another drive was shown.
+    pub(super) fn gap(&mut self) {
+        self.last = None;
+        self.track.gap();
+    }
+
+    /// Another device: nothing of what was recorded is about it.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;
@@ -109,6 +117,14 @@ fn meaning(ruler: Ruler) -> Meaning {
 impl Watchable for Beside {
     fn is_whole(&self) -> bool {
         matches!(self, Beside::Target(_))
+    }
+
+    /// The pitch of a spindle is only how steps are seen; with another scale a step is another distance.
+    fn continues(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Beside::Target(own), Beside::Target(other)) => own.scale == other.scale,
+            _ => self == other,
+        }
     }
 
     fn line(&self, group: GroupId) -> Line {

@@ -1,5 +1,6 @@
 //! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
 
+use super::record::Record;
 use super::remembered::Marks;
 use super::ruler::Measure;
 use super::staged::is_editable;
@@ -161,6 +162,8 @@ impl Unit {
         self.staged.clear();
         self.moves.forget();
         self.record.forget();
+        self.records.values_mut().for_each(Record::forget);
+        self.records.retain(|_, record| !record.recorder().is_empty());
         self.readings.clear();
         self.pitches.clear();
         self.axes.clear();

@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use jiff::Zoned;
+
 use super::axis::Axis;
 use super::moves::Moves;
 use super::record::Record;
@@ -14,6 +16,7 @@ use super::staged::{Mark, Staged};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::line::Line;
+use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, Session, Source};
 use crate::app::studio::SessionId;
@@ -41,6 +44,10 @@ pub struct Unit {
     pub staged: Staged,
     /// What was recorded of the drive that is shown.
     pub record: Record,
+    /// What was recorded of the others while they were shown.
+    pub(super) records: BTreeMap<DriveNumber, Record>,
+    /// When the session began, by which the times of recordings count.
+    pub(super) began: Option<Zoned>,
     /// A write on its way.
     pub review: Option<Review>,
     /// The drives as they are moved.
@@ -88,6 +95,8 @@ impl Unit {
             check: None,
             staged,
             record: Record::default(),
+            records: BTreeMap::new(),
+            began: None,
             review: None,
             moves: Moves::default(),
             measure: Measure::default(),
@@ -175,9 +184,27 @@ impl Unit {
             self.moves.let_go();
             // Only the drive that is shown, and the one moved last, are looked at again and again.
             self.moves.doubt_limits(drive);
-            self.drive = drive;
-            self.record.forget();
+            let before = std::mem::replace(&mut self.drive, drive);
+            let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
+            self.records.insert(before, std::mem::replace(&mut self.record, next));
+            self.record.gap();
+            self.record.poll(self.session.line.as_ref().and_then(Line::polling), false);
         }
+    }
+
+    fn new_record(&self) -> Record {
+        let mut record = Record::default();
+        self.began.iter().for_each(|began| record.begin(began));
+        record
+    }
+
+    /// The recorders of all drives, that of the one that is shown first.
+    pub(in crate::app) fn recorders(&self) -> impl Iterator<Item = &Recorder> {
+        std::iter::once(&self.record).chain(self.records.values()).map(Record::recorder)
+    }
+
+    pub(in crate::app) fn recorders_mut(&mut self) -> impl Iterator<Item = &mut Recorder> {
+        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Record::recorder_mut)
     }
 
     /// Who a drive is; `None` before it was read.

@@ -41,6 +41,8 @@ pub struct Line {
     pub shown: bool,
     /// The stretch of values that is shown, in the line's unit; `None`: what is visible fits.
     pub range: Option<(f64, f64)>,
+    /// Nothing is added to it any more; it stays for what was recorded.
+    pub ended: bool,
     /// Its values are calculated from another line: where there is none, that is no fault of the device.
     pub derived: bool,
     /// What there is to know about it now: why it has no samples.
@@ -61,6 +63,7 @@ impl Line {
             colour: 0,
             shown: true,
             range: None,
+            ended: false,
             derived: false,
             remark: None,
             group,
@@ -100,6 +103,16 @@ impl Line {
     /// The unit that is shown.
     pub fn scale(&self) -> Option<&Scale> {
         self.scales.get(self.scale)
+    }
+
+    /// The unit that somebody has chosen; `None` where it is the usual one.
+    pub(super) fn chosen(&self) -> Option<Text> {
+        self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
+    }
+
+    /// Shows this unit; the usual one, where there is no such.
+    pub(super) fn choose(&mut self, unit: Option<&Text>) {
+        self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
 
     /// How much of the shown unit one of the samples' own unit is.

@@ -3,6 +3,7 @@
 //! draws nothing; whose samples these are, in which unit and how many are kept is said by whoever fills it.
 
 mod cursors;
+mod ended;
 mod export;
 mod line;
 #[cfg(test)]
@@ -96,6 +97,13 @@ impl Group {
             None => history,
         }
     }
+
+    /// Where there is nothing yet, the first sample goes on from nothing anyway.
+    fn break_before_next(&mut self) {
+        if !self.history.all().is_empty() {
+            self.history.break_before_next();
+        }
+    }
 }
 
 /// Lines over time.
@@ -162,6 +170,10 @@ impl Recorder {
         if self.lines.iter().all(|line| line.group != group) {
             self.groups.remove(&group);
         }
+        self.forget_trigger(id);
+    }
+
+    fn forget_trigger(&mut self, id: LineId) {
         if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
             self.watch = None;
         }
@@ -190,14 +202,12 @@ impl Recorder {
 
     /// Samples are missing before the next ones of every group.
     pub(in crate::app) fn break_all(&mut self) {
-        self.groups.values_mut().for_each(|group| group.history.break_before_next());
+        self.groups.values_mut().for_each(Group::break_before_next);
     }
 
     /// Samples are missing before the next ones of a group.
     pub(in crate::app) fn break_before_next(&mut self, group: GroupId) {
-        if let Some(group) = self.groups.get_mut(&group) {
-            group.history.break_before_next();
-        }
+        self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
 
     /// Does what is asked.
@@ -242,8 +252,17 @@ impl Recorder {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// The lines that are shown.
+    /// The lines that are shown; those that have ended, where there are samples of them in what is visible.
     pub fn shown(&self) -> impl Iterator<Item = &Line> {
+        let (from, to) = self.window();
+        let is_visible = move |line: &&Line| {
+            !line.ended || self.history(line).is_some_and(|history| !history.indices(from, to.plus(1)).is_empty())
+        };
+        self.wanted().filter(is_visible)
+    }
+
+    /// The lines that are to be shown, whatever is visible.
+    fn wanted(&self) -> impl Iterator<Item = &Line> {
         self.lines.iter().filter(|line| line.shown)
     }
 
@@ -287,8 +306,10 @@ impl Recorder {
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
 
-    /// Forgets the samples; lines, units and the length of the view stay.
+    /// Forgets the samples, and lines that have ended; the others, units and the length of the view stay.
     pub(in crate::app) fn clear(&mut self) {
+        let ended: Vec<LineId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
+        ended.into_iter().for_each(|id| self.remove_line(id));
         for Group { history, stamp, columns, capacity, longest_pause } in self.groups.values_mut() {
             *history = Group::history(columns, *capacity, *longest_pause);
             *stamp = Stamp::new();
@@ -310,9 +331,7 @@ impl Recorder {
             }
         });
         // A level is in the unit that it was typed in.
-        if self.watch.as_ref().is_some_and(|watch| watch.trigger().line == id) {
-            self.watch = None;
-        }
+        self.forget_trigger(id);
     }
 
     fn with_line(&mut self, id: LineId, change: impl FnOnce(&mut Line)) {

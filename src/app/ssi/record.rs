@@ -178,7 +178,7 @@ impl Record {
         }
         self.meaning = meaning(layout);
         self.tally.reset();
-        self.track.begin_again();
+        self.track.begin_again(self.held);
         let kept = std::mem::take(&mut self.kept);
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {

@@ -1,6 +1,7 @@
 //! Positions of a stream: many at once, and nothing of them is joined that does not belong together.
 
 use super::*;
+use crate::app::recorder::Scale;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Nothing;
@@ -81,4 +82,141 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     ];
     assert_eq!(samples(&track, 0), expected);
     assert_eq!((track.positions(), track.dropped()), (9, 3));
+}
+
+/// Positions once a second: so many, from a second on.
+fn seconds(from: u64, count: u64) -> Vec<Sighting> {
+    (from..from + count)
+        .map(|second| Sighting {
+            at: Moment::after_start(Duration::from_secs(second)),
+            position: Some(second as i64 * 10),
+            is_bad: false,
+            is_warned: false,
+        })
+        .collect()
+}
+
+fn names(track: &Track<Nothing>) -> Vec<(String, bool)> {
+    track.recorder.lines().iter().map(|line| (line.heading.clone(), line.ended)).collect()
+}
+
+/// Positions of lines, by their headings.
+fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
+    let at = track.recorder.lines().iter().position(|line| line.heading == heading).unwrap();
+    samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
+}
+
+/// Issue 21.12: another scale. What was recorded stays under the old one, in the unit that was chosen and to be exported.
+#[test]
+fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
+    let mut track = Track::<Nothing>::default();
+    track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
+    track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
+    let [position, ..] = track.lines;
+    track.recorder.act(recorder::Action::SetScale(position, 1));
+    track.add(&seconds(3, 2), &Meaning::of_turns(None, 400.0));
+    let current = [("position", false), ("speed", false), ("acceleration", false)];
+    let ended = ["position", "speed", "acceleration"].map(|name| (format!("{name} until 09:00:02"), true));
+    let expected: Vec<(String, bool)> =
+        current.iter().map(|(name, own)| ((*name).to_owned(), *own)).chain(ended).collect();
+    assert_eq!(names(&track), expected);
+    assert_eq!(steps(&track, "position until 09:00:02"), [0.0, 10.0, 20.0]);
+    assert_eq!(steps(&track, "position"), [30.0, 40.0]);
+    // A step was 0.36 degrees, and is 0.9.
+    let factor = |at: usize| track.recorder.lines()[at].factor();
+    assert_eq!((factor(3), factor(0)), (360.0 / 1000.0, 360.0 / 400.0));
+    assert_eq!(
+        track.recorder.recorded().map(|(from, to)| (from.nanoseconds(), to.nanoseconds())),
+        Some((0, 4_000_000_000))
+    );
+    // They are drawn where they are, and no more.
+    let drawn = |track: &Track<Nothing>| track.recorder.shown().filter(|line| line.ended).count();
+    assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
+    track.recorder.act(recorder::Action::Look(
+        Time::from(Moment::after_start(Duration::from_secs(3))),
+        Time::from_nanoseconds(9_000_000_000),
+    ));
+    assert_eq!(drawn(&track), 0);
+    track.recorder.act(recorder::Action::Clear);
+    assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
+}
+
+/// Issue 21.12: a pitch that is typed is another unit for the same steps.
+#[test]
+fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
+    let on_spindle = |millimetres: f64| {
+        let mut meaning = Meaning::of_turns(None, 1000.0);
+        meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
+        meaning
+    };
+    let mut track = Track::<Nothing>::default();
+    track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
+    let [position, ..] = track.lines;
+    track.recorder.act(recorder::Action::SetScale(position, 2));
+    for pitch in [1.0, 12.0] {
+        track.add(&seconds(3, 1), &on_spindle(pitch));
+        track.add(&seconds(4, 1), &on_spindle(pitch + 0.5));
+    }
+    assert_eq!(names(&track).len(), 3);
+    assert_eq!(steps(&track, "position"), [0.0, 10.0, 20.0, 30.0, 40.0, 40.0]);
+    let line = track.recorder.line(position).unwrap();
+    assert_eq!((line.scales()[0].factor, line.scale().unwrap().unit.id()), (0.0125, "unit.steps"));
+}
+
+/// Issue 21.12: what is not watched any more, and watched again.
+#[test]
+fn what_is_not_watched_any_more_keeps_its_samples() {
+    let mut track = Track::<Nothing>::default();
+    let watching = |second| Watching {
+        at: Moment::after_start(Duration::from_secs(second)),
+        value: Some(Value::Whole(second as i64)),
+        is_warned: false,
+        never: None,
+    };
+    track.watch(&[Nothing]);
+    track.watch(&[]);
+    assert_eq!(names(&track).len(), 3, "there was nothing yet");
+    track.watch(&[Nothing]);
+    track.add_watched(&Nothing, &watching(1));
+    track.watch(&[]);
+    track.add_watched(&Nothing, &watching(2));
+    assert_eq!((track.watched().len(), names(&track)[3].1), (0, true));
+    track.watch(&[Nothing]);
+    track.add_watched(&Nothing, &watching(3));
+    assert_eq!((names(&track)[3].clone(), steps(&track, "nothing")), (("nothing".to_owned(), false), vec![1.0, 3.0]));
+    track.watch(&[]);
+    track.recorder.act(recorder::Action::Clear);
+    track.watch(&[Nothing]);
+    track.add_watched(&Nothing, &watching(4));
+    assert_eq!(steps(&track, "nothing"), [4.0]);
+}
+
+/// Issue 21.12: another device. Two minutes are what is asked for elsewhere before they are lost.
+#[test]
+fn minutes_of_another_device_stay() {
+    let meaning = Meaning::of_turns(None, 1000.0);
+    for (count, lines) in [(120, 3), (121, 6)] {
+        let mut track = Track::<Nothing>::default();
+        track.add(&seconds(0, count), &meaning);
+        track.watch(&[Nothing]);
+        track.forget();
+        assert_eq!((track.positions(), track.watched().len()), (0, 1));
+        track.add(&seconds(count, 1), &meaning);
+        assert_eq!(track.recorder.lines().len(), lines + 1, "{count}");
+        assert_eq!(steps(&track, "position").len(), 1);
+    }
+}
+
+/// Issue 21.12: words of which only the newest are kept are read anew, and the rest is not lost.
+#[test]
+fn what_cannot_be_read_anew_stays() {
+    let (before, after) = (Meaning::of_turns(None, 1000.0), Meaning::of_turns(None, 400.0));
+    for (kept, ended) in [(5, 0), (4, 3)] {
+        let mut track = Track::<Nothing>::default();
+        track.add(&seconds(0, 5), &before);
+        track.begin_again(kept);
+        track.add(&seconds(5 - kept as u64, kept as u64), &after);
+        assert_eq!(track.recorder.lines().iter().filter(|line| line.ended).count(), ended, "{kept}");
+        assert_eq!(steps(&track, "position").len(), kept);
+    }
 }

@@ -1,0 +1,69 @@
+//! Lines that end, because what comes has another meaning or does not come any more: they keep their samples and units, and
+//! stand behind those that go on.
+
+use super::{Line, LineId, Recorder, Scale};
+use crate::app::Text;
+
+impl Recorder {
+    /// A line that goes on in the place of another one, which has other samples: with its colour, and in its unit where it has
+    /// that. The other one ends with this name.
+    pub(in crate::app) fn succeed(&mut self, old: LineId, new: Line, (name, heading): (Text, String)) -> LineId {
+        let id = self.add_line(new);
+        if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
+            let unit = before.chosen();
+            let free = self.line(id).map_or(0, |line| line.colour);
+            self.end_line(old, name, heading);
+            self.with_line(old, |line| line.colour = free);
+            self.with_line(id, |line| {
+                (line.colour, line.shown) = (before.colour, before.shown);
+                line.choose(unit.as_ref());
+            });
+            if let Some(line) = self.take(id) {
+                self.lines.insert(at.min(self.lines.len()), line);
+            }
+        }
+        id
+    }
+
+    fn take(&mut self, id: LineId) -> Option<Line> {
+        let at = self.lines.iter().position(|line| line.id == id)?;
+        Some(self.lines.remove(at))
+    }
+
+    /// Nothing is added to a line any more. It stands behind those that go on.
+    pub(in crate::app) fn end_line(&mut self, id: LineId, name: Text, heading: String) {
+        if let Some(line) = self.take(id) {
+            self.lines.push(Line { ended: true, remark: None, name, heading, ..line });
+        }
+        self.forget_trigger(id);
+    }
+
+    /// A line that had ended goes on, by this name.
+    pub(in crate::app) fn resume_line(&mut self, id: LineId, name: Text, heading: String) {
+        let mut group = None;
+        self.with_line(id, |line| {
+            (line.ended, line.name, line.heading) = (false, name, heading);
+            group = Some(line.group);
+        });
+        group.into_iter().for_each(|group| self.break_before_next(group));
+    }
+
+    /// The samples of a line are seen in other units from now on.
+    pub(in crate::app) fn rescale(&mut self, id: LineId, scales: Vec<Scale>) {
+        if self.line(id).is_none_or(|line| line.scales == scales) {
+            return;
+        }
+        self.with_line(id, |line| {
+            let unit = line.chosen();
+            (line.scales, line.range) = (scales, None);
+            line.choose(unit.as_ref());
+        });
+        // A level is in the unit that it was typed in.
+        self.forget_trigger(id);
+    }
+
+    /// There are samples of a line.
+    pub(in crate::app) fn has_samples(&self, id: LineId) -> bool {
+        self.line(id).and_then(|line| self.history(line)).is_some_and(|history| !history.all().is_empty())
+    }
+}

@@ -1,0 +1,93 @@
+//! What positions mean: in which range they go round, how much a step is, and the units in which they are seen.
+
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Scale};
+
+/// What the positions of a device are.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct Meaning {
+    /// Positions from one zero to the next, after which they go round; `None` for a linear one.
+    pub(in crate::app) range: Option<i64>,
+    /// The units of position, speed and acceleration, whose samples are in steps.
+    pub(in crate::app) scales: [Vec<Scale>; 3],
+    /// It does not turn.
+    pub(in crate::app) is_linear: bool,
+    /// How much a step is: of a turn, or of a millimetre. `None` where nobody knows.
+    step: Option<f64>,
+}
+
+impl Meaning {
+    /// Of steps whose place in a revolution nobody knows.
+    pub(in crate::app) fn of_steps(range: Option<i64>) -> Self {
+        let scales = [
+            vec![Scale::new("unit.steps", 1.0, 0)],
+            vec![Scale::new("unit.steps_per_second", 1.0, 0)],
+            vec![Scale::new("unit.steps_per_second_squared", 1.0, 0)],
+        ];
+        Meaning { range, scales, is_linear: false, step: None }
+    }
+
+    /// Of a shaft with so many steps in a revolution, at least a part of one.
+    pub(in crate::app) fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
+        let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
+        let scales = [
+            vec![
+                Scale::new("unit.turns", turns, 5),
+                Scale::new("unit.degrees", 360.0 * turns, 3),
+                Scale::new("unit.steps", 1.0, 0),
+            ],
+            vec![
+                Scale::new("unit.revolutions_per_minute", 60.0 * turns, 2),
+                Scale::new("unit.degrees_per_second", 360.0 * turns, 1),
+                Scale::new("unit.steps_per_second", 1.0, 0),
+            ],
+            vec![
+                Scale::new("unit.revolutions_per_second_squared", turns, 3),
+                Scale::new("unit.radians_per_second_squared", std::f64::consts::TAU * turns, 2),
+                Scale::new("unit.steps_per_second_squared", 1.0, 0),
+            ],
+        ];
+        Meaning { range, scales, is_linear: false, step: Some(turns) }
+    }
+
+    /// Of a linear encoder with steps of so many millimetres.
+    pub(in crate::app) fn of_millimetres(millimetres: f64) -> Self {
+        let scales = [
+            vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
+            vec![
+                Scale::new("unit.millimetres_per_second", millimetres, 3),
+                Scale::new("unit.metres_per_minute", millimetres * 0.06, 4),
+                Scale::new("unit.steps_per_second", 1.0, 0),
+            ],
+            vec![
+                Scale::new("unit.millimetres_per_second_squared", millimetres, 1),
+                Scale::new("unit.steps_per_second_squared", 1.0, 0),
+            ],
+        ];
+        Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
+    }
+
+    /// Positions of the one are positions of the other, only seen in other units.
+    pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
+        let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
+        own(self) == own(other)
+    }
+
+    fn headings(&self) -> [(&'static str, &'static str); 3] {
+        let speed = if self.is_linear { "recorder.speed_linear" } else { "recorder.speed" };
+        [("recorder.position", "position"), (speed, "speed"), ("recorder.acceleration", "acceleration")]
+    }
+
+    pub(super) fn lines(&self, group: GroupId) -> [Line; 3] {
+        let [position, speed, acceleration] = self.scales.clone();
+        let [own_position, own_speed, own_acceleration] = self.headings();
+        let line = |column, (name, heading): (&'static str, &'static str), scales| {
+            Line::of(group, column, Text::new(name), heading, scales)
+        };
+        [
+            line(0, own_position, position),
+            line(1, own_speed, speed).derived(),
+            line(2, own_acceleration, acceleration).derived().hidden(),
+        ]
+    }
+}

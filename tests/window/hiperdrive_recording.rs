@@ -1,0 +1,105 @@
+//! What is recorded of HIPERDRIVE drives outlives whatever is changed on the page.
+
+use std::fs;
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Measure};
+use encoder_studio::app::recorder::Recorder;
+use encoder_studio::app::{Action, Desk as Whose, FileQuestion, Severity};
+use encoder_studio::protocol::hiperdrive::{DriveNumber, Length, Value};
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, number, read, unit};
+use crate::support::Desk;
+
+fn recorder(desk: &Desk) -> &Recorder {
+    unit(desk).record.recorder()
+}
+
+/// Positions in a line, by its heading; none where there is no such line.
+fn samples(recorder: &Recorder, is_it: impl Fn(&str) -> bool) -> u64 {
+    let line = recorder.lines().iter().find(|line| is_it(&line.heading));
+    let all = line.and_then(|line| recorder.history(line)).map(|history| history.all());
+    all.map_or(0, |all| all.end - all.start)
+}
+
+fn positions(desk: &Desk) -> u64 {
+    samples(recorder(desk), |heading| heading == "position")
+}
+
+#[track_caller]
+fn until_recorded(desk: &mut Desk, more: u64) {
+    let before = positions(desk);
+    desk.until("some is recorded", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        samples(own.record.recorder(), |heading| heading == "position") >= before + more
+    });
+}
+
+/// Issue 21.12: another drive is shown, and the first one again.
+#[test]
+fn each_drive_of_a_hub_has_a_recording() {
+    let mut desk = read("sim:?hub=4&drives=1,0,1");
+    let three = DriveNumber::new(3).unwrap();
+    until_recorded(&mut desk, 3);
+    let before = positions(&desk);
+    act(&mut desk, Hiperdrive::SelectDrive(three));
+    assert_eq!(positions(&desk), 0, "that was another drive");
+    until_recorded(&mut desk, 3);
+    let third = positions(&desk);
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    assert!(unit(&desk).record.last().is_none(), "where it is now is not known yet");
+    assert_eq!(positions(&desk), before);
+    until_recorded(&mut desk, 2);
+    act(&mut desk, Hiperdrive::SelectDrive(three));
+    assert_eq!(positions(&desk), third);
+}
+
+/// Issue 21.12: unit, pitch and scale.
+#[test]
+fn no_unit_and_no_scale_forgets_a_recording() {
+    let mut desk = read("sim:");
+    until_recorded(&mut desk, 3);
+    let before = positions(&desk);
+    act(&mut desk, Hiperdrive::SetPitch(ONE, Some(Length { nanometres: 4_000_000 })));
+    act(&mut desk, Hiperdrive::SetMeasure(Measure::Millimetres));
+    until_recorded(&mut desk, 1);
+    act(&mut desk, Hiperdrive::SetPitch(ONE, None));
+    until_recorded(&mut desk, 1);
+    assert!(positions(&desk) >= before + 2);
+    assert!(recorder(&desk).lines().iter().all(|line| !line.ended));
+    let before = positions(&desk);
+    let target = unit(&desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), number(154), &Value::Number(400)).unwrap());
+    act(&mut desk, Hiperdrive::Read);
+    desk.until("it is read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.number(ONE, 154) == Some(400)
+    });
+    desk.until("the new scale is recorded", |studio| {
+        studio.hiperdrive().unwrap().record.recorder().lines().iter().any(|line| line.ended)
+    });
+    assert!(samples(recorder(&desk), |heading| heading.starts_with("position until ")) >= before);
+}
+
+/// Issue 21.12: a table of one drive that is being written while another one is shown is whole.
+#[test]
+fn a_table_is_written_while_another_drive_is_shown() {
+    let mut desk = read("sim:?hub=4&drives=1,0,1");
+    until_recorded(&mut desk, 5);
+    let path = desk.outside.path("table.csv");
+    let whose = Whose::Device(unit(&desk).session.id);
+    let question = FileQuestion::Table { desk: whose, visible: false, suggested: path.clone() };
+    desk.act(Action::Chosen(question, path.clone()));
+    act(&mut desk, Hiperdrive::SelectDrive(DriveNumber::new(3).unwrap()));
+    desk.until("it is written", |studio| {
+        studio
+            .services
+            .log
+            .notices()
+            .any(|notice| notice.severity == Severity::Good && notice.texts[0].id() == "recorder.written")
+    });
+    let rows = fs::read_to_string(&path).unwrap().lines().count();
+    assert!(rows > 5, "{rows}");
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    assert_eq!(recorder(&desk).export().map(|own| own.progress()), None, "it is over");
+}
