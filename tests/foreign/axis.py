@@ -13,7 +13,8 @@ FAULT, LOCK, WARNING, REACHED, ACKNOWLEDGED, STANDING, OUTSIDE = 0x0008, 0x0040,
 LOWER, UPPER, TARGET_INVALID, TIMEOUT = 0x8304, 0x8305, 0x8503, 0x8601
 # Revolutions a minute at 100 %, and the seconds to get there from standstill.
 RPM, RAMP = 35.0, 0.25
-# Where a drive has gone so many 65536ths of a turn against the commanded direction, it has turned the wrong way.
+# Where a drive has gone so many 65536ths of a turn against the commanded direction, it has turned the wrong way; so many
+# behind its target, it has passed that.
 AWRY = 64
 
 
@@ -163,10 +164,12 @@ class Axis:
         return ["STAND"] if is_new else []
 
     def strays(self):
-        """What is wrong with where it is: BEYOND a limit in the commanded direction, WRONG way."""
+        """What is wrong with where it is: BEYOND a limit in the commanded direction, PAST its target, WRONG way."""
         direction, found = self.direction(), []
         if direction > 0 and self.position > self.upper or direction < 0 and self.position < self.lower:
             found.append("BEYOND")
+        if self.job is not None and direction * (self.position - self.job) * 65536 / self.turn > AWRY:
+            found.append("PAST")
         if direction * (self.position - self.began) * 65536 / self.turn < -AWRY:
             found.append("WRONG")
         return found

@@ -14,8 +14,8 @@ told at run time, a command a line on stdin; each is answered by a line `done NA
 
 The record (--record FILE) has a line a packet, `P TIME SEQUENCE WORD STATUS POSITION MOTION`, where MOTION is 1 if the control
 word commands motion (`Axis.commands`), and a line an event, `E TIME NAME`: START and STAND of the drive, FAULT, OPEN, CLOSE,
-LOST of the connection, and BEYOND or WRONG with the first packet that tells the master of a position beyond a limit, or of
-one against the commanded direction. Times are nanoseconds of CLOCK_MONOTONIC; those of packets are the kernel's.
+LOST of the connection, and BEYOND, PAST or WRONG with the first packet that tells the master of a position beyond a limit, behind
+the target, or against the commanded direction. Times are nanoseconds of CLOCK_MONOTONIC; those of packets are the kernel's.
 """
 
 import select

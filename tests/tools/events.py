@@ -31,6 +31,8 @@ class Event:
     # Nothing has to move before it.
     may_rest: bool = False
     is_timed: bool = True
+    # That nothing began means something only if a fresh act begins it: Failed, where it does not.
+    control: typing.Callable[[Rig], None] = nothing
 
 
 # How motion begins.
@@ -205,7 +207,7 @@ def press_go(rig):
 
 
 def overrun(rig):
-    """The target lies inside the limits; the drive stops at neither."""
+    """The drive stops neither at its target nor at the limit behind it."""
     near_limit("unlimited on", "overrun on")(rig)
     rig.text("target", NEAR)
 
@@ -317,11 +319,11 @@ EVENTS = [
     event("key released, not repeating", SPACE, key_up("space"), prepare=without_repeat),
     event("key released, not repeating", ENTER, key_up("Return"), prepare=without_repeat),
     event("key held in another window", SPACE, now, begin=key_elsewhere("space"), afterwards=back_to_window,
-          may_rest=True, is_timed=False),
+          may_rest=True, is_timed=False, control=by_space),
     event("key held in another window", ENTER, now, begin=key_elsewhere("Return"), afterwards=back_to_window,
-          may_rest=True, is_timed=False),
+          may_rest=True, is_timed=False, control=by_enter),
     event("key held on another tab", SPACE, now, begin=key_on_other_tab("space"), afterwards=tab_back,
-          may_rest=True, is_timed=False),
+          may_rest=True, is_timed=False, control=by_space),
     event("SIGSTOP", MOUSE, to_process("studio", signal.SIGSTOP), afterwards=go_on("studio"), destroys="studio"),
     event("SIGSTOP", SPACE, to_process("studio", signal.SIGSTOP), afterwards=go_on("studio"), destroys="studio"),
     event("SIGSTOP", JOB, to_process("studio", signal.SIGSTOP), afterwards=go_on("studio"), destroys="studio"),
@@ -346,7 +348,7 @@ EVENTS = [
           prepare=near_limit("unlimited on"), destroys="studio"),
     event("limit ignored by the drive", RUN, told("BEYOND", press=lambda rig: rig.click("run")), begin=nothing,
           prepare=near_limit("unlimited on"), destroys="studio"),
-    event("limit and target ignored", JOB, told("BEYOND", press=press_go), begin=nothing, prepare=overrun,
+    event("target ignored by the drive", JOB, told("PAST", press=press_go), begin=nothing, prepare=overrun,
           destroys="studio"),
     event("wrong way", MOUSE, told("WRONG", press=press_pad), begin=nothing, prepare=drive("reverse on"),
           destroys="studio"),

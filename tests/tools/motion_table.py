@@ -24,7 +24,7 @@ import time
 
 sys.dont_write_bytecode = True
 
-from events import EVENTS  # noqa: E402
+from events import EVENTS, nothing  # noqa: E402
 from rig import MS, Failed, Rig  # noqa: E402
 
 # A motion that goes on for so long after the event is not ended by it.
@@ -89,6 +89,10 @@ def trial_of(rig, event):
         trial.resumed = bool(again)
         if again:
             trial.words = f"{len(again)} packets from {(again[0].at - fired) / MS:.0f} ms on, {again[0].word:04X}"
+    if not trial.resumed and event.control is not nothing:
+        rig.screen.release_all()
+        time.sleep(0.5)
+        event.control(rig)
     trial.connection = "kept" if event.destroys else ""
     for at, what in rig.drive.events:
         if at >= fired and what in CONNECTION:
