@@ -91,7 +91,9 @@ impl Reviewed for Hiperdrive {
     fn cost(prepared: &Prepared) -> Text {
         let saves = prepared.plan.write_cycles();
         if saves == 0 {
-            return Text::new("hd_review.cost_nothing");
+            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == 198);
+            let position = prepared.plan.ops.iter().any(sets);
+            return Text::new(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
         }
         match prepared.cycles_seen {
             Some(seen) => Text::new("hd_review.cost").with("saves", saves).with("seen", seen),

@@ -91,9 +91,9 @@ pub(in crate::cli) enum Action {
     Acknowledge,
     /// hiperdrive: what was written and is not saved yet (47 = 1).
     Save,
-    /// hiperdrive: all parameters from the factory, not saved (47 = -1); with --all the address as well, and saved (47 = -3).
+    /// hiperdrive: the device's own parameters from the factory, not saved (47 = -1); with --all everything, saved (47 = -3).
     Factory,
-    /// hiperdrive: all parameters as saved last (47 = -2).
+    /// hiperdrive: the device's own parameters as saved last, not those of its drives (47 = -2).
     Recall,
     /// hiperdrive: which drives are there; resets them (47 = -4).
     PresenceTest,

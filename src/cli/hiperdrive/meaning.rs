@@ -185,8 +185,8 @@ fn save_words(number: i64) -> &'static str {
     match number {
         -4 => " (reset the drives)",
         -3 => " (everything from the factory, with the IP address, and save)",
-        -2 => " (as saved last)",
-        -1 => " (from the factory, without saving)",
+        -2 => " (own parameters of the device as saved last)",
+        -1 => " (own parameters of the device from the factory, without saving)",
         0 => " (done)",
         1 => " (save)",
         _ => " (busy or bad)",

@@ -27,7 +27,7 @@ pub struct Confirmed<'p> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("after {} of the operations: {cause}", done.ops)]
 pub struct Interrupted {
-    /// What was written until then. Without a save it is gone when the supply goes.
+    /// What was written until then. Without a save it may be gone when the supply goes.
     pub done: Written,
     /// What the operation changes that was under way, and of which is not known how far it came; `None` where it did not
     /// begin.

@@ -64,9 +64,9 @@ pub enum Op {
 pub enum Service {
     /// 47 = 1: everything that is saved is saved as it is now.
     Save,
-    /// 47 = −2: as saved last.
+    /// 47 = −2: the own parameters of the adapter or hub as saved last; those of its drives stay.
     Recall,
-    /// 47 = −1: all parameters from the factory, not saved.
+    /// 47 = −1: the own parameters of the adapter or hub from the factory, not saved; those of its drives stay.
     Factory,
     /// 47 = −3: all parameters from the factory and the address by DHCP, saved.
     FactoryAll,
@@ -103,7 +103,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// The same without the save at its end: what it writes is gone without supply, unless it is saved later.
+    /// The same without the save at its end: what it writes is not sure to outlast the supply, unless it is saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -116,7 +116,7 @@ impl Operation for Op {
     fn write_cycles(&self) -> u64 {
         match self {
             Op::Service(Service::Save | Service::FactoryAll) | Op::Network { .. } => 1,
-            // Gone without supply, until it is saved.
+            // Not saved.
             Op::Write { .. } | Op::Service(_) => 0,
         }
     }
@@ -150,8 +150,8 @@ impl Op {
             Op::Write { number, old: None, new } => format!("{}: → {new}", Item(*number)),
             Op::Service(service) => match service {
                 Service::Save => "47 = 1: saved".to_owned(),
-                Service::Recall => "47 = -2: as saved last".to_owned(),
-                Service::Factory => "47 = -1: from the factory, not saved".to_owned(),
+                Service::Recall => "47 = -2: own parameters of the device as saved last".to_owned(),
+                Service::Factory => "47 = -1: own parameters of the device from the factory, not saved".to_owned(),
                 Service::FactoryAll => "47 = -3: from the factory with the address by DHCP, saved".to_owned(),
                 Service::Reset => "47 = -4: presence test and reset of the drives".to_owned(),
                 Service::Acknowledge(drive) => format!("drive {}: fault acknowledged", drive.get()),

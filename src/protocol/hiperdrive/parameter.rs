@@ -116,6 +116,14 @@ impl DriveNumber {
     }
 }
 
+impl ParameterRow {
+    /// It is kept by the adapter or hub itself: 47 = −1 and −2 change these, and no others (manual, 47; 152 by its sections 3.4
+    /// and 4.5, 190 by its own row). All others of a drive are kept by that drive.
+    pub const fn is_kept_by_device(&self) -> bool {
+        self.saved && (self.number < 100 || matches!(self.number, 152 | 190))
+    }
+}
+
 impl ParameterNumber {
     /// The parameter with which everything is saved, reset or led back.
     pub const SAVE: ParameterNumber = ParameterNumber(47);

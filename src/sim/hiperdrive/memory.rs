@@ -55,15 +55,36 @@ impl Memory {
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// As saved last; what is never saved from the factory.
-    pub(super) fn recall(&mut self) {
+    /// Without supply, or reset: as saved last; what is never saved from the factory. The position that was set stays (manual,
+    /// 198: a reset has no effect on it).
+    pub(super) fn restart(&mut self) {
+        let reference = self.get(REFERENCE);
         self.now = self.kept.clone();
+        reference.into_iter().for_each(|position| self.set(REFERENCE, position));
     }
 
-    /// From the factory, not saved yet.
+    /// 47 = −2: what the adapter or hub keeps itself is as saved last.
+    pub(super) fn recall(&mut self) {
+        copy_own(&self.kept, &mut self.now);
+    }
+
+    /// 47 = −1: what the adapter or hub keeps itself is from the factory, not saved yet.
+    pub(super) fn forget_own(&mut self) {
+        copy_own(&self.factory, &mut self.now);
+    }
+
+    /// All of it from the factory, not saved yet.
     pub(super) fn forget(&mut self) {
         self.now = self.factory.clone();
     }
+}
+
+/// The position that was set.
+const REFERENCE: u16 = 198;
+
+fn copy_own(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
+    let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_kept_by_device());
+    to.extend(from.iter().filter(|(number, _)| own(number)));
 }
 
 fn is_saved(number: u16) -> bool {

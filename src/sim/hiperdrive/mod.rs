@@ -7,6 +7,7 @@
 //! | `memory` | parameters that can be written, and what of them survives the supply |
 //! | `drive` | a drive: its state, its motion, its faults |
 //! | `parameters` | what reading and writing a drive's parameters does |
+//! | `hindrance` | writes that are refused, or cut off in the middle |
 //! | `station` | the drives together: process data, parameter words, save and reset, the lost master |
 //! | `config` | the settings of a `sim:` link |
 //! | `target` | frames and packets of EtherNet/IP in front of a station |
@@ -14,6 +15,7 @@
 mod axis;
 mod config;
 mod drive;
+mod hindrance;
 mod memory;
 mod parameters;
 mod station;
@@ -24,6 +26,7 @@ mod tests;
 pub use axis::{Defect, Load};
 pub use config::Config;
 pub use drive::Drive;
+pub use hindrance::Hindrance;
 pub use parameters::Refused;
 pub use station::{Setup, Station};
 pub use target::{Figures, Target};

@@ -96,8 +96,9 @@ impl Drive {
             199 => {
                 if value == 1 {
                     self.memory.forget();
+                    self.forget_place();
                 } else {
-                    self.memory.recall();
+                    self.memory.restart();
                 }
                 self.reset(now);
                 return Ok(());
@@ -134,6 +135,11 @@ impl Drive {
         self.offset = f64::from(position) / self.scale().steps_per_turn() * TURN - self.axis.place();
         self.memory.set(198, position.into());
         Ok(())
+    }
+
+    /// The position is that of the shaft: between 0 and 1 turn (manual, 198).
+    pub(super) fn forget_place(&mut self) {
+        self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
 
     pub(super) fn refuses(&mut self) -> Refused {

@@ -9,6 +9,7 @@ use std::time::Duration;
 use super::axis::{Axis, Load};
 use super::config::Config;
 use super::drive::Drive;
+use super::hindrance::{Hindered, Hindrance};
 use super::memory::Memory;
 use super::parameters::{Refused, element};
 use crate::protocol::hiperdrive::{
@@ -41,6 +42,7 @@ pub struct Station {
     words: (Pkw, Pkw),
     plate: Plate,
     store: Store,
+    hindered: Hindered,
 }
 
 /// What it says of itself that no [`Setup`] is about.
@@ -101,6 +103,7 @@ impl Station {
             words: Default::default(),
             plate,
             store: Store::default(),
+            hindered: Hindered::default(),
         }
     }
 
@@ -139,6 +142,16 @@ impl Station {
     /// In this save, counted from the first there was, the supply is lost; `None`: in none.
     pub const fn die_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
+    }
+
+    /// From now on this goes wrong; `None`: nothing does, and a line that was lost is mended.
+    pub const fn hinder(&mut self, what: Option<(ParameterNumber, Hindrance)>) {
+        self.hindered = Hindered::by(what);
+    }
+
+    /// Nothing it says gets through.
+    pub(super) const fn is_cut_off(&self) -> bool {
+        self.hindered.is_cut_off()
     }
 
     /// A drive that is plugged in.
@@ -201,7 +214,7 @@ impl Station {
     /// The supply goes and comes back.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
-        self.memory.recall();
+        self.memory.restart();
         (self.master, self.busy_until, self.words) = (None, now, Default::default());
         (self.store.dies_at, self.store.dead) = (None, false);
         self.reset(now);
@@ -231,6 +244,7 @@ impl Station {
     /// [`Refused`]; nothing was written.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
         self.advance(now);
+        self.hindered.write(number)?;
         let row = number.row().ok_or(Refused::Unknown)?;
         let place = number.drive().filter(|drive| drive.get() > self.setup.topology.drives());
         match (row.access, place, value) {
@@ -283,7 +297,7 @@ impl Station {
         }
         let each = |memory: &mut Memory| match value {
             1 => keep(memory),
-            -1 => memory.forget(),
+            -1 => memory.forget_own(),
             -2 => memory.recall(),
             -3 => {
                 memory.forget();
@@ -291,14 +305,19 @@ impl Station {
             }
             _ => {}
         };
-        self.present().for_each(|drive| each(&mut drive.memory));
+        self.present().for_each(|drive| {
+            each(&mut drive.memory);
+            if value == -3 {
+                drive.forget_place();
+            }
+        });
         each(&mut self.memory);
         self.busy_until = now + SAVES;
     }
 
     fn reset(&mut self, now: Moment) {
         self.present().for_each(|drive| {
-            drive.memory.recall();
+            drive.memory.restart();
             drive.reset(now);
         });
     }

@@ -62,7 +62,7 @@ pub enum Change {
     },
     /// Make it like this, and save it; what the image says nothing about stays as it is.
     Write(Box<Image>),
-    /// Make it like this, and save nothing: without supply it is as it was.
+    /// Make it like this, and save nothing.
     Try(Box<Image>),
     /// The drive's place becomes this position.
     SetPosition {

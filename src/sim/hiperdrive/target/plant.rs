@@ -100,7 +100,7 @@ impl Plant {
             return None;
         }
         let reply = self.answer(from, frame)?;
-        let bytes = self.carry(reply.emit())?;
+        let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
         Some((self.now + REPLY + self.faults.delay(), bytes))
     }
 
@@ -149,7 +149,7 @@ impl Plant {
 
     /// It has not fallen silent.
     pub(super) fn speaks(&self) -> bool {
-        self.faults.silent_after().is_none_or(|count| self.heard < count)
+        !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
     /// A datagram gets through to it.

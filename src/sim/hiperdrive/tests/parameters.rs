@@ -111,15 +111,59 @@ fn what_survives_the_supply() {
     assert_eq!(bench.read(47), value(0));
     bench.station.power_cycle(bench.now);
     assert_eq!(read_all(&mut bench), [value(7), value(200), value(4096)], "jog steps are never saved");
-    // −1: from the factory, not saved; −2: as saved last.
-    for (order, expected) in [(-1, factory.clone()), (-2, [value(7), value(200), value(4096)]), (-3, factory.clone())] {
-        assert_eq!(bench.write(47, order), Ok(()));
-        bench.now = bench.now + Duration::from_millis(200);
-        assert_eq!(read_all(&mut bench), expected, "{order}");
-    }
+    assert_eq!(bench.write(47, -3), Ok(()));
+    bench.now = bench.now + Duration::from_millis(200);
+    assert_eq!(read_all(&mut bench), factory);
     bench.station.power_cycle(bench.now);
     assert_eq!(read_all(&mut bench), factory, "−3 has saved");
     assert_eq!(bench.write(47, 2), Err(Refused::Value));
+}
+
+/// Issue 21.6 (d): 47 = −1 and −2 are about what the adapter or hub keeps itself (manual, 47): its registers, which drives are
+/// requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
+#[test]
+fn the_device_recalls_its_own_parameters_alone() {
+    let own = [24, 152, 190];
+    let of_the_drive = [154, 156, 158, 160, 166, 198];
+    let mut bench = Bench::single();
+    bench.write(24, 7).unwrap();
+    bench.write(47, 1).unwrap();
+    bench.now = bench.now + Duration::from_millis(200);
+    let set =
+        [(24, 8), (152, 0), (190, 9600), (154, 400), (156, 256), (158, -1000), (160, 1000), (166, 200), (198, 128)];
+    for (order, expected) in [(-2, [7, 1, 38_400]), (-1, [0, 1, 38_400])] {
+        set.iter().for_each(|(number, value)| assert_eq!(bench.write(*number, *value), Ok(()), "{number}"));
+        assert_eq!(bench.write(47, order), Ok(()));
+        bench.now = bench.now + Duration::from_millis(200);
+        assert_eq!(own.map(|number| bench.read(number)), expected.map(value), "{order}");
+        assert_eq!(
+            of_the_drive.map(|number| bench.read(number)),
+            [400, 256, -1000, 1000, 200, 128].map(value),
+            "{order}"
+        );
+        assert_eq!(bench.position(), 128);
+    }
+}
+
+/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory's state makes it that of the
+/// shaft, between 0 and 1 turn (manual, 198).
+#[test]
+fn a_position_that_was_set_outlasts_a_reset() {
+    let mut bench = Bench::single();
+    bench.start(81_920);
+    bench.until(0x3E37);
+    bench.word(0x0400);
+    assert_eq!(bench.write(198, 640_000), Ok(()));
+    for restart in [199, 47] {
+        bench.write(restart, if restart == 47 { -4 } else { 0 }).unwrap();
+        bench.run(2000);
+        assert_eq!((bench.read(198), bench.position()), (value(640_000), 640_000), "{restart}");
+    }
+    bench.station.power_cycle(bench.now);
+    assert_eq!((bench.read(198), bench.position()), (value(640_000), 640_000));
+    // The shaft was turned by 1.25 turns: 16 384 of 65 536 steps.
+    assert_eq!(bench.write(199, 1), Ok(()));
+    assert_eq!((bench.read(198), bench.position()), (value(0), 16_384));
 }
 
 /// −4: the drives begin anew, at most 2 s later; their place is what it was.

@@ -24,13 +24,12 @@ fn saving_keeps_and_what_was_not_saved_is_forgotten() {
     host.target.power_cycle();
     host.register();
     host.asks(get, "8E 00 00 00 C8 00");
-    // −1 is the factory without saving, −2 what was saved.
-    host.asks("10 03 20 64 24 01 30 2F FF FF", "90 00 00 00");
-    host.wait(200);
-    host.asks(get, "8E 00 00 00 5E 01");
-    host.asks("10 03 20 64 24 01 30 2F FE FF", "90 00 00 00");
-    host.wait(200);
-    host.asks(get, "8E 00 00 00 C8 00");
+    // −1 and −2 are about the adapter's own parameters: 166 is the drive's.
+    for recall in ["10 03 20 64 24 01 30 2F FF FF", "10 03 20 64 24 01 30 2F FE FF"] {
+        host.asks(recall, "90 00 00 00");
+        host.wait(200);
+        host.asks(get, "8E 00 00 00 C8 00");
+    }
     // −3 saves as well.
     host.asks("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
     host.wait(200);
