@@ -189,6 +189,8 @@ pub enum Done {
     TableWritten(Desk, Exported),
     /// A picture was saved, or not.
     PictureSaved(PathBuf, Result<(), FileError>),
+    /// A report was saved, or not.
+    ReportSaved(PathBuf, Result<(), FileError>),
     /// What closing waits for has had time enough.
     Waited(Waited),
     /// A session that was let go has ended.
@@ -349,6 +351,13 @@ pub enum FileQuestion {
         /// A name to begin with.
         suggested: PathBuf,
     },
+    /// Where to write the report of the set-up of an axis.
+    AxisReport {
+        /// Whose it is.
+        session: SessionId,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
     /// Where to write a table of samples.
     Table {
         /// Whose they are.
@@ -378,7 +387,7 @@ impl FileQuestion {
             FileQuestion::Picture { .. } => &["png"],
             FileQuestion::OpenFrames { .. } => &["txt", "csv"],
             FileQuestion::OpenCams { .. } => &["csv", "txt", "tsv"],
-            FileQuestion::Frames { .. } => &["txt"],
+            FileQuestion::Frames { .. } | FileQuestion::AxisReport { .. } => &["txt"],
             FileQuestion::Export { format, .. } => format.endings(),
         }
     }
@@ -395,6 +404,7 @@ impl FileQuestion {
             | FileQuestion::Export { suggested, .. }
             | FileQuestion::Frames { suggested, .. }
             | FileQuestion::Cams { suggested, .. }
+            | FileQuestion::AxisReport { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),
         }

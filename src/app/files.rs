@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
 use super::closing::MUCH;
 use super::connect;
+use super::hiperdrive;
 use super::interbus;
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
@@ -42,6 +43,10 @@ impl Studio {
             }
             FileQuestion::Cams { session, decimal_comma, .. } => {
                 self.act(Action::Interbus(session, interbus::Action::SaveTable { path, decimal_comma }));
+            }
+            FileQuestion::AxisReport { session, .. } => {
+                let save = hiperdrive::axis::Action::SaveReport(path, self.settings.language);
+                self.act(Action::Hiperdrive(session, hiperdrive::Action::Axis(save)));
             }
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
@@ -145,6 +150,14 @@ impl Studio {
         }
         let severity = if lost > 0 { severity.max(Severity::Warning) } else { severity };
         self.services.tell(severity, texts, None);
+    }
+
+    pub(super) fn report_saved(&mut self, path: &Path, result: Result<(), FileError>) {
+        let (severity, text) = match result {
+            Ok(()) => (Severity::Good, Text::new("report.saved").with("path", path.display())),
+            Err(error) => (Severity::Error, explain::file(&error)),
+        };
+        self.services.tell(severity, vec![text], None);
     }
 
     pub(super) fn picture_saved(&mut self, path: &Path, result: Result<(), FileError>) {

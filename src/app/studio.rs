@@ -372,6 +372,7 @@ impl Studio {
             Done::Looked { question, path, exists: false } => self.chosen(question, path),
             Done::TableWritten(desk, exported) => self.table_written(desk, exported),
             Done::PictureSaved(path, result) => self.picture_saved(&path, result),
+            Done::ReportSaved(path, result) => self.report_saved(&path, result),
             // That was to be looked at.
             Done::Left => {}
             Done::Written { session, path, key, document, remarks, result } => {

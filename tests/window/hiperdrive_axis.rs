@@ -1,186 +1,30 @@
 //! The set-up of an axis as one run, by actions against a virtual drive: from a drive that nobody has asked for to limits in
 //! millimetres that have survived the supply; what is locked on the way; what is left when it is cancelled.
 
-use encoder_studio::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Place, Reached, Step};
+mod bench;
+
+use encoder_studio::app::hiperdrive::axis::{Action as Run, Button, End, Place, Power, Reached, Restart, Step, words};
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action, ReviewAction, Tab};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ParameterNumber, Value};
+use encoder_studio::app::{Action, Language, ReviewAction, Settings, Severity};
+use encoder_studio::device::hiperdrive::dead_man::Effort;
+use encoder_studio::profile::hiperdrive::Service;
+use encoder_studio::protocol::hiperdrive::{
+    Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
+};
+use encoder_studio::sim::Faults;
 use encoder_studio::units::Moment;
+use encoder_studio::worker::hiperdrive::Change;
 
 use crate::support::Desk;
 
-/// An adapter whose drive nobody has asked for.
-const FRESH: &str = "sim:?requested=0";
-
-fn unit(desk: &Desk) -> &Unit {
-    desk.studio.hiperdrive().unwrap()
-}
-
-fn axis(desk: &Desk) -> &Axis {
-    unit(desk).axis().unwrap()
-}
-
-fn act(desk: &mut Desk, action: Hiperdrive) {
-    let id = unit(desk).session.id;
-    desk.act(Action::Hiperdrive(id, action));
-}
-
-fn run(desk: &mut Desk, action: Run) {
-    act(desk, Hiperdrive::Axis(action));
-}
-
-#[track_caller]
-fn until_ready(desk: &mut Desk) {
-    desk.until("it is ready", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
-    });
-}
-
-fn begun(link: &str) -> Desk {
-    let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
-    desk.open(link);
-    until_ready(&mut desk);
-    desk.settle();
-    run(&mut desk, Run::Begin);
-    assert_eq!(axis(&desk).step(), Step::Request);
-    desk
-}
-
-/// Consents to the plan that the step has made, and closes its review.
-#[track_caller]
-fn write(desk: &mut Desk) {
-    desk.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
-    });
-    until_ready(desk);
-    let Stage::Ready(plan) = desk.studio.shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
-    let id = unit(desk).session.id;
-    desk.act(Action::Review(id, ReviewAction::Write(plan)));
-    desk.until("it is written", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
-    });
-    desk.act(Action::Review(id, ReviewAction::Close));
-    desk.settle();
-    until_ready(desk);
-}
-
-#[track_caller]
-fn step_with_write(desk: &mut Desk) {
-    run(desk, Run::Press(Button::Do));
-    write(desk);
-}
-
-/// The step is done, and the next one comes.
-#[track_caller]
-fn next(desk: &mut Desk, step: Step) {
-    let (axis, seen) = (axis(desk), unit(desk).seen(DriveNumber::FIRST));
-    assert_eq!(axis.may_go_on(&seen), Ok(()), "{:?}", axis.step());
-    run(desk, Run::Next);
-    assert_eq!(self::axis(desk).step(), step);
-}
-
-fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
-    let mut entries = axis(desk).entries().clone();
-    change(&mut entries);
-    run(desk, Run::Edit(Box::new(entries)));
-}
-
-fn position(desk: &Desk) -> i32 {
-    unit(desk).actual(DriveNumber::FIRST).unwrap().position
-}
-
-fn number(desk: &Desk, number: u16) -> i64 {
-    unit(desk).number(DriveNumber::FIRST, number).unwrap()
-}
-
-/// Held until it has gone so far, then let go.
-#[track_caller]
-fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
-    let from = position(desk);
-    act(desk, Hiperdrive::Drive(Motor::JogPress { direction, repeated: false }));
-    let began = std::time::Instant::now();
-    while (position(desk) - from).abs() < steps {
-        act(desk, Hiperdrive::Drive(Motor::JogHold));
-        desk.studio.poll();
-        assert!(began.elapsed() < crate::support::LONG, "it does not move: {:?}", unit(desk).said(DriveNumber::FIRST));
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    act(desk, Hiperdrive::Drive(Motor::JogRelease));
-    stands(desk);
-}
-
-#[track_caller]
-fn stands(desk: &mut Desk) {
-    desk.until("it stands", |studio| {
-        studio.hiperdrive().is_some_and(|own| !own.is_moving() && !own.seen(own.drive()).moves)
-    });
-}
-
-/// A drive with 400 steps a turn of 4 mm, with control, in the step with the slow jog.
-fn until_jog() -> Desk {
-    let mut desk = begun(FRESH);
-    step_with_write(&mut desk);
-    desk.until("the drive is there", |studio| {
-        let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().may_go_on(&own.seen(DriveNumber::FIRST)).is_ok()
-    });
-    next(&mut desk, Step::Scale);
-    edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
-    step_with_write(&mut desk);
-    // Reference 5: 400/256; 511 turns of 400 steps.
-    assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
-    next(&mut desk, Step::Confirm);
-    desk
-}
-
-fn confirmed() -> Desk {
-    let mut desk = until_jog();
-    run(&mut desk, Run::Press(Button::Confirm));
-    next(&mut desk, Step::Jog);
-    run(&mut desk, Run::Press(Button::Take));
-    desk.until("control", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
-    });
-    desk
-}
+use bench::*;
 
 #[test]
 fn a_new_drive_becomes_an_axis_in_millimetres_that_survives_the_supply() {
-    let mut desk = confirmed();
-    jog(&mut desk, Direction::Clockwise, 20);
-    jog(&mut desk, Direction::Counterclockwise, 10);
-    next(&mut desk, Step::Reference);
-    edit(&mut desk, |own| own.reference = "1".to_owned());
-    step_with_write(&mut desk);
-    // 100 steps are rounded to 128: the nearest multiple of 64.
-    desk.until("the position is set", |studio| {
-        studio.hiperdrive().unwrap().actual(DriveNumber::FIRST).is_some_and(|own| (own.position - 128).abs() <= 1)
-    });
-    next(&mut desk, Step::Lower);
-    jog(&mut desk, Direction::Counterclockwise, 10);
-    run(&mut desk, Run::TakePlace);
-    let lower = position(&desk);
-    next(&mut desk, Step::Upper);
-    jog(&mut desk, Direction::Clockwise, 40);
-    run(&mut desk, Run::TakePlace);
-    let upper = position(&desk);
-    step_with_write(&mut desk);
-    assert_eq!([158, 160].map(|own| number(&desk, own)), [i64::from(lower), i64::from(upper)]);
-    next(&mut desk, Step::Test);
-    for place in Place::ALL {
-        run(&mut desk, Run::Press(Button::Go(place)));
-        desk.until("it has gone there", |studio| studio.hiperdrive().unwrap().axis().unwrap().outcome(place).is_some());
-        let outcome = axis(&desk).outcome(place).unwrap();
-        assert!(outcome.is_good(), "{place:?}: {outcome:?}");
-        stands(&mut desk);
-    }
-    next(&mut desk, Step::Save);
-    assert_eq!(unit(&desk).session.cycles, Some(0), "nothing was saved on the way");
-    step_with_write(&mut desk);
+    let mut desk = until_saved(FRESH);
     assert_eq!(unit(&desk).session.cycles, Some(1));
-    next(&mut desk, Step::PowerCycle);
+    let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
     run(&mut desk, Run::Press(Button::Give));
     desk.until("without control", |studio| {
         studio.hiperdrive().is_some_and(|own| !own.moves.is_open() && own.session.is_ready())
@@ -193,6 +37,7 @@ fn a_new_drive_becomes_an_axis_in_millimetres_that_survives_the_supply() {
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
     assert!(Step::ALL.into_iter().all(|step| axis(&desk).reached(step) == Reached::Done));
+    let (lower, upper) = limits;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [1, 400, 256, lower.into(), upper.into()]);
 }
 
@@ -205,7 +50,7 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     desk.until("control", |studio| {
         studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
     });
-    assert!(axis(&desk).may_move(&unit(&desk).seen(DriveNumber::FIRST)).is_err());
+    assert!(axis(&desk).may_move(&seen(&desk)).is_err());
     let before = position(&desk);
     act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));
     for _ in 0..50 {
@@ -246,7 +91,7 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
         own.session.is_ready() && own.limits(DriveNumber::FIRST) == Some((-204_400, 1000))
     });
     let axis = axis(&desk);
-    assert_eq!(axis.may_go_on(&unit(&desk).seen(DriveNumber::FIRST)).unwrap_err().id(), "hd_axis.needs_confirm");
+    assert_eq!(axis.may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.needs_confirm");
     run(&mut desk, Run::Press(Button::Confirm));
     next(&mut desk, Step::Jog);
 }
@@ -260,12 +105,197 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     stands(&mut desk);
     let own = axis(&desk);
     assert_eq!((own.end(), own.is_saved(), own.changes().len()), (Some(End::Cancelled), false, 5));
-    // Everything is as it was saved last: nobody has asked for the drive.
+    // Everything is written back as it was, and read: nobody has asked for the drive.
     run(&mut desk, Run::Press(Button::Recall));
     write(&mut desk);
     assert!(axis(&desk).changes().is_empty());
-    assert_eq!([152, 154, 156].map(|own| number(&desk, own)), [0, 256, 1]);
+    let turned = 33_488_896;
+    assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 256, 1, -turned, turned]);
     assert_eq!(unit(&desk).session.cycles, Some(0));
+    let told = words::returned(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
+    assert!(
+        told.contains("5 of 5 parameters are as they were") && words::differences(&seen(&desk)).is_none(),
+        "{told}"
+    );
+    let report = unit(&desk).axis_report(Language::English).unwrap();
+    assert!(report.contains("The run was cancelled") && !report.contains("Nothing was written"), "{report}");
+}
+
+/// Issue 21.6 (d): 47 = −2 is about the adapter alone; scale and limits of the drive stay, and nobody is told otherwise.
+#[test]
+fn a_recall_takes_nothing_back_of_the_drive() {
+    let mut desk = confirmed();
+    act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
+    write(&mut desk);
+    assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
+    let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
+    assert!(told.contains("154 is 400 instead of 256") && !told.contains("152"), "{told}");
+    // The request is gone: the step that is shown stays, and says which one is to be done again.
+    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (Step::Jog, Some(Step::Request)));
+}
+
+/// Issue 21.6 (a): what the pads of the run state is what is sent, whatever the Motion page has, which keeps its own.
+#[test]
+fn the_pads_of_the_run_have_an_effort_of_their_own() {
+    let mut desk = begun("sim:");
+    let percent = |value| Percent::new(value).unwrap();
+    let chosen = Effort { speed: percent(80), torque: percent(100) };
+    act(&mut desk, Hiperdrive::Drive(Motor::JogEffort(chosen)));
+    run(&mut desk, Run::Begin);
+    run(&mut desk, Run::Press(Button::Take));
+    desk.until("control", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.moves.is_open() && own.session.is_ready() && own.may_move(own.drive()).is_ok()
+    });
+    for (press, speed, torque) in [
+        (Motor::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
+        (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
+    ] {
+        act(&mut desk, Hiperdrive::Drive(press));
+        held_until(&mut desk, "it turns", |own| own.moves.held(own.drive()).is_some());
+        let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
+        assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
+        act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
+        stands(&mut desk);
+        assert_eq!(unit(&desk).moves.jog_effort(), chosen);
+    }
+}
+
+/// Issue 21.6 (f): what is typed is no spindle until the step is left with it; nothing of it is remembered.
+#[test]
+fn a_pitch_counts_once_it_is_confirmed() {
+    let mut desk = begun("sim:");
+    assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).pitch(unit(&desk).drive())), ("", None));
+    next(&mut desk, Step::Scale);
+    edit(&mut desk, |own| own.pitch = "4".to_owned());
+    assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
+    step_with_write(&mut desk);
+    assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
+    next(&mut desk, Step::Confirm);
+    assert_eq!(unit(&desk).pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
+    // Elsewhere it becomes another one.
+    let drive = unit(&desk).drive();
+    act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
+    desk.settle();
+    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (Step::Confirm, Some(Step::Scale)));
+}
+
+/// Issue 21.6 (h): a run that was broken off is told by the next one, also after the program was started again.
+#[test]
+fn a_new_run_tells_what_a_broken_one_left() {
+    let mut desk = until_jog();
+    let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.words(Language::English));
+    let told = differences(&desk).unwrap();
+    assert!(told.contains("154 is 400 instead of 256") && told.contains("152 is 1 instead of 0"), "{told}");
+    run(&mut desk, Run::Begin);
+    assert_eq!(differences(&desk), Some(told.clone()));
+    // A drive that is the same, in a program that was ended and started.
+    desk.until("it is remembered", |studio| studio.settings.emit().contains("154: 256"));
+    let kept = Settings::parse(&desk.studio.settings.emit()).unwrap();
+    assert_eq!(kept, desk.studio.settings);
+    // The supply takes it away: then there is nothing to tell.
+    unit(&desk).target.clone().unwrap().power_cycle();
+    act(&mut desk, Hiperdrive::Read);
+    desk.until("it is read again", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && own.number(own.drive(), 154) == Some(256)
+    });
+    assert_eq!(differences(&desk), None);
+}
+
+/// Issue 21.6 (e): a connection that is closed and opened again is no restart; what was changed and is never saved tells.
+#[test]
+fn a_reconnection_is_no_restart() {
+    let mut desk = until_saved("sim:?requested=0&timeout=250");
+    step_with_write(&mut desk);
+    assert_eq!(number(&desk, 182), 1001);
+    run(&mut desk, Run::Press(Button::Give));
+    desk.until("without control", |studio| {
+        studio.hiperdrive().is_some_and(|own| !own.moves.is_open() && own.session.is_ready())
+    });
+    let target = unit(&desk).target.clone().unwrap();
+    // The cable is pulled and plugged in.
+    target.set_faults(&"silent-after:0".parse().unwrap());
+    desk.until("it is silent", |studio| {
+        matches!(studio.hiperdrive().unwrap().axis().unwrap().power(), Some(Power::Gone(_)))
+    });
+    target.set_faults(&Faults::default());
+    desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
+    act(&mut desk, Hiperdrive::Read);
+    desk.until("it is back", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.session.is_ready() && matches!(own.axis().unwrap().power(), Some(Power::Back { .. }))
+    });
+    assert!(!axis(&desk).survived());
+    assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
+    // Off and on behind the program's back, as a real one is; nobody asks it anything meanwhile.
+    target.power_cycle();
+    act(&mut desk, Hiperdrive::Read);
+    until_ready(&mut desk);
+    desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
+    assert!(axis(&desk).survived(), "{:?}", axis(&desk).power());
+    let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };
+    assert_eq!(restart, Restart::Read);
+    run(&mut desk, Run::Next);
+    assert_eq!(axis(&desk).end(), Some(End::Done));
+}
+
+/// Issue 21.6 (g): a fault during the test is told with its code, disables what moves, and is acknowledged there.
+#[test]
+fn a_fault_in_the_test_is_told_and_acknowledged() {
+    let mut desk = until_test(FRESH, 1, false);
+    run(&mut desk, Run::Press(Button::Go(Place::Lower)));
+    desk.until("it moves", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Moving))
+    });
+    let drive = unit(&desk).drive();
+    let clock = Moment::default();
+    unit(&desk).target.clone().unwrap().with(|own| own.drive(drive).unwrap().fail(clock, ErrorCode::BLOCK_FORWARD));
+    desk.until("its code is there", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        words::fault(&own.seen(own.drive())).is_some_and(|text| text.words(Language::English).starts_with("Fault 8301"))
+    });
+    assert_eq!(axis(&desk).ask(Button::Go(Place::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
+    assert!(axis(&desk).outcome(Place::Lower).is_some_and(|own| !own.is_good()));
+    desk.until("it can be acknowledged", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.axis().unwrap().ask(Button::Acknowledge, &own.seen(own.drive())).is_ok()
+    });
+    run(&mut desk, Run::Press(Button::Acknowledge));
+    desk.until("it is over", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        let seen = own.seen(own.drive());
+        !seen.has_failed() && own.axis().unwrap().ask(Button::Go(Place::Lower), &seen).is_ok()
+    });
+    assert!(words::fault(&seen(&desk)).is_none());
+}
+
+/// Issue 21.6 (j): the end is saved as text, in millimetres, where the person wants it.
+#[test]
+fn the_end_is_saved_as_a_report() {
+    let mut desk = confirmed();
+    run(&mut desk, Run::Cancel);
+    run(&mut desk, Run::AskReport);
+    let question = desk.studio.take_file_question().unwrap();
+    assert_eq!(question.endings(), ["txt"]);
+    let path = desk.outside.path("axis.txt");
+    desk.act(Action::Chosen(question, path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("The drive has -2044.00 mm … 2044.00 mm."), "{text}");
+    desk.settle();
+    assert_eq!(desk.told(Severity::Good).last(), Some(&"report.saved"));
+}
+
+/// Issue 21.6: the whole run on a drive of a hub; in each write a refusal first, then a line that is lost in the middle of it.
+#[test]
+fn a_drive_of_a_hub_is_set_up_over_refusals_and_lost_lines() {
+    let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
+    let three = DriveNumber::new(3).unwrap();
+    assert_eq!(unit(&desk).drive(), three);
+    assert_eq!([352, 354, 356].map(|own| read(&desk, own)), [1, 400, 256]);
+    // The drive beside it is as it was.
+    assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }
 
 #[test]

@@ -8,7 +8,10 @@ use encoder_studio::app::hiperdrive::axis::Step;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
+use encoder_studio::device::hiperdrive::dead_man::Goal;
 use encoder_studio::protocol::ethernet_ip::AddressSource;
+use encoder_studio::protocol::hiperdrive::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
+use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
@@ -248,4 +251,68 @@ fn stop_is_reached_over_a_dialog() {
     screen.until("it stands", |studio| !studio.moves());
     let own = screen.studio().hiperdrive().unwrap();
     assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
+}
+
+/// Issue 21.6 (i): whatever the drive says, nothing that can be clicked moves, and the step stays until a person leaves it.
+#[test]
+fn nothing_in_a_step_moves_away_under_the_pointer() {
+    let mut screen = page("sim:", "page.axis");
+    let advance = |screen: &mut Screen, step: Step| {
+        screen.click("hd_axis.next");
+        screen.steps();
+        assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), step);
+    };
+    screen.click("hd_axis.begin");
+    screen.steps();
+    assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
+    advance(&mut screen, Step::Scale);
+    // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps a turn: there is nothing to write.
+    screen.put("Pitch (mm a turn)", "655.36");
+    assert!(!screen.is_enabled("hd_axis.write"));
+    advance(&mut screen, Step::Confirm);
+    screen.click("hd_axis.confirm");
+    advance(&mut screen, Step::Jog);
+    let places = |screen: &Screen| {
+        [
+            "hd_axis.take",
+            "hd_axis.acknowledge",
+            "hd_axis.jog_down",
+            "hd_axis.jog_up",
+            "hd_axis.back",
+            "hd_axis.cancel",
+            "hd_axis.next",
+        ]
+        .map(|id| screen.button(id).rect())
+    };
+    let before = places(&screen);
+    let unit = |screen: &Screen| screen.studio().hiperdrive().unwrap().target.clone().unwrap();
+    screen.click("hd_axis.take");
+    screen.until("control", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.may_move(own.drive()).is_ok() && own.session.is_ready())
+    });
+    screen.steps();
+    assert_eq!(places(&screen), before, "with control");
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Lead(Goal::Enabled))));
+    screen.until("it is enabled", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Enabled))
+    });
+    unit(&screen).with(|own| own.drive(DriveNumber::FIRST).unwrap().fail(Moment::default(), ErrorCode::FOLLOWING));
+    screen.until("its code is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.seen(own.drive()).error == Some(ErrorCode::FOLLOWING))
+    });
+    screen.steps();
+    assert!(screen.shows("Fault 8203") && screen.is_enabled("hd_axis.acknowledge"));
+    assert!(!screen.is_enabled("hd_axis.jog_up") && !screen.is_enabled("hd_axis.jog_down"));
+    assert_eq!(places(&screen), before, "in a fault");
+    let scale = ParameterNumber::of_drive(154, DriveNumber::FIRST).unwrap();
+    unit(&screen).with(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
+    screen.until("somebody else has set the scale", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.axis().unwrap().fallen() == Some(Step::Scale))
+    });
+    screen.steps();
+    assert!(screen.shows("Step 2, Pitch and resolution, no longer holds"));
+    assert_eq!((screen.studio().hiperdrive().unwrap().axis().unwrap().step(), places(&screen)), (Step::Jog, before));
+    screen.click("hd_axis.back");
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Scale);
 }

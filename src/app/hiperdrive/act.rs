@@ -8,7 +8,7 @@ use super::words;
 use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
 use crate::app::{Severity, Text};
-use crate::device::hiperdrive::dead_man::Wish;
+use crate::device::hiperdrive::dead_man::{Effort, Wish};
 use crate::profile::Body;
 use crate::profile::hiperdrive::HiperdriveProfile;
 use crate::worker::hiperdrive::HiperdriveJob;
@@ -97,10 +97,11 @@ impl Unit {
                 self.confirm_limits(drive, services);
                 return;
             }
-            Motor::JogPress { repeated: true, .. } => return,
+            Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
                 Wish::Jog { direction, effort: self.moves.jog_effort(), outward: false }
             }
+            Motor::SlowJogPress { direction, .. } => Wish::Jog { direction, effort: Effort::JOG, outward: false },
             Motor::Lead(goal) => Wish::Lead(goal),
             Motor::Acknowledge => Wish::Acknowledge,
             Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort() },
@@ -114,8 +115,8 @@ impl Unit {
             services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }
-        match motor {
-            Motor::JogPress { direction, repeated } => self.moves.press(drive, direction, repeated),
+        match wish {
+            Wish::Jog { .. } => self.moves.press(drive, wish),
             _ => {
                 self.moves.want(drive, wish);
             }

@@ -75,6 +75,13 @@ pub enum Motor {
         /// The key repeats by itself: nothing begins by that.
         repeated: bool,
     },
+    /// A jog of the axis set-up is pressed: slow and weak, whatever is chosen for the others.
+    SlowJogPress {
+        /// Which way.
+        direction: Direction,
+        /// The key repeats by itself: nothing begins by that.
+        repeated: bool,
+    },
     /// It is still held: said with every picture.
     JogHold,
     /// It was let go.

@@ -2,24 +2,38 @@
 //! supply. A state machine over what is read ([`Seen`]) and what is to be done ([`Ask`]); it does nothing itself, and no step
 //! goes on before its drive says what the step is about.
 //!
+//! What the steps have made sure of is a chain: each result rests on facts of the drive (its scale, the pitch, the reference,
+//! the limits), and falls with them and with all that come after it, whoever changed them. The step that is shown is another
+//! matter: only a press of a person leaves it.
+//!
 //! Parameters are tried, which means that they are written and read back, but not saved: that is a step of its own, the last
-//! but one. Whoever ends the run before it has changed nothing that lasts.
+//! but one. The manual does not promise that what was not saved is gone without supply: what is wanted back is written back.
 
+mod act;
+mod chain;
+mod differences;
 mod entries;
 mod follow;
 mod gate;
 mod places;
+mod report;
+mod seen;
+mod supply;
 pub mod words;
 
 #[cfg(test)]
 mod tests;
 
+pub use act::{Action, Ask, Button};
 pub use entries::{Entries, Preview, Reference};
 pub use places::{Outcome, Place, Travel};
+pub use report::{Device, end_lines, report};
+pub use seen::Seen;
+pub use supply::{Power, Restart};
 
 use super::ruler::Ruler;
-use crate::device::hiperdrive::dead_man::{Ended, Lock};
-use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Family, PositionScale};
+use crate::protocol::hiperdrive::{DriveNumber, PositionScale};
+use chain::{Basis, Chain, Origin};
 
 /// A step of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -44,104 +58,6 @@ pub enum Step {
     Save,
     /// The supply is switched off and on.
     PowerCycle,
-}
-
-/// What is known of the drive at a moment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
-    /// The device answers.
-    pub connected: bool,
-    /// It is asked for something, or a review is open.
-    pub busy: bool,
-    /// Its parameters may be others than those that were read.
-    pub stale: bool,
-    /// It is a virtual one.
-    pub is_virtual: bool,
-    /// The cyclic connection is open.
-    pub controlled: bool,
-    /// Something moves, or is about to.
-    pub moves: bool,
-    /// What turns in speed mode, which way.
-    pub turns: Option<Direction>,
-    /// What the drive said last.
-    pub actual: Option<Actual>,
-    /// Parameter 152.
-    pub requested: Option<bool>,
-    /// Parameters 154 and 156.
-    pub scale: Option<PositionScale>,
-    /// Parameters 158 and 160.
-    pub limits: Option<(i32, i32)>,
-    /// How far it turns.
-    pub family: Option<Family>,
-    /// Why it may not move.
-    pub locks: Vec<Lock>,
-    /// The last act of a person that is over.
-    pub ended: Option<(u64, Ended)>,
-}
-
-/// What is to be done for it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Ask {
-    /// Parameters, by the numbers of drive 1, are written through a plan that does not save.
-    Try(Vec<(u16, i64)>),
-    /// The place where the drive stands gets this position, which is not saved.
-    SetPosition(i32),
-    /// Somebody has seen what the limits are.
-    ConfirmLimits,
-    /// The drive moves slowly.
-    Move(i32),
-    /// The cyclic connection is opened.
-    Take,
-    /// It is closed.
-    Give,
-    /// Everything is saved.
-    Save,
-    /// What was saved last counts again.
-    Recall,
-    /// The virtual device's supply goes and comes back.
-    PowerCycle,
-}
-
-/// What can be pressed, beside what moves while it is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Button {
-    /// What the step is about: request, write, save.
-    Do,
-    /// The limits are right.
-    Confirm,
-    /// The limits are to be as wide as the drive turns.
-    Widen,
-    /// A test move.
-    Go(Place),
-    /// The cyclic connection.
-    Take,
-    /// It is closed.
-    Give,
-    /// The virtual supply.
-    PowerCycle,
-    /// Back to what was saved.
-    Recall,
-}
-
-/// What a person does in the run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// Begin it, or begin it again.
-    Begin,
-    /// Something was typed.
-    Edit(Box<Entries>),
-    /// A button.
-    Press(Button),
-    /// The place where the axis is becomes the limit of the step.
-    TakePlace,
-    /// To the next step.
-    Next,
-    /// To the next one without this one.
-    Skip,
-    /// To the one before.
-    Back,
-    /// End it: the drive stops.
-    Cancel,
 }
 
 /// How far a step is.
@@ -177,60 +93,57 @@ pub enum Change {
     Position(i32),
 }
 
-/// What is known before the supply goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Before {
-    scale: Option<PositionScale>,
-    limits: Option<(i32, i32)>,
-    position: Option<i32>,
+/// The end of a run: how, when, and what was known then.
+#[derive(Clone, Debug)]
+pub struct Over {
+    /// How.
+    pub end: End,
+    /// The time, as it is written.
+    pub when: String,
+    seen: Box<Seen>,
 }
 
-/// What came of the supply's going and coming back.
+/// Limits that a person has agreed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Power {
-    /// The device still answers.
-    On(Before),
-    /// It has stopped answering, or its parameters were not read since.
-    Gone(Before),
-    /// It is back.
-    Back {
-        /// What was saved is there.
-        kept: bool,
-        /// Steps between where it stood and where it stands; `None` where one of them is not known.
-        moved: Option<i64>,
-        /// So many are allowed.
-        allowed: i64,
-    },
+struct Confirmed {
+    scale: Option<PositionScale>,
+    /// Those that were looked at.
+    seen: (i32, i32),
+    /// Those, or the ones that were taught and written since by a plan that was looked at.
+    agreed: (i32, i32),
+    /// Taught ones of such a plan that was broken off: each of them may be there.
+    begun: Option<(i32, i32)>,
 }
 
 /// The run for one drive.
 #[derive(Clone, Debug)]
 pub struct Axis {
     drive: DriveNumber,
+    /// Which one is shown.
     step: Step,
     /// What is typed.
     entries: Entries,
-    /// The spindle is known from before: what is typed is no mere proposal.
-    spindle_known: bool,
-    /// The scale under which the limits were confirmed, and those.
-    confirmed: Option<(PositionScale, (i32, i32))>,
+    /// What was made sure of.
+    chain: Chain,
+    confirmed: Option<Confirmed>,
     travel: Travel,
-    /// What the place got: `None`: nothing yet.
-    reference: Option<i32>,
-    skipped: Vec<Step>,
+    /// The position that the place got, and what places count from since.
+    reference: Option<(i32, Origin)>,
+    /// One that is written, and to be read.
+    sets: Option<i32>,
     outcomes: [Option<Outcome>; 3],
     /// The test move under way: where it leads, and the act that began it.
     going: Option<(Place, i32, u64)>,
+    saved: bool,
+    power: Option<Power>,
     changes: Vec<Change>,
     /// Not all of the changes may have been made.
     partly: bool,
-    saved: bool,
+    /// What was written back.
+    returned: Vec<(u16, i64)>,
     /// What is being written.
     asked: Option<Ask>,
-    power: Option<Power>,
-    /// The drive does not say any more what an earlier step has made sure of.
-    fell_back: bool,
-    end: Option<End>,
+    over: Option<Over>,
 }
 
 impl Step {
@@ -263,9 +176,14 @@ impl Step {
         matches!(self, Step::Reference | Step::PowerCycle)
     }
 
+    /// Its place, from 0.
+    pub const fn index(self) -> usize {
+        // In the order of `ALL`.
+        self as usize
+    }
+
     fn beside(self, by: isize) -> Option<Step> {
-        let at = Step::ALL.iter().position(|own| *own == self)?;
-        Step::ALL.get(at.checked_add_signed(by)?).copied()
+        Step::ALL.get(self.index().checked_add_signed(by)?).copied()
     }
 }
 
@@ -276,20 +194,20 @@ impl Axis {
             drive,
             step: Step::Request,
             entries: Entries::new(ruler),
-            spindle_known: ruler.is_some_and(|own| own.pitch.is_some()),
+            chain: Chain::default(),
             confirmed: None,
             travel: Travel::default(),
             reference: None,
-            skipped: Vec::new(),
+            sets: None,
             outcomes: [None; 3],
             going: None,
+            saved: false,
+            power: None,
             changes: Vec::new(),
             partly: false,
-            saved: false,
+            returned: Vec::new(),
             asked: None,
-            power: None,
-            fell_back: false,
-            end: None,
+            over: None,
         }
     }
 
@@ -298,7 +216,7 @@ impl Axis {
         self.drive
     }
 
-    /// The step that counts.
+    /// The step that is shown.
     pub const fn step(&self) -> Step {
         self.step
     }
@@ -309,11 +227,21 @@ impl Axis {
     }
 
     /// How it ended; `None`: it goes on.
-    pub const fn end(&self) -> Option<End> {
-        self.end
+    pub fn end(&self) -> Option<End> {
+        self.over.as_ref().map(|over| over.end)
     }
 
-    /// What was changed, the first first. It lasts only where it was saved.
+    /// Its end, with the time.
+    pub const fn over(&self) -> Option<&Over> {
+        self.over.as_ref()
+    }
+
+    /// What was known at its end; before that, what is.
+    pub fn as_seen<'a>(&'a self, now: &'a Seen) -> &'a Seen {
+        self.over.as_ref().map_or(now, |over| &over.seen)
+    }
+
+    /// What was changed, the first first.
     pub fn changes(&self) -> &[Change] {
         &self.changes
     }
@@ -339,8 +267,8 @@ impl Axis {
     }
 
     /// The position that was set.
-    pub const fn reference(&self) -> Option<i32> {
-        self.reference
+    pub fn reference(&self) -> Option<i32> {
+        self.reference.map(|(position, _)| position)
     }
 
     /// What came of a test move.
@@ -358,31 +286,39 @@ impl Axis {
         self.power
     }
 
-    /// An earlier step has to be done again, because the drive does not have any more what it made sure of.
-    pub const fn fell_back(&self) -> bool {
-        self.fell_back
-    }
-
-    /// How steps are measured: with the scale that the drive has, on the spindle that is known or was typed. What is only
-    /// proposed measures nothing.
-    pub fn ruler(&self, seen: &Seen) -> Option<Ruler> {
-        let typed = self.spindle_known || self.step > Step::Scale;
-        Some(Ruler { scale: seen.scale?, pitch: self.entries.pitch().ok().filter(|_| typed) })
+    /// An earlier step whose result the drive does not have any more: it has to be done again, and all behind it.
+    pub fn fallen(&self) -> Option<Step> {
+        self.chain.end().filter(|step| *step < self.step)
     }
 
     /// How far each step is.
     pub fn reached(&self, step: Step) -> Reached {
+        let is_shown = step == self.step && self.over.is_none();
         match step {
-            _ if self.skipped.contains(&step) && step != self.step => Reached::Skipped,
             Step::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => Reached::Failed,
-            _ if step < self.step || self.end == Some(End::Done) => Reached::Done,
-            _ if step == self.step && self.end.is_none() => Reached::Now,
+            _ if self.fallen() == Some(step) => Reached::Failed,
+            _ if is_shown => Reached::Now,
+            _ if self.chain.is_skipped(step) => Reached::Skipped,
+            _ if self.chain.holds(step) => Reached::Done,
             _ => Reached::Ahead,
         }
     }
 
-    /// What was saved is there after the supply was gone, and the axis stands where it stood.
+    /// The supply was off, what was saved is there, and the axis stands where it stood.
     pub fn survived(&self) -> bool {
-        matches!(self.power, Some(Power::Back { kept: true, moved: Some(moved), allowed }) if moved.abs() <= allowed)
+        self.power.is_some_and(Power::is_survived)
+    }
+
+    /// The facts of now on which results rest.
+    fn basis(&self, seen: &Seen) -> Basis {
+        Basis {
+            requested: seen.requested,
+            scale: seen.scale,
+            pitch: seen.pitch,
+            confirmed: self.is_confirmed(seen),
+            origin: Origin::of(seen),
+            limits: seen.limits,
+            lower: self.entries.lower(seen.ruler()).ok(),
+        }
     }
 }

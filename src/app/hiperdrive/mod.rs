@@ -23,6 +23,7 @@ mod staged;
 mod survey;
 mod trace;
 mod unit;
+mod unsaved;
 pub mod words;
 mod write;
 

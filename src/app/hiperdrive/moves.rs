@@ -5,8 +5,9 @@
 //! themselves. A window that stands still says nothing, and 250 ms later everything stands.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
 
-use crate::device::hiperdrive::dead_man::{Effort, Ended, Lock, Permit, Phase, Wish};
+use crate::device::hiperdrive::dead_man::{Effort, Ended, Lock, Motive, Permit, Phase, Wish};
 use crate::device::hiperdrive::{DriveLimits, LimitsSeen};
 use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
@@ -52,6 +53,9 @@ enum Kind {
     /// Every picture.
     Other,
 }
+
+/// So long packets have to come before what they say of a drive is its position (`U`: a hub first asks all its drives).
+const HEARD: Duration = Duration::from_millis(250);
 
 impl Default for Moves {
     fn default() -> Self {
@@ -156,10 +160,10 @@ impl Moves {
         Some(number)
     }
 
-    /// A jog is pressed. While one is held, and by a key that repeats itself, nothing begins.
-    pub(super) fn press(&mut self, drive: DriveNumber, direction: Direction, repeated: bool) {
-        if !repeated && !self.is_held() {
-            self.intend(drive, Wish::Jog { direction, effort: self.jog, outward: false }, Kind::Held);
+    /// A jog is pressed. While one is held, nothing begins.
+    pub(super) fn press(&mut self, drive: DriveNumber, jog: Wish) {
+        if !self.is_held() {
+            self.intend(drive, jog, Kind::Held);
         }
     }
 
@@ -314,6 +318,22 @@ impl Moves {
     pub fn is_held(&self) -> bool {
         let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
+    }
+
+    /// The act by which a drive turns while its pad is held, and which way.
+    pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
+        let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
+        match self.phase(drive)? {
+            Phase::Moving(Motive::Run { direction, .. }) => Some((act.number, direction)),
+            _ => None,
+        }
+    }
+
+    /// What the drives say has come for a while: the first packets of a connection are no position of theirs.
+    pub fn is_heard(&self) -> bool {
+        let link = &self.view.link;
+        let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
+        self.view.open && link.interval.saturating_mul(packets) >= HEARD
     }
 
     /// Some drive moves, is about to, or is led to where it may.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::drafts::Edits;
 use super::job;
+use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::review::told;
@@ -297,7 +298,11 @@ impl OnLine for Unit {
             Cut::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             Cut::Lost => {}
         }
-        self.cut_write(how, texts)
+        let is_told = self.cut_write(how, texts);
+        let begun =
+            matches!(self.review.as_ref().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
+        self.unsaved.ended(begun);
+        is_told
     }
 
     fn polling_ends(&mut self) {

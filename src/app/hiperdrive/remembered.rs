@@ -1,5 +1,5 @@
 //! What is remembered of a device's drives beside what they keep themselves: the spindles behind them, what their positions
-//! are shown in, and limits that nobody has looked at since their scaling was changed.
+//! are shown in, limits that nobody has looked at since their scaling was changed, and what was not saved.
 //!
 //! The device may be open in another session or another window too. What is typed in one of them does not change another;
 //! limits that are marked as unconfirmed in one of them lock all of them, and are confirmed in each.
@@ -24,6 +24,8 @@ pub struct Remembered {
     unconfirmed: Vec<u8>,
     /// How often each drive was marked so: tells a mark from the one before.
     marks: BTreeMap<u8, u64>,
+    /// What was saved of what was written since, by the parameters' own numbers.
+    unsaved: BTreeMap<u16, i64>,
 }
 
 /// What can be read of a drive's entry whose other parts are broken.
@@ -41,6 +43,7 @@ pub(super) struct Exchanged {
     kept: Remembered,
     pitches: BTreeMap<u8, u64>,
     measure: Measure,
+    unsaved: BTreeMap<u16, i64>,
     unconfirmed: BTreeSet<DriveNumber>,
     /// The scales in which limits are unconfirmed, as they were read.
     scales: BTreeMap<DriveNumber, (i64, i64)>,
@@ -98,13 +101,8 @@ impl Remembered {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
             maps.into_iter().flat_map(BTreeMap::keys).copied().collect()
         };
-        for drive in drives([&known.pitches, &ours.pitches]) {
-            match (known.pitches.get(&drive), ours.pitches.get(&drive)) {
-                (before, now) if before == now => {}
-                (_, Some(pitch)) => drop(self.pitches.insert(drive, *pitch)),
-                (_, None) => drop(self.pitches.remove(&drive)),
-            }
-        }
+        change(&mut self.pitches, &known.pitches, &ours.pitches);
+        change(&mut self.unsaved, &known.unsaved, &ours.unsaved);
         if ours.measure != known.measure {
             self.measure = ours.measure;
         }
@@ -121,6 +119,17 @@ impl Remembered {
             }
         }
         self
+    }
+}
+
+/// What `ours` has changed since `known`, key by key.
+fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
+    for key in known.keys().chain(ours.keys()) {
+        match (known.get(key), ours.get(key)) {
+            (before, now) if before == now => {}
+            (_, Some(value)) => drop(own.insert(*key, *value)),
+            (_, None) => drop(own.remove(key)),
+        }
     }
 }
 
@@ -141,8 +150,10 @@ impl Unit {
         };
         let mut next = kept.clone();
         let now = self.to_remember();
-        let known = Remembered { pitches: before.pitches, measure: before.measure, ..Remembered::default() };
-        let ours = Remembered { pitches: now.pitches.clone(), measure: now.measure, ..Remembered::default() };
+        let (pitches, measure, unsaved) = (before.pitches, before.measure, before.unsaved);
+        let known = Remembered { pitches, measure, unsaved, ..Remembered::default() };
+        let (pitches, measure, unsaved) = (now.pitches.clone(), now.measure, now.unsaved.clone());
+        let ours = Remembered { pitches, measure, unsaved, ..Remembered::default() };
         next = next.with_changes(&known, &ours);
         let scaled_anew =
             |drive: &DriveNumber| before.scales.get(drive).is_some_and(|scale| now.scales.get(drive) != Some(scale));
@@ -168,7 +179,13 @@ impl Unit {
             }
         }
         self.measure = kept.measure;
-        Exchanged { pitches: kept.pitches.clone(), measure: kept.measure, ..Exchanged::default() }
+        self.unsaved.extend(&kept.unsaved);
+        Exchanged {
+            pitches: kept.pitches.clone(),
+            measure: kept.measure,
+            unsaved: kept.unsaved.clone(),
+            ..Exchanged::default()
+        }
     }
 
     fn to_remember(&self) -> Exchanged {
@@ -178,6 +195,7 @@ impl Unit {
             kept: Remembered::default(),
             pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),
             measure: self.measure,
+            unsaved: self.unsaved.saved().clone(),
             scales: unconfirmed.iter().filter_map(scale).collect(),
             unconfirmed,
         }

@@ -1,17 +1,23 @@
 //! The set-up of axes and the network at a device: what is known for them, and what they ask for.
 
 use core::net::Ipv4Addr;
+use std::path::PathBuf;
 
-use super::axis::{Action, Ask, Axis, Button, Seen};
+use super::axis::{Action, Ask, Axis, Button, Device, Seen, Step, report};
 use super::review::ReviewState;
 use super::unit::Unit;
+use crate::app::action::{Action as StudioAction, Done, FileQuestion};
 use crate::app::services::Services;
 use crate::app::session::{Phase, Source, WithMemory};
-use crate::app::{Severity, Text};
-use crate::device::hiperdrive::dead_man::{Effort, Motive, Phase as Doing, Wish};
+use crate::app::{Language, Severity, Text, explain};
+use crate::device::hiperdrive::dead_man::{Effort, Wish};
 use crate::profile::hiperdrive::{Image, NetworkSettings, Service};
-use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber, Length, ParameterNumber};
+use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber, ParameterNumber};
+use crate::store::write_atomically;
 use crate::worker::hiperdrive::{Change, HiperdriveJob};
+
+/// The parameters of a drive that a set-up looks at, by the numbers of drive 1.
+const AXIS: std::ops::RangeInclusive<u16> = 152..=198;
 
 impl Unit {
     /// The set-up of the drive that is shown; `None` where nobody has begun one.
@@ -45,11 +51,10 @@ impl Unit {
     /// What is known of a drive, for its set-up.
     pub fn seen(&self, drive: DriveNumber) -> Seen {
         let view = self.moves.drive(drive);
-        let phase = view.map_or(Doing::Idle, |own| own.phase);
-        let turns = match phase {
-            Doing::Moving(Motive::Run { direction, .. }) => Some(direction),
-            _ => None,
-        };
+        let actual = self.actual(drive);
+        let is_heard = !self.moves.is_open() || self.moves.is_heard();
+        let position = actual.filter(|own| own.status.is_present() && is_heard).map(|own| own.position);
+        let errors = self.drive_status(drive).filter(|own| own.faults > 0);
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
         Seen {
             connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
@@ -58,14 +63,20 @@ impl Unit {
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
             moves: self.is_moving() || self.moves.is_under_way(),
-            turns,
-            actual: self.actual(drive),
+            held: self.moves.held(drive),
+            actual,
+            position,
+            values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
+            unsaved: self.unsaved_of(drive),
+            times_set: self.times_set(drive),
             requested: self.number(drive, 152).map(|value| value == 1),
             scale: self.scale(drive),
+            pitch: self.pitch(drive),
             limits: self.limits(drive),
             family,
             locks: self.moves.locks(drive),
             ended: view.and_then(|own| own.ended),
+            error: errors.and_then(|own| own.buffer.first().copied()),
         }
     }
 
@@ -94,27 +105,43 @@ impl Unit {
         if action == Action::Begin {
             return self.begin_axis(drive, services);
         }
+        let when = services.now().strftime("%Y-%m-%d %H:%M").to_string();
         let Some(axis) = self.axes.get_mut(&drive) else { return };
         match action {
             Action::Begin => {}
-            Action::Edit(entries) => {
-                axis.edit(*entries);
-                // Positions are measured on this spindle everywhere.
-                if let Ok(pitch) = axis.entries().pitch() {
-                    self.set_pitch(drive, pitch);
-                }
-            }
+            Action::Edit(entries) => axis.edit(*entries),
             Action::Press(button) => match axis.ask(button, &seen) {
                 Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
                 Err(why) => services.tell(Severity::Warning, vec![why], Some(&self.session.name())),
             },
             Action::TakePlace => axis.take_limit(&seen),
-            Action::Next => axis.go_on(&seen),
-            Action::Skip => axis.skip(&seen),
+            Action::Next => {
+                // What is typed was only looked at until now. Positions are measured on this spindle everywhere.
+                let confirms = axis.step() == Step::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
+                let pitch = axis.entries().pitch().ok().filter(|_| confirms);
+                axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen }, &when);
+                if let Some(pitch) = pitch {
+                    self.pitches.insert(drive, pitch);
+                }
+            }
+            Action::Skip => axis.skip(&seen, &when),
             Action::Back => axis.back(&seen),
             Action::Cancel => {
-                axis.cancel();
+                axis.cancel(&seen, &when);
                 self.moves.stop();
+            }
+            Action::AskReport => {
+                let file = self.session.suggested_file();
+                let stem = file.file_stem().map_or_else(String::new, |own| own.to_string_lossy().into_owned());
+                let suggested = PathBuf::from(format!("{stem}-axis-{}.txt", drive.get()));
+                services.file_question = Some(FileQuestion::AxisReport { session: self.session.id, suggested });
+            }
+            Action::SaveReport(path, language) => {
+                let Some(text) = self.axis_report(language) else { return };
+                services.tasks.run("report", move || {
+                    let result = write_atomically(&path, text.as_bytes());
+                    StudioAction::Done(Done::ReportSaved(path, result))
+                });
             }
         }
     }
@@ -123,22 +150,25 @@ impl Unit {
         if let Err(why) = self.may_set_up() {
             return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
         }
-        let axis = Axis::new(drive, Some(self.ruler(drive)));
-        if let Ok(pitch) = axis.entries().pitch() {
-            self.set_pitch(drive, pitch);
-        }
-        self.axes.insert(drive, axis);
-        self.moves.set_jog_effort(Effort::JOG);
+        self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
 
-    fn set_pitch(&mut self, drive: DriveNumber, pitch: Length) {
-        self.pitches.insert(drive, pitch);
+    /// The report of the set-up of the drive that is shown, once it is over.
+    pub fn axis_report(&self, language: Language) -> Option<String> {
+        let axis = self.axis()?;
+        let own = self.drive_identity(axis.drive());
+        let device = Device {
+            name: self.session.name(),
+            variant: own.map(|own| explain::hiperdrive::variant(own.variant)),
+            serial_number: own.map_or_else(String::new, |own| own.serial_number.clone()),
+        };
+        report(axis, &self.seen(axis.drive()), &device, language)
     }
 
     /// Everything that lasts goes through a plan and its review.
     fn carry_out(&mut self, drive: DriveNumber, button: Button, ask: Ask, seen: &Seen, services: &mut Services) {
         match &ask {
-            Ask::Try(values) => {
+            Ask::Try(values) | Ask::Restore(values) => {
                 let numbered =
                     |(number, value): &(u16, i64)| Some((ParameterNumber::of_drive(*number, drive)?, *value));
                 let image = Image { values: values.iter().filter_map(numbered).collect() };
@@ -148,16 +178,19 @@ impl Unit {
                 self.plan(Change::SetPosition { drive, position: *position, save: false }, services);
             }
             Ask::Save => self.plan(Change::Do(Service::Save), services),
-            Ask::Recall => self.plan(Change::Do(Service::Recall), services),
+            Ask::BelieveRestart => {}
+            Ask::Acknowledge => {
+                if let Err(why) = self.may(drive, Wish::Acknowledge) {
+                    return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                }
+                self.moves.want(drive, Wish::Acknowledge);
+            }
             Ask::ConfirmLimits => {
                 if !self.confirm_limits(drive, services) {
                     return;
                 }
             }
-            Ask::Take => {
-                self.moves.set_jog_effort(Effort::JOG);
-                self.act(super::Action::Take, services);
-            }
+            Ask::Take => self.act(super::Action::Take, services),
             Ask::Give => self.act(super::Action::Give, services),
             Ask::Move(target) => {
                 let wish = Wish::Move { target: *target, effort: Effort::JOG };
@@ -173,6 +206,7 @@ impl Unit {
             Ask::PowerCycle => {
                 if let Some(target) = &self.target {
                     target.power_cycle();
+                    self.switched = true;
                 }
                 self.axes.values_mut().for_each(Axis::lose);
                 self.submit(HiperdriveJob::Survey, services);
@@ -180,7 +214,7 @@ impl Unit {
             }
         }
         let begins = match ask {
-            Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Recall => self.review.is_some(),
+            Ask::Try(_) | Ask::Restore(_) | Ask::SetPosition(_) | Ask::Save => self.review.is_some(),
             _ => true,
         };
         if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
@@ -219,10 +253,11 @@ impl Unit {
 
     /// All parameters were read: what was saved has survived, or not.
     pub(super) fn axes_surveyed(&mut self) {
+        let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
         for (drive, seen) in seen {
             if let Some(axis) = self.axes.get_mut(&drive) {
-                axis.surveyed(&seen);
+                axis.surveyed(&seen, switched);
             }
         }
     }

@@ -5,6 +5,7 @@ use super::remembered::Marks;
 use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
+use super::unsaved::Unsaved;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved};
 use crate::app::{Severity, Text, explain};
@@ -26,6 +27,7 @@ impl Unit {
         let image = image(&survey);
         self.notice_scales(&image);
         self.session.title = Some(title(&survey.identity));
+        self.unsaved.read(&survey.values);
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();
@@ -167,6 +169,7 @@ impl Unit {
         self.readings.clear();
         self.pitches.clear();
         self.axes.clear();
+        self.unsaved = Unsaved::default();
         (self.exchanged, self.measure) = (None, Measure::default());
         (self.session.backups, self.session.writes) = (None, None);
     }

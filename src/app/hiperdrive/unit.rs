@@ -13,6 +13,7 @@ use super::remembered::{Exchanged, Marks};
 use super::review::Review;
 use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
+use super::unsaved::Unsaved;
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::line::Line;
@@ -63,6 +64,10 @@ pub struct Unit {
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     /// Set-ups of axes that somebody has begun.
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
+    /// The virtual device was switched off and on since it was read.
+    pub(super) switched: bool,
+    /// What was written and not saved, as far as that is known.
+    pub(super) unsaved: Unsaved,
     /// What the settings remember of it, and what of that was told them; `None` before they were asked.
     pub(super) exchanged: Option<Exchanged>,
     /// Whether another window has marked limits since control was taken is known.
@@ -105,6 +110,8 @@ impl Unit {
             drive: DriveNumber::FIRST,
             pitches: BTreeMap::new(),
             axes: BTreeMap::new(),
+            switched: false,
+            unsaved: Unsaved::default(),
             exchanged: None,
             marks: Marks::Unread,
             readings: BTreeMap::new(),

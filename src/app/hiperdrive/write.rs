@@ -8,7 +8,7 @@ use crate::app::{Severity, Text};
 use crate::profile::hiperdrive::{HiperdriveProfile, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
-use crate::worker::hiperdrive::{Change, Commit, Hiperdrive, HiperdriveJob, Prepared, device_key};
+use crate::worker::hiperdrive::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 
 impl Unit {
     pub(super) fn review_edits(&mut self, services: &mut Services) {
@@ -51,7 +51,14 @@ impl WithMemory for Unit {
     /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
     fn commit(&mut self, Agreed { prepared, consent, .. }: Agreed<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
+        self.unsaved.begin(&prepared.plan);
         HiperdriveJob::Commit(Box::new(Commit { prepared, consent }))
+    }
+
+    fn carried_out(&mut self, _: &Committed, _: &mut Services) {
+        if let Some(prepared) = self.review.as_ref().and_then(Review::writing) {
+            self.unsaved.done(&prepared.plan);
+        }
     }
 
     fn forget_steps(&mut self) {

@@ -72,6 +72,7 @@ fn kind(question: &FileQuestion) -> &'static str {
         FileQuestion::OpenFrames { .. } | FileQuestion::Frames { .. } => "file.frames",
         FileQuestion::Export { format, .. } => format.word(),
         FileQuestion::Table { .. } | FileQuestion::OpenCams { .. } | FileQuestion::Cams { .. } => "file.tables",
+        FileQuestion::AxisReport { .. } => "file.reports",
         FileQuestion::Picture { .. } => "file.pictures",
     }
 }
@@ -99,6 +100,7 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         FileQuestion::OpenCams { .. } => ("file.open_cams_title", "file.open", icons::FOLDER_OPEN),
         FileQuestion::Cams { .. } => ("file.cams_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Export { .. } => ("file.export_title", "file.save", icons::FLOPPY_DISK),
+        FileQuestion::AxisReport { .. } => ("file.report_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
         FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),
     };

@@ -1,12 +1,15 @@
-//! The set-up of an axis as one run: its steps on the left, the one that counts on the right, with what is to be done, where
+//! The set-up of an axis as one run: its steps on the left, the one that is shown on the right, with what is to be done, where
 //! the axis is, and what was found.
+//!
+//! Nothing that can be clicked moves while a step is shown, whatever the drive says: what comes and goes stands below all of
+//! that. The step is exchanged by a press of the person alone.
 
 mod content;
 
 use egui::{RichText, Ui};
 
 use crate::app::explain::hiperdrive as explain;
-use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, words};
+use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, end_lines, words};
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Severity, Text};
 use crate::ui::controls::{
@@ -98,21 +101,21 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     card(ui, skin, "hd_axis.title", |ui| {
         paragraph(ui, skin.say("hd_axis.words"));
-        ui.add_space(skin.space.inside);
-        for (number, step) in (1..).zip(Step::ALL) {
-            ui.label(skin.label(format!("{number}  {}", skin.words(&words::title(step)))));
-        }
         ui.add_space(skin.space.between);
+        // Before the list: in a low window it is seen without scrolling.
         let allowed = unit.may_set_up();
-        at_the_right(ui, |ui| {
-            let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin"));
-            if response.clicked() {
+        ui.horizontal(|ui| {
+            if primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin")).clicked() {
                 actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
                 warning(ui, skin, why);
             }
         });
+        ui.add_space(skin.space.between);
+        for (number, step) in (1..).zip(Step::ALL) {
+            ui.label(skin.label(format!("{number}  {}", skin.words(&words::title(step)))));
+        }
     });
 }
 
@@ -130,7 +133,7 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
         let told = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
             (Step::Reference, Reached::Skipped) => Some(Text::new("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.seen).filter(|_| told),
+            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
         };
         Line {
             title: skin.words(&words::title(step)),
@@ -164,9 +167,6 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
         }
     };
     card_with(ui, skin, content::heading(step), aside, |ui| {
-        if axis.fell_back() {
-            warning(ui, skin, &Text::new("hd_axis.fell_back"));
-        }
         paragraph(ui, skin.words(&words::todo(step, seen)));
         ui.add_space(skin.space.between);
         live(ui, skin, shown);
@@ -174,41 +174,61 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
         let mut entries = view.entries.take().unwrap_or_else(|| axis.entries().clone());
         content::content_ui(ui, skin, shown, &mut entries, actions);
         if entries != *axis.entries() {
-            shown.push(actions, Run::Edit(Box::new(entries)));
-        }
-        if let Some(found) = words::found(axis, step, seen) {
-            ui.add_space(skin.space.inside);
-            row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
+            shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         ui.add_space(skin.space.groups);
         foot(ui, skin, shown, age >= SETTLES, actions);
+        ui.add_space(skin.space.between);
+        messages(ui, skin, shown, &entries);
     });
 }
 
-/// Where the axis is, and in which state its drive.
+/// What comes and goes: a fault, what does not hold any more, what is missing, what was found.
+fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+    let (axis, seen) = (shown.axis, shown.seen);
+    let fallen = axis.fallen().map(words::fallen);
+    if let Some(why) = words::fault(seen) {
+        line(ui, skin, Severity::Error, &why);
+    }
+    if let Some(why) = &fallen {
+        line(ui, skin, Severity::Error, why);
+    }
+    if let (Err(why), None) = (axis.may_go_on(seen), &fallen) {
+        warning(ui, skin, &why);
+    }
+    content::messages_ui(ui, skin, shown, entries);
+    // The limits to be looked at stand large above.
+    if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
+        ui.add_space(skin.space.inside);
+        row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
+    }
+    if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
+        warning(ui, skin, &differences);
+    }
+}
+
+/// Where the axis is, and in which state its drive: always as high.
 fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
-    let Some(actual) = shown.seen.actual else { return };
     skin.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
-        ui.horizontal_wrapped(|ui| {
-            ui.label(skin.label(skin.say("hd_axis.position")));
-            let position = words::millimetres(shown.axis.ruler(shown.seen), actual.position.into());
-            ui.label(skin.value(skin.words(&position)));
-            ui.add_space(skin.space.groups);
-            ui.label(skin.label(skin.say("hd_axis.state")));
-            ui.label(skin.words(&explain::state(actual.status.state())));
-        });
+        let position = shown.seen.position.map_or_else(
+            || skin.say("hd_axis.none"),
+            |position| skin.words(&words::millimetres(shown.seen.ruler(), position.into())),
+        );
+        row(ui, skin, &skin.say("hd_axis.position"), skin.value(position));
+        let state = shown
+            .seen
+            .actual
+            .map_or_else(|| skin.say("hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
+        row(ui, skin, &skin.say("hd_axis.state"), state);
     });
 }
 
-/// Back and cancel, what is missing, and on. Before it is settled the step can only be cancelled, which stops what moves.
+/// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
 fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
     let allowed = axis.may_go_on(seen);
-    if let Err(why) = &allowed {
-        warning(ui, skin, why);
-    }
     ui.horizontal_wrapped(|ui| {
         let may_back = settled && step != Step::Request && !axis.is_writing() && !seen.moves;
         if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &skin.say("hd_axis.back")).clicked() {
@@ -219,7 +239,7 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mu
         }
         if step.may_be_skipped() {
             let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-            if enabled_button(ui, settled && !axis.is_writing() && !seen.moves, "", &skin.say(id)).clicked() {
+            if enabled_button(ui, settled && axis.may_skip(seen), "", &skin.say(id)).clicked() {
                 shown.push(actions, Run::Skip);
             }
         }
@@ -241,39 +261,40 @@ fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// How it ended: what was written, and whether that lasts.
+/// How it ended: what can be done now, what was written, and whether that lasts.
 fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
     card(ui, skin, title, |ui| {
-        if end == End::Cancelled {
-            line(ui, skin, Severity::Note, &Text::new("hd_axis.stands"));
-        }
-        if axis.changes().is_empty() {
-            line(ui, skin, Severity::Note, &Text::new("hd_axis.nothing_written"));
-        } else {
-            line(ui, skin, Severity::Note, &words::changes(axis, shown.seen));
-            if axis.is_partly_written() {
-                line(ui, skin, Severity::Warning, &Text::new("hd_axis.partly"));
-            }
-            let lasts = if axis.is_saved() {
-                (Severity::Good, "hd_axis.all_saved")
-            } else {
-                (Severity::Warning, "hd_axis.not_saved")
-            };
-            line(ui, skin, lasts.0, &Text::new(lasts.1));
-        }
-        ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if !axis.changes().is_empty() && !axis.is_saved() {
-                let word = skin.say("hd_axis.recall");
-                shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
-            }
             if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &skin.say("hd_axis.again")).clicked() {
                 shown.push(actions, Run::Begin);
             }
+            if button(ui, icons::FLOPPY_DISK, &skin.say("hd_axis.save_report")).clicked() {
+                shown.push(actions, Run::AskReport);
+            }
+            if button(ui, icons::COPY, &skin.say("hd_axis.copy_report")).clicked()
+                && let Some(report) = shown.unit.axis_report(skin.language)
+            {
+                ui.ctx().copy_text(report);
+            }
+            recall(ui, skin, shown, actions);
         });
+        ui.add_space(skin.space.inside);
+        if end == End::Cancelled {
+            line(ui, skin, Severity::Note, &Text::new("hd_axis.stands"));
+        }
+        let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
+        for text in end_lines(axis, shown.seen) {
+            line(ui, skin, weight, &text);
+        }
     });
+}
+
+/// What was known before is written back.
+fn recall(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let word = skin.say("hd_axis.recall");
+    shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
 /// What else one should know.

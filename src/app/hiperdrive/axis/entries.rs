@@ -46,10 +46,10 @@ pub struct Reference {
 }
 
 impl Entries {
-    /// As they begin: with what is known of the spindle.
+    /// As they begin: with what is known of the spindle. No pitch is proposed: one that nobody confirmed would measure wrong.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
-        let pitch = known.map_or_else(|| "4".to_owned(), |(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6));
+        let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
         let step = known.filter(|(_, own)| own.scale != PositionScale::FACTORY);
         let resolution = step.and_then(|(_, own)| own.of(1, Measure::Millimetres)).map(trimmed);
         let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());

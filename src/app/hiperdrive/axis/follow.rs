@@ -1,20 +1,25 @@
 //! How the run goes on: what a person presses, what was written, what the drive says.
 
+use super::chain::Origin;
 use super::entries::{Entries, typed};
-use super::{Ask, Axis, Before, Change, End, Outcome, Place, Power, Seen, Step, Travel};
+use super::supply::{Power, degrees};
+use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Place, Seen, Step, Travel};
 
 impl Axis {
     /// What is typed has changed.
     pub(in crate::app) fn edit(&mut self, entries: Entries) {
-        if self.end.is_none() {
+        if self.over.is_none() {
             self.entries = entries;
         }
     }
 
     /// The position where the axis stands becomes the limit of this step.
     pub(in crate::app) fn take_limit(&mut self, seen: &Seen) {
-        let Some((ruler, actual)) = self.ruler(seen).zip(seen.actual) else { return };
-        let Some(text) = typed(ruler, actual.position) else { return };
+        if self.may_take_place(seen).is_err() {
+            return;
+        }
+        let Some((ruler, position)) = seen.ruler().zip(seen.position) else { return };
+        let Some(text) = typed(ruler, position) else { return };
         match self.step {
             Step::Lower => self.entries.lower = text,
             Step::Upper => self.entries.upper = text,
@@ -22,72 +27,78 @@ impl Axis {
         }
     }
 
-    /// To the next step, where this one is done.
-    pub(in crate::app) fn go_on(&mut self, seen: &Seen) {
-        if self.end.is_some() || self.may_go_on(seen).is_err() {
-            return;
+    /// To the next step, where this one is done; `when`: the time, as it is written.
+    pub(in crate::app) fn go_on(&mut self, seen: &Seen, when: &str) {
+        if self.over.is_none() && self.may_go_on(seen).is_ok() {
+            self.leave(seen, false, when);
         }
-        self.skipped.retain(|step| *step != self.step);
-        self.enter_next(seen);
     }
 
     /// To the next step without this one, where that may be left out.
-    pub(in crate::app) fn skip(&mut self, seen: &Seen) {
-        if self.end.is_some() || !self.step.may_be_skipped() || self.asked.is_some() || seen.moves {
-            return;
+    pub(in crate::app) fn skip(&mut self, seen: &Seen, when: &str) {
+        if self.over.is_none() && self.may_skip(seen) {
+            self.leave(seen, true, when);
         }
-        if !self.skipped.contains(&self.step) {
-            self.skipped.push(self.step);
-        }
-        self.enter_next(seen);
     }
 
-    fn enter_next(&mut self, seen: &Seen) {
-        self.fell_back = false;
-        match self.step.beside(1) {
+    fn leave(&mut self, seen: &Seen, skipped: bool, when: &str) {
+        // What a person has just confirmed may be another fact than before.
+        self.settle(seen);
+        if self.fallen().is_some() {
+            return;
+        }
+        let next = self.step.beside(1);
+        if self.chain.make(self.step, self.basis(seen), skipped)
+            && let Some(next) = next
+        {
+            self.undo_from(next, next == Step::Upper);
+        }
+        match next {
             Some(step) => self.enter(step, seen),
-            None => self.end = Some(End::Done),
+            None => self.end_as(End::Done, seen, when),
         }
     }
 
-    /// To the step before. What was written stays.
+    /// To the step before, or to the one that has to be done again. What was written stays.
     pub(in crate::app) fn back(&mut self, seen: &Seen) {
-        if self.end.is_some() || self.asked.is_some() || seen.moves {
+        if self.over.is_some() || self.asked.is_some() || seen.moves {
             return;
         }
-        if let Some(step) = self.step.beside(-1) {
-            self.fell_back = false;
+        if let Some(step) = self.fallen().or_else(|| self.step.beside(-1)) {
             self.enter(step, seen);
         }
     }
 
     fn enter(&mut self, step: Step, seen: &Seen) {
         self.step = step;
-        match step {
-            Step::Jog => self.travel = Travel::default(),
-            Step::PowerCycle => {
-                let position = seen.actual.map(|actual| actual.position);
-                self.power = Some(Power::On(Before { scale: seen.scale, limits: seen.limits, position }));
-            }
-            _ => {}
+        if step == Step::PowerCycle {
+            self.power = Some(Power::on(seen));
         }
     }
 
     /// It is over before its end. Whoever calls this stops the drive.
-    pub(in crate::app) fn cancel(&mut self) {
-        if self.end.is_none() {
+    pub(in crate::app) fn cancel(&mut self, seen: &Seen, when: &str) {
+        if self.over.is_none() {
             self.going = None;
-            self.end = Some(End::Cancelled);
+            self.end_as(End::Cancelled, seen, when);
         }
+    }
+
+    fn end_as(&mut self, end: End, seen: &Seen, when: &str) {
+        self.over = Some(Over { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
     /// What was asked for is under way.
     pub(in crate::app) fn begin(&mut self, ask: Ask, seen: &Seen) {
         match ask {
-            Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Recall => self.asked = Some(ask),
-            Ask::ConfirmLimits => self.confirmed = seen.scale.zip(seen.limits),
+            Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Restore(_) => self.asked = Some(ask),
+            Ask::ConfirmLimits => {
+                let confirmed = |limits| Confirmed { scale: seen.scale, seen: limits, agreed: limits, begun: None };
+                self.confirmed = seen.limits.map(confirmed);
+            }
             Ask::PowerCycle => self.lose(),
-            Ask::Move(_) | Ask::Take | Ask::Give => {}
+            Ask::BelieveRestart => self.power = self.power.map(Power::said),
+            Ask::Move(_) | Ask::Take | Ask::Give | Ask::Acknowledge => {}
         }
     }
 
@@ -103,25 +114,39 @@ impl Axis {
     pub(in crate::app) fn written(&mut self) {
         match self.asked.take() {
             Some(Ask::Try(values)) => {
-                let scales = values.iter().any(|(number, _)| matches!(number, 154 | 156));
-                if scales {
-                    // Every place has another number.
-                    (self.confirmed, self.reference, self.outcomes) = (None, None, [None; 3]);
-                }
+                self.agree(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| Change::Parameter(number, value)));
-                self.saved = false;
+                // The mark is never saved.
+                self.saved &= self.step == Step::PowerCycle;
+                self.returned.clear();
             }
             Some(Ask::SetPosition(position)) => {
-                self.reference = Some(position);
-                self.travel.forget_places();
+                self.sets = Some(position);
                 self.changes.push(Change::Position(position));
                 self.saved = false;
+                self.returned.clear();
             }
-            Some(Ask::Save) => self.saved = true,
-            Some(Ask::Recall) => {
-                self.changes.clear();
-                self.partly = false;
+            Some(Ask::Save) => (self.saved, self.partly) = (true, false),
+            Some(Ask::Restore(values)) => {
+                self.changes.retain(|change| matches!(change, Change::Position(_)));
+                (self.partly, self.returned) = (false, values);
             }
+            _ => {}
+        }
+    }
+
+    /// Taught limits are confirmed by the review of their plan.
+    fn agree(&mut self, values: &[(u16, i64)], whole: bool) {
+        let value = |own: u16| {
+            let (_, value) = values.iter().find(|(number, _)| *number == own)?;
+            i32::try_from(*value).ok()
+        };
+        match (&mut self.confirmed, value(158).zip(value(160))) {
+            (Some(confirmed), Some(limits)) if self.step == Step::Upper => match whole {
+                true => (confirmed.agreed, confirmed.begun) = (limits, None),
+                false => confirmed.begun = Some(limits),
+            },
+            (confirmed, Some(_)) => *confirmed = None,
             _ => {}
         }
     }
@@ -130,6 +155,7 @@ impl Axis {
     pub(in crate::app) fn not_written(&mut self, begun: bool) {
         match self.asked.take() {
             Some(Ask::Try(values)) if begun => {
+                self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| Change::Parameter(number, value)));
                 (self.partly, self.saved) = (true, false);
             }
@@ -137,6 +163,7 @@ impl Axis {
                 self.changes.push(Change::Position(position));
                 (self.partly, self.saved) = (true, false);
             }
+            Some(Ask::Restore(_) | Ask::Save) if begun => self.partly = true,
             _ => {}
         }
     }
@@ -145,73 +172,69 @@ impl Axis {
     pub(in crate::app) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;
-        if let Some(Power::On(before)) = self.power {
-            self.power = Some(Power::Gone(before));
-        }
+        self.power = self.power.map(Power::gone);
     }
 
-    /// All parameters were read.
-    pub(in crate::app) fn surveyed(&mut self, seen: &Seen) {
-        if let (Some(Power::Gone(before)), Some(actual), Some(scale)) = (self.power, seen.actual, seen.scale) {
-            let kept = before.scale == seen.scale && before.limits == seen.limits && seen.requested == Some(true);
-            let moved = before.position.map(|own| i64::from(actual.position) - i64::from(own));
-            self.power = Some(Power::Back { kept, moved, allowed: degrees(scale.steps_per_turn(), 5.0) });
-        }
+    /// All parameters were read; `switched`: the virtual supply was off since.
+    pub(in crate::app) fn surveyed(&mut self, seen: &Seen, switched: bool) {
+        self.power = self.power.map(|power| power.back(seen, switched));
     }
 
     /// What the drive says now: how far it went, how a test move ended, whether all still holds that was made sure of.
     pub(in crate::app) fn look(&mut self, seen: &Seen) {
-        if self.end.is_some() {
+        if self.over.is_some() {
             return;
         }
         if self.step == Step::Jog {
             self.travel.note(seen);
         }
+        self.power = self.power.map(|power| power.followed(seen));
         if let (Some((place, target, act)), Some((ended_act, ended))) = (self.going, seen.ended)
             && act == ended_act
-            && let (Some(actual), Some(scale)) = (seen.actual, seen.scale)
+            && let (Some(position), Some(scale)) = (seen.position, seen.scale)
         {
             let allowed = degrees(scale.steps_per_turn(), 1.0);
-            let outcome = Outcome { target, position: actual.position, ended, allowed };
+            let outcome = Outcome { target, position, ended, allowed };
             if let Some(place) = self.outcomes.get_mut(place as usize) {
                 *place = Some(outcome);
             }
             self.going = None;
         }
-        self.fall_back(seen);
+        self.settle(seen);
     }
 
-    /// To the first step whose result the drive does not have any more.
-    fn fall_back(&mut self, seen: &Seen) {
-        if !seen.connected || seen.busy || seen.stale || self.asked.is_some() || self.step == Step::PowerCycle {
+    /// Lets fall what the drive does not have any more, and takes what it has.
+    fn settle(&mut self, seen: &Seen) {
+        if !seen.is_settled() || self.asked.is_some() {
             return;
         }
-        let lost = |step: Step| match step {
-            Step::Request => seen.requested == Some(false),
-            Step::Scale => {
-                let wanted = self.entries.preview(seen).ok().map(|own| own.scale);
-                seen.scale.is_some() && wanted != seen.scale
-            }
-            Step::Confirm => seen.scale.is_some() && !self.is_confirmed(seen),
-            Step::Upper => match (self.taught_limits(seen), seen.limits) {
-                (Some(taught), Some(limits)) => taught != limits,
-                _ => false,
-            },
-            _ => false,
-        };
-        if let Some(step) = Step::ALL.into_iter().find(|step| *step < self.step && lost(*step)) {
-            self.fell_back = true;
-            self.step = step;
+        if let Some(step) = self.chain.fall(&self.basis(seen)) {
+            self.undo_from(step, false);
+        }
+        let is_set = |position: &i32| seen.values.get(&198) == Some(&i64::from(*position));
+        if let Some(position) = self.sets.filter(is_set) {
+            (self.sets, self.reference) = (None, Some((position, Origin::of(seen))));
         }
     }
 
-    fn taught_limits(&self, seen: &Seen) -> Option<(i32, i32)> {
-        let ruler = self.ruler(seen);
-        Some((self.entries.lower(ruler).ok()?, self.entries.upper(ruler).ok()?))
+    /// What this step and those behind it have found is undone. What was `taught` stays as it is typed.
+    fn undo_from(&mut self, step: Step, taught: bool) {
+        if step <= Step::Confirm {
+            self.confirmed = None;
+        }
+        if step <= Step::Jog {
+            self.travel = Travel::default();
+        }
+        if step <= Step::Reference {
+            self.reference = None;
+        }
+        if step <= Step::Lower && !taught {
+            (self.entries.lower, self.entries.upper) = (String::new(), String::new());
+        }
+        (self.outcomes, self.going) = ([None; 3], None);
+        self.saved = false;
+        if self.step != Step::PowerCycle {
+            self.power = None;
+        }
     }
-}
-
-/// Steps of so many degrees, at least one.
-fn degrees(steps_per_turn: f64, degrees: f64) -> i64 {
-    (steps_per_turn * degrees / 360.0).ceil().max(1.0) as i64
 }

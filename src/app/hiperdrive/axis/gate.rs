@@ -1,8 +1,11 @@
 //! What can be pressed in the set-up of an axis, what that asks for, and what is missing before the next step.
 
-use super::{Ask, Axis, Button, Place, Seen, Step, words};
+use super::chain::Origin;
+use super::supply::{MARK, Power, Restart, is_marked, mark};
+use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
 use crate::app::{Text, explain};
 use crate::device::hiperdrive::dead_man::Lock;
+use crate::protocol::hiperdrive::State;
 
 impl Axis {
     /// What pressing would ask for.
@@ -26,9 +29,16 @@ impl Axis {
             }
             Button::Take => Ok(Ask::Take),
             Button::Give => stands().map(|()| Ask::Give),
-            Button::Recall if self.saved => Err(Text::new("hd_axis.already")),
-            Button::Recall => stands().map(|()| Ask::Recall),
-            _ if self.end.is_some() => Err(Text::new("hd_axis.over")),
+            Button::Recall => {
+                stands()?;
+                let back = differences::to_write_back(seen);
+                if back.is_empty() { Err(Text::new("hd_axis.nothing_back")) } else { Ok(Ask::Restore(back)) }
+            }
+            _ if self.over.is_some() => Err(Text::new("hd_axis.over")),
+            Button::Acknowledge if !seen.controlled => Err(Text::new("hd_axis.no_control")),
+            Button::Acknowledge if !seen.has_failed() => Err(Text::new("hd_axis.no_fault")),
+            Button::Acknowledge => Ok(Ask::Acknowledge),
+            _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
             Button::Do => stands().and_then(|()| self.ask_of_step(seen)),
             Button::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(Ask::ConfirmLimits),
@@ -45,6 +55,12 @@ impl Axis {
             Button::PowerCycle if !seen.is_virtual => Err(Text::new("hd_axis.not_virtual")),
             Button::PowerCycle if seen.controlled => Err(Text::new("hd_axis.give_first")),
             Button::PowerCycle => Ok(Ask::PowerCycle),
+            Button::Restarted => match self.power {
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(Ask::BelieveRestart),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
+                Some(Power::Back { .. }) => Err(Text::new("hd_axis.already")),
+                _ => Err(Text::new("hd_axis.needs_power")),
+            },
         }
     }
 
@@ -64,7 +80,7 @@ impl Axis {
                 Ok(Ask::Try(all.to_vec()))
             }
             Step::Reference => {
-                let reference = self.entries.reference(self.ruler(seen), seen.limits)?;
+                let reference = self.entries.reference(seen.ruler(), seen.limits)?;
                 Ok(Ask::SetPosition(reference.becomes))
             }
             Step::Upper => {
@@ -75,21 +91,23 @@ impl Axis {
                 Ok(Ask::Try(vec![(158, low.into()), (160, high.into())]))
             }
             Step::Save => Ok(Ask::Save),
-            Step::Confirm | Step::Jog | Step::Lower | Step::Test | Step::PowerCycle => {
-                Err(Text::new("hd_axis.already"))
-            }
+            Step::PowerCycle => match (self.power, is_marked(seen), mark()) {
+                (Some(Power::On(_)), Some(false), Some(mark)) => Ok(Ask::Try(vec![(MARK, mark)])),
+                _ => Err(Text::new("hd_axis.already")),
+            },
+            Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(Text::new("hd_axis.already")),
         }
     }
 
     /// Both limits as they were taught, and where the axis stands between them.
     fn taught(&self, seen: &Seen) -> Result<(i32, i32), Text> {
-        let ruler = self.ruler(seen);
+        let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
         if low >= high {
             return Err(Text::new("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
         }
-        let position = seen.actual.ok_or_else(|| Text::new("hd_axis.unread"))?.position;
+        let position = seen.position.ok_or_else(|| Text::new("hd_axis.no_position"))?;
         if !(low..=high).contains(&position) {
             let outside = Text::new("hd_axis.outside").with_text("position", mm(position));
             return Err(outside.with_text("low", mm(low)).with_text("high", mm(high)));
@@ -111,10 +129,40 @@ impl Axis {
         if self.asked.is_some() {
             return Err(Text::new("hd_axis.busy"));
         }
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
+        }
+        match seen.actual.map(|actual| actual.status.state()) {
+            Some(State::Fault) => return Err(Text::new("hd_refused.fault")),
+            Some(State::Locked) => return Err(Text::new("hd_refused.lock")),
+            _ => {}
+        }
         match seen.locks.first() {
             Some(lock) => Err(explain::hiperdrive::lock(*lock)),
             None => Ok(()),
         }
+    }
+
+    /// Whether the place where the axis stands can become a limit.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_take_place(&self, seen: &Seen) -> Result<(), Text> {
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
+        }
+        if self.asked.is_some() {
+            return Err(Text::new("hd_axis.busy"));
+        }
+        if seen.moves {
+            return Err(Text::new("hd_axis.moving"));
+        }
+        seen.position.map(|_| ()).ok_or_else(|| Text::new("hd_axis.no_position"))
+    }
+
+    /// Whether the step can be left out now.
+    pub fn may_skip(&self, seen: &Seen) -> bool {
+        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
     }
 
     /// Whether the step that counts is done, so that the next one may come.
@@ -128,6 +176,9 @@ impl Axis {
         }
         if seen.moves {
             return Err(Text::new("hd_axis.moving"));
+        }
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
         }
         match self.step {
             Step::Request => {
@@ -143,8 +194,11 @@ impl Axis {
                 lacks(self.travel.up > 0, "hd_axis.needs_up")?;
                 lacks(self.travel.down > 0, "hd_axis.needs_down")
             }
-            Step::Reference => lacks(self.reference.is_some(), "hd_axis.needs_reference"),
-            Step::Lower => self.entries.lower(self.ruler(seen)).map(|_| ()),
+            Step::Reference => {
+                let is_set = self.reference.is_some_and(|(_, origin)| origin == Origin::of(seen));
+                lacks(is_set || self.chain.holds(Step::Reference), "hd_axis.needs_reference")
+            }
+            Step::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
             Step::Upper => {
                 let taught = self.taught(seen)?;
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
@@ -154,14 +208,20 @@ impl Axis {
                 lacks(Place::ALL.into_iter().all(reached), "hd_axis.needs_test")
             }
             Step::Save => lacks(self.saved, "hd_axis.needs_save"),
-            Step::PowerCycle => lacks(self.survived(), "hd_axis.needs_power"),
+            Step::PowerCycle => match self.power {
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Err(Text::new("hd_axis.needs_proof")),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
+                _ => lacks(self.survived(), "hd_axis.needs_power"),
+            },
         }
     }
 
-    /// Somebody has confirmed the limits under the scale that the drive has.
+    /// A person has agreed to the limits that the drive has, under the scale that it has.
     pub(super) fn is_confirmed(&self, seen: &Seen) -> bool {
-        let scale = self.confirmed.map(|(scale, _)| scale);
-        scale.is_some() && scale == seen.scale && !seen.locks.contains(&Lock::LimitsUnconfirmed)
+        let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
+        let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
+        let are_agreed = (low == agreed.0 || low == begun.0) && (high == agreed.1 || high == begun.1);
+        own.scale == seen.scale && are_agreed && !seen.locks.contains(&Lock::LimitsUnconfirmed)
     }
 
     /// Where a test move leads.

@@ -29,17 +29,17 @@ pub struct Outcome {
     pub allowed: i64,
 }
 
-/// How far an axis was moved by hand, in steps.
+/// How far an axis was moved by hand, in steps. Only what it turns under a held pad counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
-    /// The farthest up without a turn-round; 0 until that can be told from nothing.
+    /// The farthest up while a pad was held once; 0 until that can be told from nothing.
     pub up: i64,
     /// The farthest down.
     pub down: i64,
     /// Turning clockwise counts up; `None`: not seen yet.
     pub clockwise_is_up: Option<bool>,
-    /// The least and the greatest position so far, and the last one.
-    seen: Option<(i32, i32, i32)>,
+    /// The act that moves it, and where it was at its beginning.
+    from: Option<(u64, i32)>,
 }
 
 impl Place {
@@ -71,28 +71,21 @@ impl Outcome {
 impl Travel {
     /// The drive is somewhere. Less than a 64th of a turn is not told from nothing.
     pub(super) fn note(&mut self, seen: &Seen) {
-        let (Some(actual), Some(scale)) = (seen.actual, seen.scale) else { return };
-        let now = actual.position;
-        let Some((least, most, last)) = self.seen else {
-            self.seen = Some((now, now, now));
+        let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
+            self.from = None;
+            return;
+        };
+        let Some((_, from)) = self.from.filter(|(own, _)| *own == act) else {
+            self.from = Some((act, position));
             return;
         };
         let grain = (scale.steps_per_turn() / 64.0).max(1.0) as i64;
-        let (up, down) = (i64::from(now) - i64::from(least), i64::from(most) - i64::from(now));
-        if up >= grain {
-            self.up = self.up.max(up);
+        let way = i64::from(position) - i64::from(from);
+        if way.abs() < grain {
+            return;
         }
-        if down >= grain {
-            self.down = self.down.max(down);
-        }
-        if let Some(direction) = seen.turns.filter(|_| now != last) {
-            self.clockwise_is_up = Some((now > last) == (direction == Direction::Clockwise));
-        }
-        self.seen = Some((least.min(now), most.max(now), now));
-    }
-
-    /// The numbers were given other places.
-    pub(super) fn forget_places(&mut self) {
-        self.seen = None;
+        self.up = self.up.max(way);
+        self.down = self.down.max(-way);
+        self.clockwise_is_up = Some((way > 0) == (direction == Direction::Clockwise));
     }
 }

@@ -1,14 +1,22 @@
 //! The run against what a drive might say, step by step, without a drive.
 
+mod facts;
+
+use std::collections::BTreeMap;
+
 use super::*;
-use crate::app::Language;
-use crate::protocol::hiperdrive::StatusWord;
+use crate::app::{Language, Text};
+use crate::device::hiperdrive::dead_man::{Ended, Lock};
+use crate::protocol::hiperdrive::{Actual, Direction, Family, StatusWord};
 
 /// A drive that nobody has asked for, as it comes from the factory.
 fn fresh() -> Seen {
     Seen {
         connected: true,
         actual: Some(Actual { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
+        position: Some(0),
+        // 182 is 1000 from the factory, 198 is 0.
+        values: BTreeMap::from([(152, 0), (182, 1000), (198, 0)]),
         requested: Some(false),
         scale: Some(PositionScale::FACTORY),
         // 511 · 65536.
@@ -26,6 +34,7 @@ fn at(seen: &mut Seen, position: i32) {
     if let Some(actual) = &mut seen.actual {
         actual.position = position;
     }
+    seen.position = Some(position);
 }
 
 /// The drive does what is asked for.
@@ -33,7 +42,8 @@ fn at(seen: &mut Seen, position: i32) {
 fn obey(axis: &mut Axis, seen: &mut Seen, ask: Ask) {
     axis.begin(ask.clone(), seen);
     match ask {
-        Ask::Try(values) => {
+        Ask::Try(values) | Ask::Restore(values) => {
+            seen.values.extend(values.iter().copied());
             let number = |own: u16| values.iter().find(|(number, _)| *number == own).map(|(_, value)| *value);
             if let Some(value) = number(152) {
                 seen.requested = Some(value == 1);
@@ -50,13 +60,15 @@ fn obey(axis: &mut Axis, seen: &mut Seen, ask: Ask) {
         }
         Ask::SetPosition(position) => {
             at(seen, position);
+            seen.values.insert(198, position.into());
+            seen.times_set += 1;
             axis.written();
         }
         Ask::ConfirmLimits => seen.locks.clear(),
         Ask::Take => seen.controlled = true,
         Ask::Give => seen.controlled = false,
-        Ask::Save | Ask::Recall => axis.written(),
-        Ask::Move(_) | Ask::PowerCycle => {}
+        Ask::Save => axis.written(),
+        Ask::Move(_) | Ask::PowerCycle | Ask::Acknowledge | Ask::BelieveRestart => {}
     }
     axis.look(seen);
 }
@@ -71,8 +83,27 @@ fn press(axis: &mut Axis, seen: &mut Seen, button: Button) -> Ask {
 #[track_caller]
 fn next(axis: &mut Axis, seen: &Seen, step: Step) {
     assert_eq!(axis.may_go_on(seen), Ok(()));
-    axis.go_on(seen);
+    go_on(axis, seen);
     assert_eq!(axis.step(), step);
+}
+
+fn go_on(axis: &mut Axis, seen: &Seen) {
+    // The pitch that is typed is confirmed with that.
+    let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= Step::Scale);
+    axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
+}
+
+/// The step with the spindle: 4 mm a turn, a step 0.01 mm.
+fn type_spindle(axis: &mut Axis) {
+    axis.edit(Entries { pitch: "4".to_owned(), ..axis.entries().clone() });
+}
+
+/// Past it: what was confirmed measures from then on.
+#[track_caller]
+fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
+    next(axis, seen, Step::Confirm);
+    seen.pitch = axis.entries().pitch().ok();
+    axis.look(seen);
 }
 
 /// From the beginning to the step with the slow jog: 4 mm a turn, a step 0.01 mm.
@@ -80,10 +111,11 @@ fn until_jog() -> (Axis, Seen) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(152, 1)]));
     next(&mut axis, &seen, Step::Scale);
+    type_spindle(&mut axis);
     // Reference 5: 400/256; 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(values));
-    next(&mut axis, &seen, Step::Confirm);
+    confirm_spindle(&mut axis, &mut seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
     press(&mut axis, &mut seen, Button::Confirm);
     next(&mut axis, &seen, Step::Jog);
@@ -91,13 +123,13 @@ fn until_jog() -> (Axis, Seen) {
 }
 
 fn jog(axis: &mut Axis, seen: &mut Seen, to: i32, turns: Direction) {
-    let from = seen.actual.unwrap().position;
-    (seen.moves, seen.turns) = (true, Some(turns));
-    for part in 1..=4 {
+    let from = seen.position.unwrap();
+    (seen.moves, seen.held) = (true, Some((from.unsigned_abs().into(), turns)));
+    for part in 0..=4 {
         at(seen, from + (to - from) * part / 4);
         axis.look(seen);
     }
-    (seen.moves, seen.turns) = (false, None);
+    (seen.moves, seen.held) = (false, None);
     axis.look(seen);
 }
 
@@ -158,35 +190,41 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
     let (mut axis, mut seen) = until_power();
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // Reading without switching off proves nothing.
-    axis.surveyed(&seen);
+    axis.surveyed(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
+    // By hand: 182 is 1000 from the factory.
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(182, 1001)]));
     axis.lose();
     seen.connected = false;
     axis.look(&seen);
     seen.connected = true;
+    seen.values.insert(182, 1000);
     // 5° of 400 steps are 5.6: six.
     at(&mut seen, 2002 - 6);
-    axis.surveyed(&seen);
-    let back = Power::Back { kept: true, moved: Some(-6), allowed: 6 };
-    assert_eq!(axis.power(), Some(back));
-    axis.go_on(&seen);
+    axis.surveyed(&seen, false);
+    let Some(Power::Back { kept, moved, allowed, restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
+    assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, Restart::Read));
+    go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
     assert!(Step::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
     // By hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     let mut changes: Vec<Change> = numbers.map(|(number, value)| Change::Parameter(number, value)).to_vec();
     changes.push(Change::Position(128));
-    changes.extend([(158, -1000), (160, 2000)].map(|(number, value)| Change::Parameter(number, value)));
-    assert_eq!(axis.changes(), changes);
+    let more = [(158, -1000), (160, 2000), (182, 1001)];
+    changes.extend(more.map(|(number, value)| Change::Parameter(number, value)));
+    assert_eq!((axis.changes(), axis.is_saved()), (&changes[..], true));
 }
 
 #[test]
 fn what_did_not_survive_the_supply_is_told() {
     let survive = |change: fn(&mut Seen)| {
         let (mut axis, mut seen) = until_power();
+        press(&mut axis, &mut seen, Button::Do);
         axis.lose();
+        seen.values.insert(182, 1000);
         change(&mut seen);
-        axis.surveyed(&seen);
+        axis.surveyed(&seen, false);
         assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
         assert!(axis.may_go_on(&seen).is_err());
         words::found(&axis, Step::PowerCycle, &seen).unwrap().id()
@@ -195,45 +233,6 @@ fn what_did_not_survive_the_supply_is_told() {
     assert_eq!(survive(|seen| seen.limits = Some((-1000, 1000))), "hd_axis.power_lost");
     assert_eq!(survive(|seen| seen.scale = Some(PositionScale::FACTORY)), "hd_axis.power_lost");
     assert_eq!(survive(|seen| seen.requested = Some(false)), "hd_axis.power_lost");
-}
-
-#[test]
-fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
-    let (mut axis, mut seen) = until_jog();
-    press(&mut axis, &mut seen, Button::Take);
-    assert_eq!(axis.may_move(&seen), Ok(()));
-    // Somebody else has changed the scale.
-    seen.scale = Some(PositionScale::FACTORY);
-    axis.look(&seen);
-    assert_eq!((axis.step(), axis.fell_back()), (Step::Scale, true));
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_scale");
-    press(&mut axis, &mut seen, Button::Do);
-    next(&mut axis, &seen, Step::Confirm);
-    assert!(axis.may_go_on(&seen).is_err(), "what was confirmed before was for another scale");
-    // Locked, although it was confirmed once: the lock counts.
-    press(&mut axis, &mut seen, Button::Confirm);
-    next(&mut axis, &seen, Step::Jog);
-    seen.locks = vec![Lock::LimitsUnconfirmed];
-    axis.look(&seen);
-    assert_eq!(axis.step(), Step::Confirm);
-}
-
-#[test]
-fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
-    let (mut axis, mut seen) = until_test();
-    seen.limits = Some((-204_400, 204_400));
-    axis.look(&seen);
-    assert_eq!((axis.step(), axis.fell_back()), (Step::Upper, true));
-    // Everything is gone.
-    seen = Seen { controlled: true, ..fresh() };
-    axis.look(&seen);
-    assert_eq!(axis.step(), Step::Request);
-    // Nothing is concluded from a drive that does not answer.
-    let (mut axis, mut seen) = until_test();
-    seen.connected = false;
-    seen.scale = None;
-    axis.look(&seen);
-    assert_eq!((axis.step(), axis.fell_back()), (Step::Test, false));
 }
 
 #[test]
@@ -261,7 +260,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
     // While a write is under way nothing else is done.
     axis.begin(Ask::Save, &seen);
     assert_eq!(why(&axis, &seen, Button::Go(Place::Lower)), "hd_axis.busy");
-    axis.go_on(&seen);
+    go_on(&mut axis, &seen);
     axis.back(&seen);
     assert_eq!(axis.step(), Step::Test);
 }
@@ -312,14 +311,19 @@ fn a_test_that_did_not_arrive_does_not_count() {
 #[test]
 fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     let (mut axis, mut seen) = until_test();
-    axis.cancel();
+    axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
     assert!(axis.changes().len() == 8 && axis.reached(Step::Test) == Reached::Ahead);
     assert_eq!(axis.ask(Button::Go(Place::Lower), &seen).unwrap_err().id(), "hd_axis.over");
-    assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Recall);
-    assert!(axis.changes().is_empty());
+    seen.unsaved = BTreeMap::from([(152, 0)]);
+    assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Restore(vec![(152, 0)]));
+    // The place has the position that it got.
+    assert_eq!(axis.changes(), [Change::Position(128)]);
+    let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
+    assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved"]);
     let mut axis = run();
-    axis.cancel();
+    axis.cancel(&seen, "");
+    assert_eq!(told(&axis), ["hd_axis.nothing_written"]);
     assert!(axis.changes().is_empty());
     // A write that did not begin has changed nothing; one that was cut off may have.
     for (begun, changes) in [(false, 0), (true, 1)] {
@@ -333,14 +337,14 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
 #[test]
 fn a_position_that_is_right_is_left_as_it_is() {
     let (mut axis, mut seen) = until_jog();
-    axis.skip(&seen);
+    axis.skip(&seen, "");
     assert_eq!(axis.step(), Step::Jog, "this one cannot be left out");
     press(&mut axis, &mut seen, Button::Take);
     jog(&mut axis, &mut seen, 500, Direction::Counterclockwise);
     jog(&mut axis, &mut seen, 0, Direction::Clockwise);
     assert_eq!(axis.travel().clockwise_is_up, Some(false));
     next(&mut axis, &seen, Step::Reference);
-    axis.skip(&seen);
+    axis.skip(&seen, "");
     assert_eq!((axis.step(), axis.reached(Step::Reference)), (Step::Lower, Reached::Skipped));
     axis.back(&seen);
     assert_eq!(axis.reached(Step::Reference), Reached::Now);
@@ -391,21 +395,4 @@ fn every_step_says_what_to_do_and_what_was_found() {
     assert_eq!(found(Step::Upper), "The drive has -10.00 mm … 20.00 mm.");
     assert_eq!(found(Step::Jog), "Moved 5.00 mm up and 4.00 mm down. Clockwise counts up.");
     assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm beside them.");
-}
-
-/// A pitch that is only proposed is nobody's: 65536 steps a turn stay steps until there is one.
-#[test]
-fn millimetres_come_with_a_spindle() {
-    let (mut axis, mut seen) = (run(), fresh());
-    let position = |axis: &Axis, seen: &Seen| words::millimetres(axis.ruler(seen), 400).words(Language::English);
-    assert_eq!(position(&axis, &seen), "400 steps");
-    press(&mut axis, &mut seen, Button::Do);
-    next(&mut axis, &seen, Step::Scale);
-    press(&mut axis, &mut seen, Button::Do);
-    assert_eq!(position(&axis, &seen), "400 steps");
-    next(&mut axis, &seen, Step::Confirm);
-    assert_eq!(position(&axis, &seen), "4.00 mm");
-    let pitch = Some(crate::protocol::hiperdrive::Length { nanometres: 8_000_000 });
-    let known = Axis::new(axis.drive(), Some(Ruler { scale: seen.scale.unwrap(), pitch }));
-    assert_eq!(position(&known, &seen), "8.00 mm");
 }

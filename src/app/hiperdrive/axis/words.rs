@@ -1,9 +1,10 @@
 //! What the steps of an axis set-up are called, what to do in them, and what was found.
 
-use super::{Axis, Change, Outcome, Place, Power, Reached, Seen, Step};
-use crate::app::Text;
+use super::{Axis, Change, Outcome, Place, Power, Reached, Restart, Seen, Step};
 use crate::app::hiperdrive::ruler::{Measure, Ruler};
-use crate::protocol::hiperdrive::ScaleError;
+use crate::app::{Text, explain};
+use crate::device::hiperdrive::dead_man::{Effort, Ended};
+use crate::protocol::hiperdrive::{ErrorCode, ScaleError};
 
 /// What a step is called.
 pub fn title(step: Step) -> Text {
@@ -55,13 +56,14 @@ pub fn button(step: Step) -> Text {
         Step::Request => "hd_axis.request",
         Step::Reference => "hd_axis.set",
         Step::Save => "hd_axis.save",
+        Step::PowerCycle => "hd_axis.mark",
         _ => "hd_axis.write",
     })
 }
 
 /// What was found in it, as far as there is something.
 pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
-    let ruler = axis.ruler(seen);
+    let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());
     match step {
         Step::Request => match (seen.requested?, seen.actual.is_some_and(|own| own.status.is_present())) {
@@ -79,7 +81,7 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
         }
         Step::Confirm | Step::Upper => {
             // What was confirmed stays what it was, also after others were taught.
-            let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|(_, limits)| limits);
+            let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(Text::new("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
         }
@@ -114,11 +116,18 @@ fn moved(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
 }
 
 fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
-    let (kept, moved, allowed) = match axis.power()? {
+    let (kept, moved, allowed, restart) = match axis.power()? {
         Power::On(_) => return Some(Text::new("hd_axis.power_on")),
         Power::Gone(_) => return Some(Text::new("hd_axis.power_gone")),
-        Power::Back { kept, moved, allowed } => (kept, moved, allowed),
+        Power::Back { kept, moved, allowed, restart, .. } => (kept, moved, allowed, restart),
     };
+    let proof = Text::new(match restart {
+        Restart::Read => "hd_axis.restart_read",
+        Restart::Switched => "hd_axis.restart_switched",
+        Restart::Said => "hd_axis.restart_said",
+        Restart::Unproven => "hd_axis.restart_unproven",
+        Restart::Disproved => "hd_axis.not_restarted",
+    });
     let Some(moved) = moved else { return Some(Text::new("hd_axis.power_unknown")) };
     let id = match (kept, moved.abs() <= allowed) {
         (false, _) => "hd_axis.power_lost",
@@ -126,7 +135,72 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
         (true, true) => "hd_axis.power_kept",
     };
     let text = Text::new(id).with_text("moved", millimetres(ruler, moved));
-    Some(text.with_text("allowed", millimetres(ruler, allowed)))
+    Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
+}
+
+/// Why a step does not hold any more.
+pub fn fallen(step: Step) -> Text {
+    let why = Text::new(match step {
+        Step::Request => "hd_axis.fell_request",
+        Step::Scale => "hd_axis.fell_scale",
+        Step::Confirm => "hd_axis.fell_confirm",
+        Step::Reference => "hd_axis.fell_reference",
+        Step::Upper => "hd_axis.fell_limits",
+        Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => "hd_axis.fell_undone",
+    });
+    let text = Text::new("hd_axis.fallen").with("number", step.index() + 1);
+    text.with_text("step", title(step)).with_text("why", why)
+}
+
+/// The fault of the drive, with its code where that was read; `None`: it has none.
+pub fn fault(seen: &Seen) -> Option<Text> {
+    if !seen.has_failed() {
+        return None;
+    }
+    let Some(code) = seen.error.filter(|code| *code != ErrorCode::NONE) else {
+        return Some(Text::new("hd_axis.fault_unread"));
+    };
+    let words = explain::hiperdrive::error(code);
+    let text = Text::new("hd_axis.fault").with("code", format!("{:04X}", code.code()));
+    Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
+}
+
+/// How the pads and the test move: as they are sent.
+pub fn effort(id: &'static str) -> Text {
+    let Effort { speed, torque } = Effort::JOG;
+    Text::new(id).with("speed", speed.get()).with("torque", torque.get())
+}
+
+/// What came of a test move.
+pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
+    let mm = |steps: i64| millimetres(seen.ruler(), steps);
+    if outcome.ended == Ended::Arrived {
+        let text = Text::new("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
+        return text.with_text("missed", mm(outcome.missed()));
+    }
+    let why = explain::hiperdrive::ended(outcome.ended, |steps| mm(steps.into()));
+    Text::new("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
+}
+
+/// What is known to be other than saved; `None`: nothing is.
+pub fn differences(seen: &Seen) -> Option<Text> {
+    let difference = |own: super::differences::Difference| {
+        let id = if own.number == 198 { "hd_axis.differs_place" } else { "hd_axis.differs" };
+        Text::new(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
+    };
+    let all: Vec<Text> = seen.differences().into_iter().map(difference).collect();
+    (!all.is_empty()).then(|| Text::new("hd_axis.unsaved").with_list("differences", all))
+}
+
+/// What came of writing back; `None`: nothing was.
+pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
+    if axis.returned.is_empty() {
+        return None;
+    }
+    let is_there = |(number, value): &&(u16, i64)| seen.values.get(number) == Some(value);
+    let good = axis.returned.iter().filter(is_there).count();
+    let text = Text::new("hd_axis.returned").with("count", good);
+    Some(text.with("all", axis.returned.len()))
 }
 
 /// What a place of the test is called.
@@ -138,9 +212,9 @@ pub fn place(place: Place) -> Text {
     })
 }
 
-/// All that was changed.
+/// All that was changed, where something was.
 pub fn changes(axis: &Axis, seen: &Seen) -> Text {
-    let ruler = axis.ruler(seen);
+    let ruler = seen.ruler();
     let changes = axis.changes().iter().map(|own| change(own, ruler));
     Text::new("hd_axis.was_written").with_list("changes", changes)
 }

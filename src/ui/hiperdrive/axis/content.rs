@@ -3,11 +3,11 @@
 use egui::{RichText, Ui, vec2};
 
 use super::Shown;
-use crate::app::hiperdrive::axis::{Action as Run, Button, Entries, Outcome, Place, Step, words};
+use crate::app::hiperdrive::axis::{Action as Run, Button, Entries, Place, Step, words};
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor};
-use crate::app::{Action, Text, explain::hiperdrive as explain};
+use crate::app::{Action, Text};
 use crate::protocol::hiperdrive::Direction;
-use crate::ui::controls::{button, entry, paragraph, problem, row, text_entry};
+use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
 use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
 use crate::ui::{Skin, icons};
 
@@ -46,9 +46,12 @@ pub(super) fn content_ui(
         pads(ui, skin, shown, actions);
     }
     match step {
-        Step::Scale => scale(ui, skin, shown, entries),
+        Step::Scale => {
+            number(ui, skin, "hd_axis.pitch", &mut entries.pitch);
+            number(ui, skin, "hd_axis.resolution", &mut entries.resolution);
+        }
         Step::Confirm => limits(ui, skin, shown, actions),
-        Step::Reference => reference(ui, skin, shown, entries),
+        Step::Reference => number(ui, skin, "hd_axis.reference", &mut entries.reference),
         Step::Lower => place(ui, skin, shown, "hd_axis.lower", &mut entries.lower, actions),
         Step::Upper => place(ui, skin, shown, "hd_axis.upper", &mut entries.upper, actions),
         Step::Test => test(ui, skin, shown, actions),
@@ -58,41 +61,57 @@ pub(super) fn content_ui(
     if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Upper | Step::Save) {
         ui.add_space(skin.space.inside);
         let word = skin.words(&words::button(step));
-        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        ui.horizontal_wrapped(|ui| {
+            shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+            if step == Step::Request {
+                super::recall(ui, skin, shown, actions);
+            }
+        });
     }
 }
 
-/// Without the cyclic connection nothing moves.
+/// What comes of the entries, and what came of the step so far. Nothing of it can be clicked.
+pub(super) fn messages_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+    let step = shown.axis.step();
+    if step.jogs() {
+        said(ui, skin, shown);
+    }
+    match step {
+        Step::Scale => scale(ui, skin, shown, entries),
+        Step::Reference => reference(ui, skin, shown, entries),
+        Step::Test => {
+            for own in Place::ALL {
+                let Some(outcome) = shown.axis.outcome(own) else { continue };
+                let ink = if outcome.is_good() { skin.palette.good } else { skin.palette.bad };
+                let place = skin.words(&words::place(own));
+                let words = skin.words(&words::outcome(&outcome, shown.seen));
+                row(ui, skin, &place, RichText::new(words).color(ink));
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Without the cyclic connection nothing moves, nor in a fault.
 fn control(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    if !shown.seen.controlled {
+    ui.horizontal_wrapped(|ui| {
         let word = skin.say("hd_axis.take");
         shown.button(ui, skin, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
-        ui.add_space(skin.space.inside);
-    }
+        let word = skin.say("hd_axis.acknowledge");
+        shown.button(ui, skin, Button::Acknowledge, (icons::CHECK, &word), actions);
+    });
+    ui.add_space(skin.space.inside);
 }
 
-/// The two buttons that are held, slow and weak.
-fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let allowed = shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_move(shown.axis.drive()));
-    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
-    let caption = skin.say("hd_axis.jog_hold");
-    ui.horizontal(|ui| {
-        for (direction, word, label) in
-            [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
-        {
-            let label = skin.say(label);
-            let button = HoldButton { word, caption: &caption, label: &label, enabled: allowed.is_ok() };
-            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
-                Some(HoldEvent::Press) => Motor::JogPress { direction, repeated: false },
-                Some(HoldEvent::Hold) => Motor::JogHold,
-                Some(HoldEvent::Release) => Motor::JogRelease,
-                None => continue,
-            };
-            actions.push(Action::Hiperdrive(shown.unit.session.id, Hiperdrive::Drive(motor)));
-        }
-    });
-    if let Err(why) = allowed
+fn may_jog(shown: &Shown<'_>) -> Result<(), Text> {
+    shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_move(shown.axis.drive()))
+}
+
+/// Why the pads do nothing, or what the drive does by them.
+fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+    if let Err(why) = may_jog(shown)
         && shown.seen.controlled
+        && shown.axis.fallen().is_none()
     {
         super::warning(ui, skin, &why);
     }
@@ -100,6 +119,28 @@ fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         let ink = if said.is_well { skin.palette.muted } else { skin.palette.warn };
         paragraph(ui, RichText::new(skin.words(&said.words)).color(ink));
     }
+}
+
+/// The two buttons that are held, slow and weak.
+fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let enabled = may_jog(shown).is_ok();
+    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
+    let caption = skin.words(&words::effort("hd_axis.jog_hold"));
+    ui.horizontal(|ui| {
+        for (direction, word, label) in
+            [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
+        {
+            let label = skin.say(label);
+            let button = HoldButton { word, caption: &caption, label: &label, enabled };
+            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
+                Some(HoldEvent::Press) => Motor::SlowJogPress { direction, repeated: false },
+                Some(HoldEvent::Hold) => Motor::JogHold,
+                Some(HoldEvent::Release) => Motor::JogRelease,
+                None => continue,
+            };
+            actions.push(Action::Hiperdrive(shown.unit.session.id, Hiperdrive::Drive(motor)));
+        }
+    });
     ui.add_space(skin.space.inside);
 }
 
@@ -109,10 +150,10 @@ fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String) {
 }
 
 /// Pitch and resolution, and what they come to before they are written.
-fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
-    number(ui, skin, "hd_axis.pitch", &mut entries.pitch);
-    number(ui, skin, "hd_axis.resolution", &mut entries.resolution);
-    ui.add_space(skin.space.inside);
+fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+    if entries.pitch.trim().is_empty() {
+        return;
+    }
     let preview = match entries.preview(shown.seen) {
         Ok(preview) => preview,
         Err(why) => return problem(ui, skin, Some(&why)),
@@ -141,13 +182,12 @@ fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
 
 /// The limits that somebody has to have looked at.
 fn limits(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    if let Some((low, high)) = shown.seen.limits {
-        let ruler = shown.axis.ruler(shown.seen);
-        let mm = |steps: i32| words::millimetres(ruler, steps.into());
-        let range = Text::new("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high));
-        ui.label(skin.value(skin.words(&range)));
-        ui.add_space(skin.space.inside);
-    }
+    let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
+    let range = |(low, high): (i32, i32)| {
+        skin.words(&Text::new("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
+    };
+    ui.label(skin.value(shown.seen.limits.map_or_else(|| skin.say("hd_axis.none"), range)));
+    ui.add_space(skin.space.inside);
     ui.horizontal_wrapped(|ui| {
         let word = skin.say("hd_axis.confirm");
         shown.button(ui, skin, Button::Confirm, (icons::EYE, &word), actions);
@@ -156,9 +196,8 @@ fn limits(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>
     });
 }
 
-fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &mut Entries) {
-    number(ui, skin, "hd_axis.reference", &mut entries.reference);
-    let ruler = shown.axis.ruler(shown.seen);
+fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+    let ruler = shown.seen.ruler();
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
             let text =
@@ -175,58 +214,48 @@ fn place(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, id: &'static str, text: &m
     let word = skin.say(id);
     entry(ui, skin, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
-        if button(ui, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
+        let allowed = shown.axis.may_take_place(shown.seen);
+        if allowed_button(ui, skin, &allowed, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     });
 }
 
-/// Three places, and what came of going there.
+/// Three places, and whether they were reached.
 fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let ruler = shown.axis.ruler(shown.seen);
-    let mm = |steps: i32| skin.words(&words::millimetres(ruler, steps.into()));
+    let mm = |steps: i32| skin.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in Place::ALL {
         let word = skin.words(&words::place(own));
         entry(ui, skin, &word, |ui| {
-            let go = format!("{} {}", skin.say("hd_axis.go"), own_target(shown, own).map(&mm).unwrap_or_default());
+            let target = shown.axis.target(own, shown.seen).ok();
+            let go = format!("{} {}", skin.say("hd_axis.go"), target.map(&mm).unwrap_or_default());
             shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
             if shown.axis.going() == Some(own) {
                 ui.label(skin.label(skin.say("hd_axis.goes")));
             } else if let Some(outcome) = shown.axis.outcome(own) {
-                let ink = if outcome.is_good() { skin.palette.good } else { skin.palette.bad };
-                ui.label(RichText::new(if outcome.is_good() { icons::CHECK } else { icons::X }).color(ink));
-                let words = skin.words(&outcome_words(shown, &outcome));
-                ui.add(egui::Label::new(RichText::new(words).color(ink)).wrap());
+                let (icon, ink) = match outcome.is_good() {
+                    true => (icons::CHECK, skin.palette.good),
+                    false => (icons::X, skin.palette.bad),
+                };
+                ui.label(RichText::new(icon).color(ink));
             }
         });
     }
 }
 
-fn own_target(shown: &Shown<'_>, own: Place) -> Option<i32> {
-    shown.axis.target(own, shown.seen).ok()
-}
-
-fn outcome_words(shown: &Shown<'_>, outcome: &Outcome) -> Text {
-    let ruler = shown.axis.ruler(shown.seen);
-    let mm = |steps: i64| words::millimetres(ruler, steps);
-    if outcome.ended == crate::device::hiperdrive::dead_man::Ended::Arrived {
-        let text = Text::new("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
-        return text.with_text("missed", mm(outcome.missed()));
-    }
-    let why = explain::ended(outcome.ended, |steps| mm(steps.into()));
-    Text::new("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
-}
-
-/// The supply: of a virtual device it is switched here.
+/// The supply: of a virtual device it is switched here, of a real one by hand.
 fn power(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        if shown.seen.controlled {
-            let word = skin.say("hd_axis.give");
-            shown.button(ui, skin, Button::Give, (icons::PLUGS, &word), actions);
-        }
+        let word = skin.words(&words::button(Step::PowerCycle));
+        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        let word = skin.say("hd_axis.give");
+        shown.button(ui, skin, Button::Give, (icons::PLUGS, &word), actions);
         if shown.seen.is_virtual {
             let word = skin.say("hd_axis.power_cycle");
             shown.button(ui, skin, Button::PowerCycle, (icons::POWER, &word), actions);
+        } else {
+            let word = skin.say("hd_axis.restarted");
+            shown.button(ui, skin, Button::Restarted, (icons::POWER, &word), actions);
         }
     });
 }

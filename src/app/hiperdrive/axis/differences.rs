@@ -1,0 +1,34 @@
+//! What of a drive is known to be other than saved: after a run that was broken off, and for what is written back.
+
+use super::Seen;
+
+/// A parameter, by the number of drive 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Which one.
+    pub number: u16,
+    /// As it was saved.
+    pub saved: i64,
+    /// As it is.
+    pub now: i64,
+}
+
+/// The position that was set: writing it gives the place where the axis stands another number.
+const REFERENCE: u16 = 198;
+
+impl Seen {
+    /// What is known to be other than saved, by number.
+    pub fn differences(&self) -> Vec<Difference> {
+        let difference = |(number, saved): (&u16, &i64)| {
+            let now = *self.values.get(number)?;
+            (now != *saved).then_some(Difference { number: *number, saved: *saved, now })
+        };
+        self.unsaved.iter().filter_map(difference).collect()
+    }
+}
+
+/// What is to be written so that all is as it was; the reference is set at its place by a person.
+pub(super) fn to_write_back(seen: &Seen) -> Vec<(u16, i64)> {
+    let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
+    differences.map(|own| (own.number, own.saved)).collect()
+}

@@ -1,0 +1,113 @@
+//! The end of a run as it is written down, to be kept and printed: plain text that fits a page, lengths in millimetres.
+
+use super::{Axis, End, Place, Reached, Seen, Step, words};
+use crate::app::{Language, Text};
+
+/// Whose axis it is, for a report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Device {
+    /// The name of the adapter or hub.
+    pub name: String,
+    /// What the drive is, where that is known.
+    pub variant: Option<Text>,
+    /// Its serial number.
+    pub serial_number: String,
+}
+
+/// Columns of a page.
+const COLUMNS: usize = 78;
+/// In front of what belongs to a step.
+const INDENT: &str = "   ";
+
+/// The report of a run that is over; `None` while it goes on. What was written back since is told as it is `now`.
+pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> Option<String> {
+    let over = axis.over()?;
+    let seen = &over.seen;
+    let mut page = Page { text: String::new(), language };
+    page.line("", &Text::new("hd_axis.report_title").with("when", &over.when));
+    let drive = Text::new("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
+    let variant = device.variant.clone().unwrap_or_else(|| Text::new("hd_op.unknown"));
+    page.line("", &drive.with_text("variant", variant).with("serial", &device.serial_number));
+    page.line("", &Text::new(if over.end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
+    if let Some(pitch) = seen.pitch {
+        let pitch = Text::new("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
+        page.line("", &pitch);
+    }
+    page.space();
+    Step::ALL.into_iter().for_each(|step| step_lines(&mut page, axis, step, seen));
+    page.space();
+    end_lines(axis, now).iter().for_each(|line| page.line("", line));
+    Some(page.text)
+}
+
+fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
+    let reached = axis.reached(step);
+    let line = Text::new("hd_axis.report_step").with("number", step.index() + 1);
+    page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
+    if matches!(reached, Reached::Done | Reached::Failed)
+        && let Some(found) = words::found(axis, step, seen)
+    {
+        page.line(INDENT, &found);
+    }
+    if step == Step::Test {
+        page.line(INDENT, &words::effort("hd_axis.report_effort"));
+        for place in Place::ALL {
+            let Some(outcome) = axis.outcome(place) else { continue };
+            let line = Text::new("hd_axis.report_place").with_text("place", words::place(place));
+            page.line(INDENT, &line.with_text("outcome", words::outcome(&outcome, seen)));
+        }
+    }
+}
+
+/// What was written, whether that lasts, and what is other than saved now.
+pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
+    let mut lines = Vec::new();
+    match (axis.changes().is_empty(), words::returned(axis, now)) {
+        (true, None) => lines.push(Text::new("hd_axis.nothing_written")),
+        (true, Some(returned)) => lines.push(returned),
+        (false, returned) => {
+            lines.push(words::changes(axis, axis.as_seen(now)));
+            lines.extend(returned);
+            lines.push(Text::new(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
+        }
+    }
+    if axis.is_partly_written() {
+        lines.push(Text::new("hd_axis.partly"));
+    }
+    lines.extend(words::differences(now));
+    lines
+}
+
+struct Page {
+    text: String,
+    language: Language,
+}
+
+impl Page {
+    fn space(&mut self) {
+        self.text.push('\n');
+    }
+
+    /// A text, in as many lines as it takes.
+    fn line(&mut self, indent: &str, text: &Text) {
+        let mut line = String::new();
+        for word in text.words(self.language).split_whitespace() {
+            let width = indent.chars().count() + line.chars().count() + word.chars().count();
+            if !line.is_empty() && width >= COLUMNS {
+                self.end(indent, &line);
+                line.clear();
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        self.end(indent, &line);
+    }
+
+    fn end(&mut self, indent: &str, line: &str) {
+        self.text.push_str(indent);
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+}

@@ -1,0 +1,288 @@
+//! A desk on which axes are set up: steps, writes that go well and that do not, jogs.
+
+use encoder_studio::app::hiperdrive::axis::{Action as Run, Axis, Button, Entries, Place, Seen, Step};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::{Action, ReviewAction, Tab};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ParameterNumber, Value};
+use encoder_studio::sim::hiperdrive::Hindrance;
+
+use crate::support::Desk;
+
+/// An adapter whose drive nobody has asked for.
+pub(super) const FRESH: &str = "sim:?requested=0";
+
+pub(super) fn unit(desk: &Desk) -> &Unit {
+    desk.studio.hiperdrive().unwrap()
+}
+
+pub(super) fn axis(desk: &Desk) -> &Axis {
+    unit(desk).axis().unwrap()
+}
+
+pub(super) fn act(desk: &mut Desk, action: Hiperdrive) {
+    let id = unit(desk).session.id;
+    desk.act(Action::Hiperdrive(id, action));
+}
+
+pub(super) fn run(desk: &mut Desk, action: Run) {
+    act(desk, Hiperdrive::Axis(action));
+}
+
+pub(super) fn seen(desk: &Desk) -> Seen {
+    unit(desk).seen(unit(desk).drive())
+}
+
+/// A parameter by its own number.
+pub(super) fn read(desk: &Desk, number: u16) -> i64 {
+    match unit(desk).value(ParameterNumber::new(number).unwrap()) {
+        Some(Value::Number(value)) => *value,
+        other => panic!("{number}: {other:?}"),
+    }
+}
+
+/// A pad is held until something is so.
+#[track_caller]
+pub(super) fn held_until(desk: &mut Desk, what: &str, condition: impl Fn(&Unit) -> bool) {
+    let began = std::time::Instant::now();
+    while !condition(unit(desk)) {
+        act(desk, Hiperdrive::Drive(Motor::JogHold));
+        desk.studio.poll();
+        assert!(began.elapsed() < crate::support::LONG, "never: {what}: {:?}", unit(desk).said(unit(desk).drive()));
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+}
+
+#[track_caller]
+pub(super) fn until_ready(desk: &mut Desk) {
+    desk.until("it is ready", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
+    });
+}
+
+pub(super) fn begun(link: &str) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open(link);
+    until_ready(&mut desk);
+    desk.settle();
+    run(&mut desk, Run::Begin);
+    assert_eq!(axis(&desk).step(), Step::Request);
+    desk
+}
+
+/// Consents to the plan that the step has made.
+#[track_caller]
+pub(super) fn consent(desk: &mut Desk) {
+    desk.until("the plan is there", |studio| {
+        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+    });
+    until_ready(desk);
+    let Stage::Ready(plan) = desk.studio.shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let id = unit(desk).session.id;
+    desk.act(Action::Review(id, ReviewAction::Write(plan)));
+}
+
+/// Consents to it, and closes its review once it is carried out.
+#[track_caller]
+pub(super) fn write(desk: &mut Desk) {
+    consent(desk);
+    desk.until("it is written", |studio| {
+        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+    });
+    let id = unit(desk).session.id;
+    desk.act(Action::Review(id, ReviewAction::Close));
+    desk.settle();
+    until_ready(desk);
+}
+
+#[track_caller]
+pub(super) fn step_with_write(desk: &mut Desk) {
+    run(desk, Run::Press(Button::Do));
+    write(desk);
+}
+
+/// The step is done, and the next one comes.
+#[track_caller]
+pub(super) fn next(desk: &mut Desk, step: Step) {
+    let (axis, seen) = (axis(desk), seen(desk));
+    assert_eq!(axis.may_go_on(&seen), Ok(()), "{:?}", axis.step());
+    run(desk, Run::Next);
+    assert_eq!(self::axis(desk).step(), step);
+}
+
+pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
+    let mut entries = axis(desk).entries().clone();
+    change(&mut entries);
+    run(desk, Run::Edit(Box::new(entries)));
+}
+
+pub(super) fn position(desk: &Desk) -> i32 {
+    seen(desk).position.unwrap()
+}
+
+pub(super) fn number(desk: &Desk, number: u16) -> i64 {
+    unit(desk).number(unit(desk).drive(), number).unwrap()
+}
+
+/// Held until it has gone so far, then let go.
+#[track_caller]
+pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
+    let from = position(desk);
+    act(desk, Hiperdrive::Drive(Motor::SlowJogPress { direction, repeated: false }));
+    held_until(desk, "it moves", |own| {
+        own.seen(own.drive()).position.is_some_and(|position| (position - from).abs() >= steps)
+    });
+    act(desk, Hiperdrive::Drive(Motor::JogRelease));
+    stands(desk);
+}
+
+#[track_caller]
+pub(super) fn stands(desk: &mut Desk) {
+    desk.until("it stands", |studio| {
+        studio.hiperdrive().is_some_and(|own| !own.is_moving() && !own.seen(own.drive()).moves)
+    });
+}
+
+/// A write of this step, by the number of drive 1; where the way is `rough`, it is refused first, then cut off in the middle.
+#[track_caller]
+pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
+    for hindrance in [Hindrance::Refused, Hindrance::CutOff].into_iter().filter(|_| rough) {
+        let own = match number {
+            47 => ParameterNumber::SAVE,
+            number => ParameterNumber::of_drive(number, unit(desk).drive()).unwrap(),
+        };
+        let target = unit(desk).target.clone().unwrap();
+        target.with(|station| station.hinder(Some((own, hindrance))));
+        let step = axis(desk).step();
+        run(desk, Run::Press(Button::Do));
+        consent(desk);
+        desk.until("it has failed", |studio| {
+            studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
+        });
+        target.with(|station| station.hinder(None));
+        let id = unit(desk).session.id;
+        desk.act(Action::Review(id, ReviewAction::Close));
+        desk.until("it can be asked", |studio| studio.hiperdrive().is_some_and(|own| !own.session.is_busy()));
+        act(desk, Hiperdrive::Read);
+        desk.until("it is read again", |studio| {
+            let own = studio.hiperdrive().unwrap();
+            let seen = own.seen(own.drive());
+            seen.connected && !seen.busy && !seen.stale && seen.actual.is_some()
+        });
+        let own = axis(desk);
+        assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
+        assert!(!own.is_saved(), "{hindrance:?} of {number}");
+        assert_eq!(own.fallen(), None, "{hindrance:?} of {number}");
+        if hindrance == Hindrance::CutOff && matches!(step, Step::Reference | Step::Upper) {
+            control(desk);
+        }
+    }
+    // What was cut off may have come: then it is done already.
+    if axis(desk).ask(Button::Do, &seen(desk)).is_ok() {
+        step_with_write(desk);
+    } else {
+        assert!(rough, "{number}");
+    }
+}
+
+#[track_caller]
+pub(super) fn control(desk: &mut Desk) {
+    run(desk, Run::Press(Button::Take));
+    desk.until("control", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.moves.is_open() && own.session.is_ready() && own.seen(own.drive()).position.is_some()
+    });
+}
+
+/// A drive with 400 steps a turn of 4 mm, whose limits are to be confirmed.
+pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
+    let mut desk = Desk::fresh("");
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.open(link);
+    until_ready(&mut desk);
+    desk.settle();
+    act(&mut desk, Hiperdrive::SelectDrive(DriveNumber::new(drive).unwrap()));
+    until_ready(&mut desk);
+    run(&mut desk, Run::Begin);
+    step_with_writes(&mut desk, 152, rough);
+    desk.until("the drive is there", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.axis().unwrap().may_go_on(&own.seen(own.drive())).is_ok()
+    });
+    next(&mut desk, Step::Scale);
+    edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
+    step_with_writes(&mut desk, 156, rough);
+    // Reference 5: 400/256; 511 turns of 400 steps.
+    assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
+    next(&mut desk, Step::Confirm);
+    desk
+}
+
+pub(super) fn until_jog() -> Desk {
+    until_scaled(FRESH, 1, false)
+}
+
+/// With control, in the step with the slow jog.
+pub(super) fn confirm(mut desk: Desk) -> Desk {
+    run(&mut desk, Run::Press(Button::Confirm));
+    next(&mut desk, Step::Jog);
+    control(&mut desk);
+    desk
+}
+
+pub(super) fn confirmed() -> Desk {
+    confirm(until_jog())
+}
+
+/// In the test, with limits that were taught.
+pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
+    let mut desk = confirm(until_scaled(link, drive, rough));
+    jog(&mut desk, Direction::Clockwise, 20);
+    jog(&mut desk, Direction::Counterclockwise, 10);
+    next(&mut desk, Step::Reference);
+    edit(&mut desk, |own| own.reference = "1".to_owned());
+    step_with_writes(&mut desk, 198, rough);
+    // 100 steps are rounded to 128: the nearest multiple of 64.
+    desk.until("the position is set", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.seen(own.drive()).position.is_some_and(|position| (position - 128).abs() <= 1)
+    });
+    next(&mut desk, Step::Lower);
+    jog(&mut desk, Direction::Counterclockwise, 10);
+    run(&mut desk, Run::TakePlace);
+    let lower = position(&desk);
+    next(&mut desk, Step::Upper);
+    jog(&mut desk, Direction::Clockwise, 40);
+    run(&mut desk, Run::TakePlace);
+    let upper = position(&desk);
+    step_with_writes(&mut desk, 160, rough);
+    assert_eq!([158, 160].map(|own| number(&desk, own)), [i64::from(lower), i64::from(upper)]);
+    next(&mut desk, Step::Test);
+    desk
+}
+
+pub(super) fn tested(mut desk: Desk) -> Desk {
+    for place in Place::ALL {
+        run(&mut desk, Run::Press(Button::Go(place)));
+        desk.until("it has gone there", |studio| studio.hiperdrive().unwrap().axis().unwrap().outcome(place).is_some());
+        let outcome = axis(&desk).outcome(place).unwrap();
+        assert!(outcome.is_good(), "{place:?}: {outcome:?}");
+        stands(&mut desk);
+    }
+    desk
+}
+
+/// Saved, before the check over the supply.
+pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
+    let mut desk = tested(until_test(link, drive, rough));
+    next(&mut desk, Step::Save);
+    assert_eq!(unit(&desk).session.cycles, Some(0), "nothing was saved on the way");
+    step_with_writes(&mut desk, 47, rough);
+    next(&mut desk, Step::PowerCycle);
+    desk
+}
+
+pub(super) fn until_saved(link: &str) -> Desk {
+    until_saved_with(link, 1, false)
+}
