@@ -278,3 +278,48 @@ fn limits_that_somebody_else_has_set_are_read_before_anything_moves() {
     drive(&mut desk, Motor::Move { target: 65_537 });
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
 }
+
+/// Issue 21.4: a drive outside its limits says so, the pad that leads further out is blocked with its reason, and can be freed
+/// for one press at a time, at 10 % speed and 25 % torque.
+#[test]
+fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
+    let mut desk = in_control("sim:?position=33488896&defect=runs-on");
+    let target = unit(&desk).target.clone().unwrap();
+    target.with(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
+    desk.until("it is outside", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.outside(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
+    });
+    let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
+    let own = unit(&desk);
+    assert_eq!(own.outside_words(ONE).unwrap().id(), "hd_outside.words");
+    assert_eq!(own.may_jog(ONE, up).unwrap_err().id(), "hd_refused.outward");
+    assert!(own.may_jog(ONE, down).is_ok());
+    drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
+    desk.studio.poll();
+    assert!(stands(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
+    for _ in 0..2 {
+        drive(&mut desk, Motor::FreeOutward);
+        assert!(unit(&desk).may_jog(ONE, up).is_ok() && unit(&desk).can_free(ONE).is_none());
+        drive(&mut desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+        drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
+        hold_until(&mut desk, "it moves out", moves);
+        let sent = unit(&desk).moves.sent(ONE).unwrap();
+        assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
+        assert!(unit(&desk).may_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
+        drive(&mut desk, Motor::JogRelease);
+        desk.until("it stands", |studio| {
+            let own = studio.hiperdrive().unwrap();
+            own.state(ONE) != Some(State::Moving) && !own.moves.is_under_way()
+        });
+        assert!(unit(&desk).may_jog(ONE, up).is_err(), "freed for one press");
+    }
+    // What is freed is forgotten with a stop, and with another page of the window.
+    drive(&mut desk, Motor::FreeOutward);
+    desk.act(Action::StopMotion);
+    assert!(unit(&desk).may_jog(ONE, up).is_err());
+    drive(&mut desk, Motor::FreeOutward);
+    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    assert!(unit(&desk).may_jog(ONE, up).is_err());
+}

@@ -93,13 +93,15 @@ impl Unit {
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
             Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
+            Motor::FreeOutward => return self.free_outward(drive, services),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;
             }
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
-                Wish::Jog { direction, effort: self.moves.jog_effort(), outward: false }
+                let outward = self.moves.is_freed(drive, direction);
+                Wish::Jog { direction, effort: self.moves.jog_effort(), outward }
             }
             Motor::SlowJogPress { direction, .. } => Wish::Jog { direction, effort: Effort::JOG, outward: false },
             Motor::Lead(goal) => Wish::Lead(goal),

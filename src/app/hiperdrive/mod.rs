@@ -12,6 +12,7 @@ pub mod leds;
 mod moves;
 pub mod network;
 mod news;
+mod outside;
 mod record;
 mod remembered;
 mod review;

@@ -24,6 +24,9 @@ pub struct Moves {
     job: Effort,
     /// Drives for which a person has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
+    /// The way further out from outside the limits, freed for the next press, and used by the one that is held.
+    freed: Option<(DriveNumber, Direction)>,
+    used: Option<(DriveNumber, Direction)>,
     /// What drives might do at the last look, and when that was. Limits to be confirmed outlive a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
@@ -66,6 +69,8 @@ impl Default for Moves {
             jog: Effort::JOG,
             job: Effort::MOVE,
             experts: BTreeSet::new(),
+            freed: None,
+            used: None,
             limits: BTreeMap::new(),
             looked: Moment::START,
             limits_changed: BTreeSet::new(),
@@ -155,6 +160,8 @@ impl Moves {
     }
 
     fn intend(&mut self, drive: DriveNumber, wish: Wish, kind: Kind) -> Option<u64> {
+        // For one press: whatever is asked for next needs it freed again.
+        self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
         self.act = Some(Act { drive, number, kind, told: false });
         Some(number)
@@ -164,6 +171,10 @@ impl Moves {
     pub(super) fn press(&mut self, drive: DriveNumber, jog: Wish) {
         if !self.is_held() {
             self.intend(drive, jog, Kind::Held);
+            self.used = match jog {
+                Wish::Jog { direction, outward: true, .. } => Some((drive, direction)),
+                _ => None,
+            };
         }
     }
 
@@ -184,6 +195,7 @@ impl Moves {
 
     /// Nobody is there for what has no end of its own: a jog, a run.
     pub(in crate::app) fn let_go(&mut self) {
+        self.freed = None;
         self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
 
@@ -196,6 +208,17 @@ impl Moves {
         self.act = Some(Act { kind: Kind::Other, ..act });
     }
 
+    /// A person frees the way further out, for one press.
+    pub(super) fn free(&mut self, drive: DriveNumber, direction: Direction) {
+        self.freed = Some((drive, direction));
+    }
+
+    /// A jog this way may lead further out: the next one, or the one that is held.
+    pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
+        let way = Some((drive, direction));
+        self.freed == way || self.used == way && self.is_held()
+    }
+
     /// A move, a step, another state: kept alive by pictures. The number of the act; `None` while the session is not open.
     pub(super) fn want(&mut self, drive: DriveNumber, wish: Wish) -> Option<u64> {
         let kind = if matches!(wish, Wish::Run { .. }) { Kind::Run } else { Kind::Other };
@@ -204,6 +227,7 @@ impl Moves {
 
     /// All drives stop, whatever moves them.
     pub(in crate::app) fn stop(&mut self) {
+        self.freed = None;
         if let Some(motion) = &self.motion {
             motion.stop();
         }

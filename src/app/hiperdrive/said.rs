@@ -111,7 +111,8 @@ impl Unit {
         }
         let Some(permit) = self.moves.permit(drive) else { return Err(Text::new("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
-        permit.check(wish, asks_target).map_err(|refusal| explain::hiperdrive::refusal(refusal, place))
+        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(wish, actual));
+        permit.check(wish, asks_target).and(here).map_err(|refusal| explain::hiperdrive::refusal(refusal, place))
     }
 
     /// A place as a person measures it, with its unit.

@@ -145,14 +145,14 @@ impl DriveLimits {
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
+        Permit { limits: self.limits(), locks, endless: self.is_factory && expert, degree: self.degree() }
+    }
+
+    /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
+    pub fn degree(&self) -> u32 {
         let degree = self.scale().map_or(1.0, |scale| scale.steps_per_turn() / 360.0);
-        Permit {
-            limits: self.limits(),
-            locks,
-            endless: self.is_factory && expert,
-            // A cast of a float saturates.
-            degree: degree.ceil().max(1.0) as u32,
-        }
+        // A cast of a float saturates.
+        degree.ceil().max(1.0) as u32
     }
 }
 

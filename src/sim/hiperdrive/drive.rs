@@ -115,6 +115,12 @@ impl Drive {
         self.load = load;
     }
 
+    /// Its spindle is turned by hand, by so many steps of 65536 a turn.
+    pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
+        self.advance(now);
+        self.axis = Axis::at(self.axis.place() + steps);
+    }
+
     /// Something goes wrong: it is kept, and while the drive is operational it is a fault that ends the motion.
     pub fn fail(&mut self, now: Moment, code: ErrorCode) {
         self.advance(now);

@@ -2,6 +2,7 @@
 
 use egui::{RichText, Stroke, Ui, vec2};
 
+use super::outside;
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Studio};
 use crate::ui::controls::{allowed_button, name, options, paragraph};
@@ -25,13 +26,15 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, act
                     if allowed_button(ui, skin, &unit.can_give(), icons::PLUGS, &word).clicked() {
                         actions.push(Action::Hiperdrive(id, Hiperdrive::Give));
                     }
-                    ui.label(RichText::new(skin.say("hd_bar.in_control")).color(skin.palette.good));
+                    let well = || RichText::new(skin.say("hd_bar.in_control")).color(skin.palette.good);
+                    ui.label(outside::badge(skin, unit).unwrap_or_else(well));
                 } else {
                     let word = skin.say("hd_bar.take");
                     if allowed_button(ui, skin, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
                         actions.push(Action::Hiperdrive(id, Hiperdrive::Take));
                     }
-                    ui.label(skin.label(skin.say("hd_bar.watching")));
+                    let watching = || skin.label(skin.say("hd_bar.watching"));
+                    ui.label(outside::badge(skin, unit).unwrap_or_else(watching));
                 }
             });
             if let Some(why) = unit.why_lost() {

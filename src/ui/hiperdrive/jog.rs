@@ -3,6 +3,7 @@
 use egui::{Ui, vec2};
 
 use super::motion::{View, effort_ui, length_ui, why_not};
+use super::outside;
 use crate::app::Action;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::protocol::hiperdrive::Direction;
@@ -12,6 +13,8 @@ use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
 
 /// Height of the buttons that are held.
 const PAD: f32 = 72.0;
+/// Height of what is said below them.
+const BELOW: f32 = 120.0;
 
 /// The card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
@@ -20,7 +23,13 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         let effort = effort_ui(ui, skin, unit, (unit.moves.jog_effort(), drafts), Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(unit.drive()));
         pads_ui(ui, skin, unit, allowed.is_ok(), actions);
-        paragraph(ui, skin.caption(skin.say("hd_jog.words")));
+        // Always as high: nothing moves away under a finger that holds a drive.
+        ui.scope(|ui| {
+            ui.set_min_height(BELOW);
+            if !outside::block_ui(ui, skin, unit, &mut view.outside, actions) {
+                paragraph(ui, skin.caption(skin.say("hd_jog.words")));
+            }
+        });
         why_not(ui, skin, &allowed);
         ui.add_space(skin.space.between);
         ui.separator();
@@ -53,6 +62,7 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
             [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
         {
             let (caption, label) = (skin.say("hd_jog.hold"), skin.say(label));
+            let enabled = enabled && unit.may_jog(unit.drive(), direction).is_ok();
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
                 Some(HoldEvent::Press) => Motor::JogPress { direction, repeated: false },

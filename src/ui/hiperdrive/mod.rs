@@ -10,6 +10,7 @@ mod jog;
 mod leds;
 mod motion;
 mod network;
+pub(in crate::ui) mod outside;
 mod parameters;
 mod scale;
 

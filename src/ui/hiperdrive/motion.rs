@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui, vec2};
 
-use super::{figures, jog};
+use super::{figures, jog, outside};
 use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::app::{Action, SessionId, Text};
@@ -24,6 +24,7 @@ pub(super) struct View {
     pub(super) jog_effort: [Draft; 2],
     pub(super) step: String,
     pub(super) step_problem: Option<Text>,
+    pub(super) outside: outside::Draft,
     move_effort: [Draft; 2],
     target: String,
     target_problem: Option<Text>,

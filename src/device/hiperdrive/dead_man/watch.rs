@@ -54,7 +54,7 @@ fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
 
 impl Side {
     /// Steps beyond the limit of this side; negative inside.
-    fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
+    pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             Side::Above => i64::from(position) - i64::from(high),
             Side::Below => i64::from(low) - i64::from(position),

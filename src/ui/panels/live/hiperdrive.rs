@@ -9,6 +9,7 @@ use crate::app::hiperdrive::{Measure, Unit};
 use crate::protocol::hiperdrive::{State, turns};
 use crate::ui::Skin;
 use crate::ui::controls::row;
+use crate::ui::hiperdrive::outside::badge;
 
 pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
     let drive = unit.drive();
@@ -23,8 +24,14 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
     let palette = skin.palette;
     ui.horizontal(|ui| {
         let shown = main.unwrap_or_else(|| "–".to_owned());
+        let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
-        ui.label(skin.label(skin.say(unit.measure.unit())));
+        // In the same line: nothing below it moves when it comes.
+        let measure = skin.label(skin.say(unit.measure.unit()));
+        ui.label(measure);
+        if let Some(badge) = badge(skin, unit) {
+            ui.label(badge);
+        }
     });
     let Some(actual) = actual else { return };
     let state = actual.status.state();

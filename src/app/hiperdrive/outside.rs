@@ -1,0 +1,83 @@
+//! A drive outside its limits: how far out, which way leads back in, and the way further out that a person can free for one
+//! press, because a wrong reference can make that the only way.
+
+use super::unit::Unit;
+use crate::app::services::Services;
+use crate::app::{Severity, Text};
+use crate::device::hiperdrive::dead_man::{Effort, Side, Wish, outside};
+use crate::protocol::hiperdrive::{Direction, DriveNumber, nearest_reference};
+use crate::worker::hiperdrive::Change;
+
+/// Where a drive is outside its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outside {
+    /// On which side.
+    pub side: Side,
+    /// In steps as scaled.
+    pub position: i32,
+    /// Parameters 158 and 160.
+    pub limits: (i32, i32),
+    /// Farther than a drive repeats a position: no mere end of the range.
+    pub is_far: bool,
+}
+
+impl Unit {
+    /// Where a drive is outside its limits, by its position or by status bit 15; `None` inside, and where one of both is not
+    /// known.
+    pub fn outside(&self, drive: DriveNumber) -> Option<Outside> {
+        let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
+        let side = outside(actual, limits)?;
+        let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
+        let is_far = side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree);
+        Some(Outside { side, position: actual.position, limits, is_far })
+    }
+
+    /// A drive outside its limits, in words; `None` inside, and at the end of its range.
+    pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
+        let own = self.outside(drive).filter(|own| own.is_far)?;
+        let text = Text::new("hd_outside.words").with_text("position", self.place(drive, own.position));
+        Some(text.with_text("range", self.places(drive, own.limits)))
+    }
+
+    /// Whether a drive may be jogged this way now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
+        let outward = self.moves.is_freed(drive, direction);
+        self.may(drive, Wish::Jog { direction, effort: Effort::JOG, outward })
+    }
+
+    /// The direction that leads further out and can be freed for one press; `None` inside the limits, and once it is freed.
+    pub fn can_free(&self, drive: DriveNumber) -> Option<Direction> {
+        let direction = self.outside(drive)?.side.outward();
+        (self.may_move(drive).is_ok() && !self.moves.is_freed(drive, direction)).then_some(direction)
+    }
+
+    /// A person frees the way further out, for one press.
+    pub(super) fn free_outward(&mut self, drive: DriveNumber, services: &mut Services) {
+        match self.can_free(drive) {
+            Some(direction) => self.moves.free(drive, direction),
+            None => {
+                let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
+                services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            }
+        }
+    }
+
+    /// The change that gives the place where a drive stands this position, in steps as scaled, and saves it.
+    ///
+    /// # Errors
+    /// In words, where the drive would not take it: outside the limits.
+    pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
+        let (low, high) = self.limits(drive).ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));
+        let position = becomes.ok_or_else(|| {
+            Text::new("hd_refused.outside")
+                .with_text("target", self.place(drive, position))
+                .with_text("low", self.place(drive, low))
+                .with_text("high", self.place(drive, high))
+        })?;
+        Ok(Change::SetPosition { drive, position, save: true })
+    }
+}
