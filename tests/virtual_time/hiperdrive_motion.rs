@@ -3,6 +3,7 @@
 mod any;
 mod bench;
 mod ladder;
+mod model;
 mod watch;
 
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish};

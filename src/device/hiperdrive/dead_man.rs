@@ -17,6 +17,8 @@ mod cause;
 mod lead;
 mod stage;
 #[cfg(test)]
+mod table;
+#[cfg(test)]
 mod tests;
 mod watch;
 

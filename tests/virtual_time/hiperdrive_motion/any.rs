@@ -1,10 +1,16 @@
-//! Any session of a person with a drive, thousands of steps long, with everything that can go wrong in between.
+//! Any session of a person with a drive, thousands of steps long, with everything that can go wrong in between: the drive
+//! fails, ignores its limits, turns the wrong way, is turned by hand; another master writes limits; lines are cut.
+//!
+//! A word that commands motion goes out only with a fresh act of a person, in its direction and within the limits: a model
+//! beside the dead-man says so ([`Model`]).
 
+use encoder_studio::device::hiperdrive::dead_man::Permit;
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock, Wish};
-use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, RunEnd, State};
-use encoder_studio::sim::hiperdrive::Load;
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ErrorCode, RunEnd, State};
+use encoder_studio::sim::hiperdrive::{Defect, Load};
 
 use super::bench::Bench;
+use super::model::Model;
 use super::{FULL, TURN};
 
 const SESSIONS: u64 = 100;
@@ -21,15 +27,15 @@ fn wish(dice: &mut fastrand::Rng) -> Wish {
         6 | 7 => Wish::Step { by: dice.i32(-TURN..TURN), effort },
         8 => Wish::Pause,
         9 => Wish::Resume,
-        10 | 11 => Wish::Jog { direction, effort, outward: false },
+        10 | 11 => Wish::Jog { direction, effort, outward: dice.u8(..4) == 0 },
         12 => Wish::Run { direction, end: RunEnd::RangeEnd, effort },
         _ => Wish::Stop,
     }
 }
 
-fn mishap(bench: &mut Bench, dice: &mut fastrand::Rng) {
+fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
     let now = bench.now;
-    match dice.u8(..16) {
+    match dice.u8(..20) {
         0 | 1 => bench.fail([ErrorCode::OVER_CURRENT, ErrorCode::RS485][dice.usize(..2)]),
         2 => {
             let wall_above = Some(bench.position().into());
@@ -40,37 +46,63 @@ fn mishap(bench: &mut Bench, dice: &mut fastrand::Rng) {
         6 => bench.station.turn_s3(now, dice.u8(..3)),
         7 => bench.station.turn_s3(now, 0),
         8 => bench.reset(),
-        9 => bench.reconnect(),
-        10 => bench.permit.locks = vec![Lock::LimitsUnconfirmed],
+        9 => {
+            bench.reconnect();
+            model.end();
+        }
+        10 => {
+            bench.permit.locks = vec![Lock::LimitsUnconfirmed];
+            model.end();
+        }
         11 | 12 => bench.permit.locks.clear(),
         13 => bench.late = dice.usize(..4),
+        14 => bench.load(Load { defect: Some(Defect::RunsOn), ..Load::default() }),
+        15 => bench.load(Load { defect: Some(Defect::Reversed), ..Load::default() }),
+        16 => {
+            let steps = f64::from(dice.i32(-TURN..TURN));
+            bench.station.drive(DriveNumber::FIRST).unwrap().turn_by_hand(now, steps);
+        }
+        17 | 18 => {
+            let limits = (dice.i32(-4 * TURN..-TURN / 2), dice.i32(TURN / 2..4 * TURN));
+            bench.permit = Permit { locks: bench.permit.locks.clone(), ..Permit::within(limits.0, limits.1) };
+            model.set_limits(limits);
+        }
         _ => {}
     }
 }
 
-/// The bench looks at each word. Here: once nobody wants a motion any more, the drive stands within the ladder and the
-/// time in which it brakes; and it keeps standing.
+/// Issue 21.14: bench and model look at each word. Here: once nobody wants a motion any more, the drive stands within the
+/// ladder and the time in which it brakes; and it keeps standing.
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;
     for seed in 0..SESSIONS {
         let mut dice = fastrand::Rng::with_seed(seed);
         let mut bench = Bench::new();
+        let limits = (-3 * TURN, 3 * TURN);
+        bench.permit = Permit::within(limits.0, limits.1);
+        let mut model = Model::new(limits);
         let mut unwanted = 0;
         let mut word = bench.man.sent().control;
         for step in 0..STEPS {
             if dice.u8(..30) == 0 {
                 let wish = wish(&mut dice);
-                bench.act(wish);
+                let number = bench.act(wish);
+                model.act(number, wish, bench.now);
             }
             if dice.u8(..150) == 0 {
-                mishap(&mut bench, &mut dice);
+                mishap(&mut bench, &mut model, &mut dice);
             }
             bench.cut_out = dice.u8(..20) == 0;
             bench.cut_back = dice.u8(..20) == 0;
             bench.absent = dice.u8(..200) == 0 || (bench.absent && dice.u8(..40) != 0);
             let stale = bench.intent.is_stale(bench.now) && bench.absent;
+            if !bench.absent {
+                model.say(bench.now);
+            }
+            let now = bench.now;
             let sent = bench.cycle();
+            model.look(now, sent, bench.man.actual(), bench.man.ended());
             let wanted = bench.intent.wish.moves() && !stale && bench.permit.locks.is_empty();
             assert!(wanted || sent.control.is_standing(), "{seed}/{step}: {:?} after {word:?}", sent.control);
             word = sent.control;
@@ -81,6 +113,7 @@ fn any_session_ends_at_a_standstill() {
             assert!(!moves || unwanted < 40, "{seed}/{step}: {unwanted} intervals unwanted, {:?}", bench.man.phase());
             if bench.man.gives_up() {
                 bench.reconnect();
+                model.end();
             }
         }
     }

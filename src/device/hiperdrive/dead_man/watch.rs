@@ -106,37 +106,39 @@ impl Watch {
     /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
     pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
-        let beyond = Some(Ended::Beyond { position: actual.position });
-        let wrong_way = Some(Ended::WrongWay { position: actual.position });
-        if let Motive::Job { target } = motion.motive {
-            let distance = distance(actual, target);
-            self.best = self.best.min(distance);
-            // Where it arrives it may overshoot by its accuracy.
-            let allowed = if self.best <= ACCURACY * degree { ACCURACY * degree } else { degree };
-            if distance > self.best.saturating_add(allowed) {
-                return wrong_way;
-            }
-            if distance <= degree {
+        match motion.motive {
+            Motive::Run { .. } => self.look_at_limits(motion, actual, permit),
+            Motive::Job { target } => {
+                let distance = distance(actual, target);
+                self.best = self.best.min(distance);
                 // The target lies within the limits: a degree beside it is no overrun.
-                return None;
+                let beyond = if distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
+                // Where it arrives it may overshoot by its accuracy.
+                let allowed = if self.best <= ACCURACY * degree { ACCURACY * degree } else { degree };
+                let leaves = distance > self.best.saturating_add(allowed);
+                beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
             }
         }
-        let limits = motion.limits(permit)?;
+    }
+
+    fn look_at_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let (limits, degree) = (motion.limits(permit)?, i64::from(permit.degree));
+        let runs = matches!(motion.motive, Motive::Run { .. });
+        let beyond = Some(Ended::Beyond { position: actual.position });
         let Some(began) = self.outside else {
             let steps = outside(actual, limits)?.beyond(actual.position, limits);
-            let at_end = matches!(motion.motive, Motive::Run { .. }) && steps.abs() <= degree;
-            return if at_end { Some(Ended::RangeEnd) } else { beyond };
+            return if runs && steps.abs() <= degree { Some(Ended::RangeEnd) } else { beyond };
         };
         match side(actual.position, limits) {
             // Through the whole range, and out at the other side.
             Some(side) if side != began => return beyond,
             // Status bit 15 may be late.
             None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
-            _ if matches!(motion.motive, Motive::Run { .. }) && !motion.is_freed() => {
+            _ if runs && !motion.is_freed() => {
                 let steps = began.beyond(actual.position, limits);
                 self.best = self.best.min(steps);
                 if steps > self.best.saturating_add(degree) {
-                    return wrong_way;
+                    return Some(Ended::WrongWay { position: actual.position });
                 }
             }
             _ => {}

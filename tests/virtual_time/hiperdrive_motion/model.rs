@@ -1,0 +1,172 @@
+//! What a person has asked for, in a book of its own: a word that commands motion needs an act in it.
+
+use std::time::Duration;
+
+use encoder_studio::device::hiperdrive::dead_man::{Ended, Wish};
+use encoder_studio::protocol::hiperdrive::{Actual, Direction, RunEnd, Setpoint, StatusBit};
+use encoder_studio::units::Moment;
+
+/// Issue 21.14: acts as they were made, without the dead-man's own bookkeeping.
+pub(super) struct Model {
+    live: Option<Live>,
+    limits: (i32, i32),
+}
+
+/// An act that may move the drive.
+struct Live {
+    number: u64,
+    wish: Wish,
+    said: Moment,
+    /// Where a job leads, from the first word that commanded it.
+    target: Option<i32>,
+    /// The drive has been inside its limits since the act.
+    was_inside: bool,
+}
+
+/// What a word commands, by the bits of the reference (3): bit 3 enables, bit 12 is speed mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Commands {
+    Nothing,
+    /// Bits 12 and 6; bit 4: clockwise, bit 5: without an end.
+    Run {
+        clockwise: bool,
+        endless: bool,
+    },
+    /// Bits 4 and 5, and bit 6 other than it was acknowledged, or a job on its way.
+    Job,
+}
+
+const ENABLED: u16 = 0x0409;
+/// How long an act holds that nobody says again.
+const FRESH: Duration = Duration::from_millis(250);
+/// Steps of a degree, rounded up.
+const DEGREE: i64 = 183;
+
+fn commands(word: u16, acknowledged: bool, job: bool) -> Commands {
+    let has = |bit: u16| word & (1 << bit) != 0;
+    if word & ENABLED != ENABLED {
+        Commands::Nothing
+    } else if has(12) {
+        if has(6) { Commands::Run { clockwise: has(4), endless: has(5) } } else { Commands::Nothing }
+    } else if has(4) && has(5) && (job || has(6) != acknowledged) {
+        Commands::Job
+    } else {
+        Commands::Nothing
+    }
+}
+
+impl Model {
+    pub(super) fn new(limits: (i32, i32)) -> Self {
+        Model { live: None, limits }
+    }
+
+    /// A person acts.
+    pub(super) fn act(&mut self, number: u64, wish: Wish, now: Moment) {
+        let is_job = |live: &Live| matches!(live.wish, Wish::Move { .. } | Wish::Step { .. });
+        match wish {
+            // They carry a job on, and begin nothing.
+            Wish::Pause | Wish::Resume => {
+                self.live = self.live.take().filter(is_job).map(|live| Live { number, said: now, ..live });
+            }
+            Wish::Move { .. } | Wish::Step { .. } | Wish::Jog { .. } | Wish::Run { .. } => {
+                self.live = Some(Live { number, wish, said: now, target: None, was_inside: false });
+            }
+            _ => self.live = None,
+        }
+    }
+
+    /// It is said that the act is wanted still.
+    pub(super) fn say(&mut self, now: Moment) {
+        if let Some(live) = &mut self.live {
+            live.said = now;
+        }
+    }
+
+    /// Nothing that was asked for before counts any more.
+    pub(super) fn end(&mut self) {
+        self.live = None;
+    }
+
+    pub(super) fn set_limits(&mut self, limits: (i32, i32)) {
+        self.limits = limits;
+    }
+
+    /// How far outside the limits, on the upper side (positive) or the lower one.
+    fn outside(&self, position: i32) -> i64 {
+        let (low, high) = self.limits;
+        let (position, low, high) = (i64::from(position), i64::from(low), i64::from(high));
+        if position > high { position - high } else { (position - low).min(0) }
+    }
+
+    /// Holds what was sent against the book. `heard`: the report before it.
+    pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: Actual, ended: Option<(u64, Ended)>) {
+        let out = self.outside(heard.position);
+        let live = self.live.take().filter(|live| {
+            now.since(live.said) <= FRESH
+                && !heard.status.has(StatusBit::Fault)
+                && ended.is_none_or(|(number, _)| number < live.number)
+        });
+        let word = sent.control.word();
+        let job = live.as_ref().is_some_and(|live| live.target.is_some());
+        let commands = commands(word, heard.status.has(StatusBit::SetpointAcknowledged), job);
+        self.live = live;
+        if commands == Commands::Nothing {
+            return;
+        }
+        let Some(live) = &mut self.live else { panic!("{word:04X} without a fresh act") };
+        live.was_inside |= out == 0;
+        assert!(
+            !(live.was_inside && out.abs() > 0) || is_arriving(commands, live, heard),
+            "{word:04X} at {out} outside"
+        );
+        match (commands, live.wish) {
+            (Commands::Run { clockwise, endless }, Wish::Jog { direction, .. } | Wish::Run { direction, .. }) => {
+                assert_eq!(clockwise, direction == Direction::Clockwise, "{word:04X} for {:?}", live.wish);
+                let may_run_on = matches!(live.wish, Wish::Run { end: RunEnd::Endless, .. });
+                assert!(!endless || may_run_on, "{word:04X} for {:?}", live.wish);
+                let outward = if clockwise { out > 0 } else { out < 0 };
+                let freed = matches!(live.wish, Wish::Jog { outward: true, .. });
+                assert!(!outward || freed, "{word:04X} at {out} outside, for {:?}", live.wish);
+                if freed {
+                    assert!(sent.speed.get() <= 10 && sent.torque.get() <= 25, "{sent:?}");
+                }
+            }
+            (Commands::Job, Wish::Move { target, .. }) => assert_eq!(sent.target, target),
+            (Commands::Job, Wish::Step { .. }) => assert!(live.target.is_none_or(|own| own == sent.target)),
+            (_, wish) => panic!("{word:04X} for {wish:?}"),
+        }
+        if commands == Commands::Job {
+            assert_eq!(self.outside(sent.target), 0, "a target outside the limits");
+            if let Some(live) = &mut self.live {
+                live.target = Some(sent.target);
+            }
+        }
+    }
+}
+
+/// A job within a degree of its target, which lies within the limits.
+fn is_arriving(commands: Commands, live: &Live, heard: Actual) -> bool {
+    let near = |target: i32| (i64::from(heard.position) - i64::from(target)).abs() <= DEGREE;
+    commands == Commands::Job && live.target.is_some_and(near)
+}
+
+#[test]
+fn words_of_the_reference_command_what_it_says() {
+    let run = |clockwise, endless| Commands::Run { clockwise, endless };
+    for (word, acknowledged, job, expected) in [
+        (0x0439, false, false, Commands::Nothing),
+        (0x0479, false, false, Commands::Job),
+        (0x0479, true, true, Commands::Job),
+        (0x0439, true, false, Commands::Job),
+        (0x0469, true, true, Commands::Nothing),
+        (0x0409, true, true, Commands::Nothing),
+        (0x1419, false, false, Commands::Nothing),
+        (0x1459, false, false, run(true, false)),
+        (0x1449, false, false, run(false, false)),
+        (0x1479, true, false, run(true, true)),
+        (0x0401, true, true, Commands::Nothing),
+        (0x0400, false, false, Commands::Nothing),
+    ] {
+        assert_eq!(commands(word, acknowledged, job), expected, "{word:04X}");
+    }
+}
