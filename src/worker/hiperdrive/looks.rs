@@ -132,6 +132,21 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
+    /// Issue 21.13: while a drive moves, some group is due in every turn of 80 ms.
+    #[test]
+    fn something_is_asked_in_every_turn_of_a_motion() {
+        let mut read = [at(0); GROUPS];
+        let mut last = 0;
+        for now in (0..4000).step_by(20) {
+            for group in due(read, at(now), TURN_IN_MOTION) {
+                read[group] = at(now);
+                last = now;
+            }
+            assert!(now - last <= 80, "{now}: nothing since {last}");
+        }
+        assert_eq!(TURN_IN_MOTION, Duration::from_millis(80));
+    }
+
     #[test]
     fn every_group_comes_once_a_second_however_often_somebody_looks() {
         for (step, first) in

@@ -115,6 +115,9 @@ impl ByteLink for WatchedWire {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::hiperdrive::dead_man::Lock;
+    use crate::link::VirtualClock;
+    use crate::protocol::hiperdrive::DriveNumber;
 
     fn at(ms: u64) -> Moment {
         Moment::START + Duration::from_millis(ms)
@@ -134,6 +137,60 @@ mod tests {
         assert!(watch.is_silent(at(1000)), "with bytes that are no frame");
         watch.answer(at(1001));
         assert!(!watch.is_silent(at(1001)));
+    }
+
+    /// A line on which nothing comes but what is put there.
+    #[derive(Default)]
+    struct Line(Vec<u8>);
+
+    impl ByteLink for Line {
+        fn send(&mut self, _: &[u8]) -> Result<(), LinkError> {
+            Ok(())
+        }
+
+        fn receive(&mut self, _: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+            into.append(&mut self.0);
+            Ok(())
+        }
+
+        fn set_format(&mut self, _: CharacterFormat) -> Result<(), LinkError> {
+            Ok(())
+        }
+
+        fn check(&mut self) -> Result<(), LinkError> {
+            Ok(())
+        }
+    }
+
+    /// Issue 21.13: a motion is locked by a request without an answer, and by bytes that are no frame; a reply frees it. The
+    /// reply is the reference's to RegisterSession (9), which comes in two portions.
+    #[test]
+    fn a_silent_session_locks_motion() {
+        let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
+        reply.extend([0; 16]);
+        reply.extend([1, 0, 0, 0]);
+        let clock = Arc::new(VirtualClock::default());
+        let motion = Motion::new(clock.clone());
+        let locked = || motion.with_wanted(|_, permit| permit(DriveNumber::FIRST).locks.contains(&Lock::NoAnswer));
+        let later = |ms| clock.sleep_until(clock.now() + Duration::from_millis(ms));
+        let receive = |bytes: &[u8]| {
+            let mut wire = WatchedWire::new(Box::new(Line(bytes.to_vec())), clock.clone(), motion.clone());
+            wire.receive(clock.now(), &mut Vec::new()).unwrap();
+        };
+        let mut wire = WatchedWire::new(Box::new(Line::default()), clock.clone(), motion.clone());
+        wire.send(&[0]).unwrap();
+        later(140);
+        assert!(!locked());
+        later(1);
+        assert!(locked());
+        receive(&reply[..20]);
+        assert!(locked(), "half a frame is no answer");
+        receive(&reply);
+        assert!(!locked());
+        receive(&[0xFF; 64]);
+        assert!(locked(), "no frame");
+        receive(&reply);
+        assert!(!locked());
     }
 
     /// A device that takes 300 ms for each answer is given 600, and less again when it has become fast.
