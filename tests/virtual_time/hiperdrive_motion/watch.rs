@@ -216,6 +216,19 @@ fn a_move_the_wrong_way_is_stopped_at_once() {
     }
 }
 
+/// Issue 21.5: a jog that turns against its pad is stopped with the report that shows more than a degree.
+#[test]
+fn a_jog_the_wrong_way_is_stopped_at_once() {
+    for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
+        for wish in [jog(direction, FULL, false), run(direction, RunEnd::RangeEnd)] {
+            let mut bench = bench(Some(Defect::Reversed));
+            bench.act(wish);
+            let (intervals, position) = intervals_past(&mut bench, -sign * DEGREE);
+            assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::WrongWay { position }), "{wish:?}");
+        }
+    }
+}
+
 /// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit beyond that limit.
 #[test]
 fn a_move_that_runs_on_is_stopped() {

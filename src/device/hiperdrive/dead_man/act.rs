@@ -207,7 +207,7 @@ pub enum Ended {
         /// In steps as scaled.
         position: i32,
     },
-    /// The drive moves away from its target, or further out from outside its limits.
+    /// The drive moves away from its target, or against the direction of its run.
     WrongWay {
         /// In steps as scaled.
         position: i32,

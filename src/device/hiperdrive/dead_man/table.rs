@@ -131,7 +131,7 @@ impl Bench {
                 self.position = 10_400;
                 self.status |= 0x8000;
             }
-            "away from the target by more than 1°" => self.position = -400,
+            "the other way than it should by more than 1°" => self.position = -400,
             "stands without having arrived" => {
                 self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
                 // A start is given a second, a drive that stands half of one.

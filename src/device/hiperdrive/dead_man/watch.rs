@@ -3,7 +3,7 @@
 //!
 //! | case | what holds |
 //! |---|---|
-//! | endless run | an expert's run without an end is not watched: there is no limit that it obeys |
+//! | endless run | an expert's run without an end is held against its direction alone: there is no limit that it obeys |
 //! | unread limits | nothing moves, and what moves is stopped: the permit says so |
 //! | already outside | the way back in is free; further out only where that was freed for this press |
 //! | overrun while braking | a stop that is under way goes on; its reason stays |
@@ -28,7 +28,7 @@ pub enum Side {
 pub(super) struct Watch {
     /// It began outside the limits, on this side, and has not been inside since.
     outside: Option<Side>,
-    /// Of a motion that began outside: the place nearest to the range so far; of a job: the least distance to the target.
+    /// The least distance so far: of a job to its target, of a run to where it leads.
     best: i64,
     /// A run began at the end of the range to which it leads: there may be nowhere to go.
     pub(super) at_end: bool,
@@ -61,8 +61,7 @@ impl Side {
         }
     }
 
-    /// The direction that leads further out. Clockwise counts up (`U`: the manual does not say so; a drive that counts the
-    /// other way is seen by its positions).
+    /// The direction that leads further out. Clockwise counts up (manual 7.2: the step of parameter 170, +4096, is clockwise).
     pub const fn outward(self) -> Direction {
         match self {
             Side::Above => Direction::Clockwise,
@@ -78,6 +77,16 @@ impl Motion {
         permit.limits.filter(|_| !endless)
     }
 
+    /// Steps to the target of a job; of a run, which has none, how the distance changes as it goes the way it should.
+    fn distance(&self, actual: Actual) -> i64 {
+        let position = i64::from(actual.position);
+        match self.motive {
+            Motive::Job { target } => (position - i64::from(target)).abs(),
+            Motive::Run { direction: Direction::Clockwise, .. } => -position,
+            Motive::Run { direction: Direction::Counterclockwise, .. } => position,
+        }
+    }
+
     /// A person has freed the way further out for this press.
     const fn is_freed(&self) -> bool {
         matches!(self.wish, Wish::Jog { outward: true, .. })
@@ -89,11 +98,7 @@ impl Watch {
     pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
         let outside = limits.and_then(|limits| outside(actual, limits));
-        let best = match (motion.motive, outside, limits) {
-            (Motive::Job { target }, ..) => distance(actual, target),
-            (_, Some(side), Some(limits)) => side.beyond(actual.position, limits),
-            _ => 0,
-        };
+        let best = motion.distance(actual);
         let at_end = match (motion.motive, limits) {
             (Motive::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
                 side.outward() == direction && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
@@ -106,19 +111,17 @@ impl Watch {
     /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
     pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
-        match motion.motive {
-            Motive::Run { .. } => self.look_at_limits(motion, actual, permit),
-            Motive::Job { target } => {
-                let distance = distance(actual, target);
-                self.best = self.best.min(distance);
-                // The target lies within the limits: a degree beside it is no overrun.
-                let beyond = if distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
-                // Where it arrives it may overshoot by its accuracy.
-                let allowed = if self.best <= ACCURACY * degree { ACCURACY * degree } else { degree };
-                let leaves = distance > self.best.saturating_add(allowed);
-                beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
-            }
-        }
+        let distance = motion.distance(actual);
+        self.best = self.best.min(distance);
+        let is_job = matches!(motion.motive, Motive::Job { .. });
+        // The target of a job lies within the limits: a degree beside it is no overrun.
+        let beyond = if is_job && distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
+        // Where a job arrives it may overshoot by its accuracy.
+        let arrives = is_job && self.best <= ACCURACY * degree;
+        let allowed = if arrives { ACCURACY * degree } else { degree };
+        // Who frees the way out watches the axis: a drive that counts the other way comes in by it.
+        let leaves = distance > self.best.saturating_add(allowed) && !motion.is_freed();
+        beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }
 
     fn look_at_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
@@ -134,13 +137,6 @@ impl Watch {
             Some(side) if side != began => return beyond,
             // Status bit 15 may be late.
             None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
-            _ if runs && !motion.is_freed() => {
-                let steps = began.beyond(actual.position, limits);
-                self.best = self.best.min(steps);
-                if steps > self.best.saturating_add(degree) {
-                    return Some(Ended::WrongWay { position: actual.position });
-                }
-            }
             _ => {}
         }
         None
@@ -184,8 +180,4 @@ impl DeadMan {
         }
         act.watch.get_or_insert_with(|| Watch::begin(motion, actual, permit)).look(motion, actual, permit)
     }
-}
-
-fn distance(actual: Actual, target: i32) -> i64 {
-    i64::from(actual.position).abs_diff(i64::from(target)).try_into().unwrap_or(i64::MAX)
 }
