@@ -56,10 +56,11 @@ impl Studio {
         self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.let_go());
     }
 
-    /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog or a question
-    /// end them.
+    /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog, a question for a file or
+    /// any other end them.
     pub(in crate::app) fn hold_in_sight(&mut self) {
-        let is_covered = self.connect.is_some() || self.question.is_some();
+        let asks = self.question.is_some() || self.services.file_question.is_some();
+        let is_covered = self.connect.is_some() || asks;
         let seen = self.shown.of(Tab::Hiperdrive).filter(|_| self.settings.tab == Tab::Hiperdrive && !is_covered);
         for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
             if seen != Some(unit.session.id) || unit.review.is_some() {
