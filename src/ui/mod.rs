@@ -13,6 +13,7 @@ mod hiperdrive;
 mod hiperface;
 pub mod icons;
 mod interbus;
+mod keys;
 mod motor;
 mod navigation;
 mod page;

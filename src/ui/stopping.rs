@@ -9,14 +9,21 @@ const FRIGHT: f64 = 0.5;
 
 /// Whether what was pressed at this time, by the clock of the pictures, means what moves, or has moved until just now.
 pub(super) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
-    let id = Id::unique("the last stop of a motion");
-    let just_now = ctx.data(|data| data.get_temp::<f64>(id)).is_some_and(|stopped| pressed - stopped <= FRIGHT);
-    let means = moves || just_now;
+    let means = moves || has_just_stopped(ctx, pressed);
     if means {
         let now = ctx.input(|input| input.time);
-        ctx.data_mut(|data| data.insert_temp(id, now));
+        ctx.data_mut(|data| data.insert_temp(last_stop(), now));
     }
     means
+}
+
+/// Something was stopped by a press so shortly before this time that another press means the same.
+pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
+    ctx.data(|data| data.get_temp::<f64>(last_stop())).is_some_and(|stopped| pressed - stopped <= FRIGHT)
+}
+
+fn last_stop() -> Id {
+    Id::unique("the last stop of a motion")
 }
 
 /// The pointer goes down on a button that stops, in this picture.

@@ -8,7 +8,9 @@ use egui::{Key, Modifiers, Panel, Ui};
 
 use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
+use super::keys::Keys;
 use super::navigation::navigation_ui;
+use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, signals, ssi, stopping};
 use crate::app::hiperface::Encoder;
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
@@ -79,6 +81,7 @@ pub struct Window {
     studio: Studio,
     views: Views,
     docks: Docks,
+    keys: Keys,
     look: &'static Look,
     dressed: Option<crate::app::Theme>,
     /// Which notice stands, and since when on the window's clock.
@@ -99,7 +102,7 @@ impl Window {
     pub fn new(studio: Studio, look: &'static Look) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views { rate: 50_000, plot: super::plot::View::in_panel(), ..Views::default() };
-        Window { studio, views, docks, look, dressed: None, notice_since: None }
+        Window { studio, views, docks, keys: Keys::new(), look, dressed: None, notice_since: None }
     }
 
     /// All state.
@@ -249,11 +252,17 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             actions.push(Action::Close);
         }
+        let (moves, asks) = (self.studio.moves_by_hand(), self.asks());
+        if self.keys.take(ctx, moves, asks) {
+            actions.push(Action::StopMotion);
+        }
         let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
         if pressed(Modifiers::NONE, Key::F1) {
             self.views.help = !self.views.help;
         }
-        if self.is_covered() || self.views.help || !ctx.input(|input| input.focused) {
+        let covered = self.is_covered() || self.views.help;
+        surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
+        if covered || !ctx.input(|input| input.focused) {
             // Nobody sees what is held, or the key that holds it will not be heard when it is lifted.
             actions.push(Action::LetGo);
         }
@@ -289,10 +298,13 @@ impl Window {
 
     /// Something stands over the window and has the keyboard.
     fn is_covered(&self) -> bool {
-        let studio = &self.studio;
-        let review = studio.shown().is_some_and(AnyDevice::is_reviewing);
         let dialog = self.views.file.is_some() || self.views.about;
-        studio.connect.is_some() || studio.question.is_some() || review || dialog
+        self.studio.connect.is_some() || self.asks() || dialog
+    }
+
+    /// A consent is asked for.
+    fn asks(&self) -> bool {
+        self.studio.question.is_some() || self.studio.shown().is_some_and(AnyDevice::is_reviewing)
     }
 
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half

@@ -62,11 +62,11 @@ def by_mouse(rig):
 
 
 def focus_pad(rig):
-    """From the entry before the pads the keyboard goes on to them."""
+    """From the entry before the pads the keyboard goes on to them. A pad takes a key only after it has seen it released."""
     rig.click("torque")
     time.sleep(0.1)
-    for _ in range(2):
-        rig.screen.press("Tab")
+    for key in ("Tab", "Tab", "space", "Return"):
+        rig.screen.press(key)
         time.sleep(0.1)
     # The pointer is in the way of nothing.
     rig.at("nowhere")

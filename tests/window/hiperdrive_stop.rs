@@ -18,7 +18,7 @@ use crate::screen::Screen;
 use crate::support::LONG;
 
 /// An encoder is watched in one session, and a drive is in hand in another.
-fn in_hand() -> Screen {
+pub(crate) fn in_hand() -> Screen {
     let mut screen = Screen::begun([1280.0, 900.0]);
     screen.click("live.start");
     screen.act(Action::ShowTab(Tab::Hiperdrive));
@@ -36,17 +36,18 @@ fn in_hand() -> Screen {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
     ready(&mut screen, "the connection is open", true);
+    screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     assert!(is_watched(&screen));
     screen
 }
 
-fn begin(screen: &mut Screen) {
+pub(crate) fn begin(screen: &mut Screen) {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
     screen.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
 }
 
-fn moving() -> Screen {
+pub(crate) fn moving() -> Screen {
     let mut screen = in_hand();
     begin(&mut screen);
     screen
@@ -75,14 +76,14 @@ fn stop(screen: &Screen) -> Pos2 {
     places(screen, "hd_bar.stop")[0]
 }
 
-fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
+pub(crate) fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
     let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
     screen.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
     screen.harness.step();
 }
 
 /// As long as the drive takes to stand, while no picture is drawn.
-fn until_it_stands(screen: &Screen) {
+pub(crate) fn until_it_stands(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
     let moves = |own: &DriveView| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;

@@ -16,6 +16,7 @@ mod each_kind;
 mod hiperdrive;
 mod hiperdrive_axis;
 mod hiperdrive_control;
+mod hiperdrive_keys;
 mod hiperdrive_motion;
 mod hiperdrive_recording;
 mod hiperdrive_rules;

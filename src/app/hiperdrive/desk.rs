@@ -40,6 +40,11 @@ impl Studio {
         self.hiperdrives().any(|unit| unit.moves.is_moving() || unit.moves.is_under_way())
     }
 
+    /// A motion that was asked for here has not ended.
+    pub fn is_under_way(&self) -> bool {
+        self.hiperdrives().any(|unit| unit.moves.is_under_way())
+    }
+
     /// Somebody has control of some drives: what they say comes by itself.
     pub fn is_in_control(&self) -> bool {
         self.hiperdrives().any(|unit| unit.moves.is_open())

@@ -1,15 +1,15 @@
 //! Motion by hand: hold to run, and steps that run to their end.
 
-use egui::{Ui, vec2};
+use egui::{Ui, Vec2, vec2};
 
 use super::motion::{View, effort_ui, length_ui, why_not};
 use super::outside;
-use crate::app::Action;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
-use crate::protocol::hiperdrive::Direction;
+use crate::app::{Action, HoldEvent, SessionId};
+use crate::protocol::hiperdrive::{Direction, DriveNumber};
 use crate::ui::Skin;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};
-use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
+use crate::ui::widgets::{HoldButton, hold_button};
 
 /// Height of the buttons that are held.
 const PAD: f32 = 72.0;
@@ -64,13 +64,29 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
             let (caption, label) = (skin.say("hd_jog.hold"), skin.say(label));
             let enabled = enabled && unit.may_jog(unit.drive(), direction).is_ok();
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
-            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
-                Some(HoldEvent::Press) => Motor::JogPress { direction, repeated: false },
-                Some(HoldEvent::Hold) => Motor::JogHold,
-                Some(HoldEvent::Release) => Motor::JogRelease,
-                None => continue,
-            };
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(motor)));
+            let press = Motor::JogPress { direction, repeated: false };
+            pad_ui(ui, skin, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
         }
     });
+}
+
+/// A button that moves a drive while it is held; `press` begins that.
+pub(super) fn pad_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (session, drive): (SessionId, DriveNumber),
+    press: Motor,
+    (button, size): (&HoldButton<'_>, Vec2),
+    actions: &mut Vec<Action>,
+) {
+    // For another drive it is another button: what is held for the one, or has the keyboard, does not count for the other.
+    let event = ui.push_id((session, drive), |ui| hold_button(ui, skin, button, size)).inner;
+    let motor = match event {
+        Some(HoldEvent::Press) => press,
+        Some(HoldEvent::Hold) => Motor::JogHold,
+        Some(HoldEvent::Release) => Motor::JogRelease,
+        Some(HoldEvent::Stop) => return actions.push(Action::StopMotion),
+        None => return,
+    };
+    actions.push(Action::Hiperdrive(session, Hiperdrive::Drive(motor)));
 }

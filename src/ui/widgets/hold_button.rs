@@ -1,27 +1,22 @@
 //! A button that counts while it is held: for motion that ends when a finger leaves it.
 //!
 //! * **Size**: as given, at least 56 points high, so that a gloved finger finds it.
-//! * **Keyboard**: Space or Enter, held while it has the keyboard.
+//! * **Keyboard**: Space or Enter, held while it has the keyboard; a key counts only after it was seen up there
+//!   ([`HoldState`]), and the caption says so until then.
 //! * **Pointer**: the first button, or a touch; leaving the button ends it, and coming back does not begin it again.
 //! * **Accessible**: a button with its label; a click that a screen reader makes has no length and does nothing.
 //! * **Painting**: the word, below it what it does; filled with the accent while it is held.
 
 use egui::accesskit::Role;
-use egui::{Align2, Event, FontId, Key, Response, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2};
+use egui::{
+    Align2, Context, Event, FontId, Id, Modifiers, PointerButton, Rect, Response, Sense, Stroke, StrokeKind,
+    TouchPhase, Ui, Vec2, WidgetInfo, pos2,
+};
 
 use super::focus_ring;
-use crate::ui::Skin;
-
-/// What a finger did since the picture before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HoldEvent {
-    /// It came down on the button.
-    Press,
-    /// It is still there: told with every picture.
-    Hold,
-    /// It is gone: lifted, slid off, or the window has lost the keyboard.
-    Release,
-}
+use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
+use crate::ui::keys::press_key;
+use crate::ui::{Skin, stopping};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -36,61 +31,141 @@ pub struct HoldButton<'a> {
     pub enabled: bool,
 }
 
-/// What a button remembers from one picture to the next.
+/// What the window tells its hold buttons before it draws them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Finger {
-    #[default]
-    Off,
-    /// Down on it.
-    On,
-    /// Down, and it has left the button: nothing begins until it was lifted.
-    Slid,
+pub(in crate::ui) struct HoldSurroundings {
+    /// Something stands over the window: none of them can be pressed.
+    pub(in crate::ui) covered: bool,
+    /// Something moves or is about to.
+    pub(in crate::ui) moving: bool,
 }
 
-/// What holds it as a finger does.
-const KEYS: [Key; 2] = [Key::Space, Key::Enter];
+/// What a button keeps from one picture to the next.
+#[derive(Clone, Copy, Default)]
+struct Kept {
+    state: HoldState,
+    /// The pass in which it was drawn last.
+    pass: u64,
+    /// As they were then.
+    modifiers: Modifiers,
+}
+
+/// What the window asks about the buttons of the picture before.
+#[derive(Clone, Copy, Default)]
+struct Drawn {
+    /// The one that has the keyboard, and in which pass.
+    keyboard: Option<(Id, u64)>,
+    /// The pass in which the pointer held one.
+    pointer: Option<u64>,
+}
+
 /// The least height in points.
 const LEAST: f32 = 56.0;
+
+/// Tells the buttons of this picture what is around them.
+pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurroundings) {
+    ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
+}
+
+/// A hold button had the keyboard in the picture before, and has it still: keys are for it.
+pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
+    let drawn = drawn(ctx);
+    let focused = ctx.memory(|memory| memory.focused());
+    drawn.keyboard.is_some_and(|(id, pass)| focused == Some(id) && pass + 1 >= ctx.cumulative_pass_nr())
+}
+
+/// The pointer held a hold button in the picture before.
+pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
+    drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
+}
+
+fn drawn(ctx: &Context) -> Drawn {
+    ctx.data(|data| data.get_temp(Drawn::id())).unwrap_or_default()
+}
+
+impl Drawn {
+    fn id() -> Id {
+        Id::unique("hold buttons")
+    }
+}
 
 /// Draws it.
 pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
     let size = Vec2::new(size.x.max(LEAST), size.y.max(LEAST));
+    let around: HoldSurroundings = ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();
+    let enabled = button.enabled && !around.covered;
     let sense = if button.enabled { Sense::click_and_drag() } else { Sense::hover() };
     let (_, response) = ui.allocate_exact_size(size, sense);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, button.enabled, button.label));
-    let before: Finger = ui.data(|data| data.get_temp(response.id)).unwrap_or_default();
-    let now = finger(ui, &response, button.enabled, before);
-    ui.data_mut(|data| data.insert_temp(response.id, now));
-    paint(ui, skin, button, &response, now == Finger::On);
-    match (before == Finger::On, now == Finger::On) {
-        (false, true) => Some(HoldEvent::Press),
-        (true, true) => Some(HoldEvent::Hold),
-        (true, false) => Some(HoldEvent::Release),
-        (false, false) => None,
+    let pass = ui.ctx().cumulative_pass_nr();
+    let Kept { mut state, pass: last, mut modifiers } = ui.data(|data| data.get_temp(response.id)).unwrap_or_default();
+    let now = ui.input(|input| input.time);
+    let scene = HoldScene {
+        enabled,
+        window: ui.input(|input| input.focused),
+        keyboard: response.has_focus(),
+        moving: around.moving && !state.is_held() || stopping::has_just_stopped(ui.ctx(), now),
+    };
+    state.begin(scene, last + 1 == pass);
+    let place = response.interact_rect;
+    let pressed_here = response.is_pointer_button_down_on();
+    // As they came: what the window has taken from the widgets counts here too.
+    let (down, inside) = ui.input(|input| {
+        for event in &input.raw.events {
+            if let Event::ModifiersChanged(now) = event
+                && std::mem::replace(&mut modifiers, *now) == *now
+            {
+                continue;
+            }
+            if let Some(what) = translated(event, place, pressed_here) {
+                state.take(now, what);
+            }
+        }
+        modifiers = input.modifiers;
+        let at = input.pointer.interact_pos();
+        (input.pointer.any_down(), pressed_here && at.is_some_and(|at| place.contains(at)))
+    });
+    let event = state.end(down, inside);
+    if event == Some(HoldEvent::Stop) {
+        stopping::means_motion(ui.ctx(), true, now);
     }
+    ui.data_mut(|data| {
+        data.insert_temp(response.id, Kept { state, pass, modifiers });
+        let drawn: &mut Drawn = data.get_temp_mut_or_default(Drawn::id());
+        if scene.keyboard {
+            drawn.keyboard = Some((response.id, pass));
+        }
+        if state.is_held_by_pointer() {
+            drawn.pointer = Some(pass);
+        }
+    });
+    let hint = skin.say("hold.release_first");
+    let caption = if state.waits_for_release() { &hint } else { button.caption };
+    paint(ui, skin, &HoldButton { caption, enabled, ..*button }, &response, state.is_held());
+    event
 }
 
-fn finger(ui: &Ui, response: &Response, enabled: bool, before: Finger) -> Finger {
-    let (has_window, key, fresh, at) = ui.input(|input| {
-        let plain = input.modifiers.is_none();
-        let key = plain && KEYS.into_iter().any(|key| input.key_down(key));
-        let begins = |event: &Event| {
-            matches!(event, Event::Key { key, pressed: true, repeat: false, .. } if plain && KEYS.contains(key))
-        };
-        let fresh = input.events.iter().any(begins);
-        (input.focused, key, fresh, input.pointer.interact_pos())
-    });
-    let down = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_down());
-    let inside = at.is_some_and(|at| response.rect.contains(at));
-    let by_key = response.has_focus() && key;
-    let is_held = enabled && has_window && (down && inside || by_key);
-    match before {
-        // A key that was down before the button had the keyboard is not meant for it.
-        Finger::Off if is_held && (down || fresh) => Finger::On,
-        Finger::On if is_held => Finger::On,
-        _ if down || by_key => Finger::Slid,
-        _ => Finger::Off,
-    }
+/// What an event means for the button at this place. `pressed_here`: a press of the pointer that lasts began on it.
+fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
+    Some(match event {
+        Event::WindowFocused(has) => HoldInput::WindowFocus(*has),
+        Event::Key { key, pressed: false, .. } => HoldInput::Up(press_key(*key)?),
+        Event::Key { key, pressed: true, modifiers, .. } => match press_key(*key) {
+            Some(key) => HoldInput::Down { key, plain: modifiers.is_none() },
+            None => HoldInput::OtherKey,
+        },
+        // Keys that the window was told of as what they mean.
+        Event::Copy | Event::Cut | Event::Paste(_) | Event::PasteImage(_) | Event::Ime(_) => HoldInput::OtherKey,
+        Event::ModifiersChanged(_) => HoldInput::Modifiers,
+        Event::PointerButton { pos, button, pressed: true, .. } => {
+            HoldInput::PointerDown { on: *button == PointerButton::Primary && pressed_here && place.contains(*pos) }
+        }
+        Event::PointerButton { pressed: false, .. } => HoldInput::PointerUp,
+        Event::PointerMoved(pos) => HoldInput::PointerMoved { inside: place.contains(*pos) },
+        Event::PointerGone => HoldInput::PointerGone,
+        Event::Touch { phase: TouchPhase::Start, .. } => HoldInput::Finger,
+        _ => return None,
+    })
 }
 
 fn paint(ui: &Ui, skin: &Skin, button: &HoldButton<'_>, response: &Response, held: bool) {

@@ -32,7 +32,10 @@ pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};
 pub use hex_editor::{HexEdit, HexMark, HexModel, HexView, hex_editor};
-pub use hold_button::{HoldButton, HoldEvent, hold_button};
+pub use hold_button::{HoldButton, hold_button};
+pub(in crate::ui) use hold_button::{
+    HoldSurroundings, has_hold_button_keyboard, is_hold_button_held, surround_hold_buttons,
+};
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use register_table::{
     Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,

@@ -3,12 +3,13 @@
 use egui::{RichText, Ui, vec2};
 
 use super::Shown;
+use crate::app::hiperdrive::Motor;
 use crate::app::hiperdrive::axis::{Action as Run, Button, Entries, Place, Step, words};
-use crate::app::hiperdrive::{Action as Hiperdrive, Motor};
 use crate::app::{Action, Text};
 use crate::protocol::hiperdrive::Direction;
 use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
-use crate::ui::widgets::{HoldButton, HoldEvent, hold_button};
+use crate::ui::hiperdrive::jog::pad_ui;
+use crate::ui::widgets::HoldButton;
 use crate::ui::{Skin, icons};
 
 /// Width of a number, and height of the buttons that are held.
@@ -132,13 +133,9 @@ fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         {
             let label = skin.say(label);
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
-            let motor = match hold_button(ui, skin, &button, vec2(width, PAD)) {
-                Some(HoldEvent::Press) => Motor::SlowJogPress { direction, repeated: false },
-                Some(HoldEvent::Hold) => Motor::JogHold,
-                Some(HoldEvent::Release) => Motor::JogRelease,
-                None => continue,
-            };
-            actions.push(Action::Hiperdrive(shown.unit.session.id, Hiperdrive::Drive(motor)));
+            let press = Motor::SlowJogPress { direction, repeated: false };
+            let about = (shown.unit.session.id, shown.axis.drive());
+            pad_ui(ui, skin, about, press, (&button, vec2(width, PAD)), actions);
         }
     });
     ui.add_space(skin.space.inside);

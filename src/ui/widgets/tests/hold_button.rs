@@ -5,14 +5,18 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::{NONE, focus, press, skin, window};
+use crate::app::HoldEvent;
 use crate::protocol::hiperdrive::State;
-use crate::ui::widgets::{HoldButton, HoldEvent, StateMachine, hold_button, state_machine};
-use HoldEvent::{Hold, Press, Release};
+use crate::ui::widgets::{
+    HoldButton, HoldSurroundings, StateMachine, hold_button, state_machine, surround_hold_buttons,
+};
+use HoldEvent::{Hold, Press, Release, Stop};
 
 #[derive(Default)]
 struct Jog {
     locked: bool,
     hidden: bool,
+    around: HoldSurroundings,
     events: Vec<HoldEvent>,
 }
 
@@ -21,6 +25,7 @@ fn jog() -> Harness<'static, Jog> {
         if jog.hidden {
             return;
         }
+        surround_hold_buttons(ui.ctx(), jog.around);
         let button = HoldButton { word: "+", caption: "hold", label: "Jog up", enabled: !jog.locked };
         jog.events.extend(hold_button(ui, &skin(), &button, Vec2::new(120.0, 64.0)));
     })
@@ -114,10 +119,26 @@ fn what_takes_the_button_away_ends_it() {
     assert_eq!(step(&mut harness, []), []);
 }
 
-#[test]
-fn a_key_holds_it_and_its_repetitions_are_nothing() {
+/// So that a release lies as far behind as a finger needs.
+fn wait(harness: &mut Harness<'_, Jog>) {
+    for _ in 0..4 {
+        assert_eq!(step(harness, []), []);
+    }
+}
+
+/// With the keyboard, and after Space was seen up.
+fn armed() -> Harness<'static, Jog> {
     let mut harness = jog();
     focus(&mut harness, "Jog up");
+    assert_eq!(step(&mut harness, [key(true, false)]), [], "it may be a repetition");
+    assert_eq!(step(&mut harness, [key(false, false)]), []);
+    wait(&mut harness);
+    harness
+}
+
+#[test]
+fn a_key_holds_it_and_its_repetitions_are_nothing() {
+    let mut harness = armed();
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
     assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
@@ -128,6 +149,140 @@ fn a_key_holds_it_and_its_repetitions_are_nothing() {
     assert_eq!(step(&mut harness, []), []);
     assert_eq!(step(&mut harness, [key(true, true)]), []);
     step(&mut harness, [key(false, false)]);
+    wait(&mut harness);
+    assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
+}
+
+/// Issue 21.2: as the window system delivers it where Space is held over a change of the window. What egui calls a first press
+/// is none.
+#[test]
+fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
+    for held_before in [false, true] {
+        let mut harness = armed();
+        if held_before {
+            assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
+        }
+        harness.input_mut().focused = false;
+        // Where it is down, the release is made up.
+        let made_up = held_before.then(|| key(false, false));
+        let expected: &[HoldEvent] = if held_before { &[Release] } else { &[] };
+        assert_eq!(step(&mut harness, made_up.into_iter().chain([Event::WindowFocused(false)])), expected);
+        wait(&mut harness);
+        harness.input_mut().focused = true;
+        assert_eq!(step(&mut harness, [Event::WindowFocused(true)]), []);
+        for _ in 0..30 {
+            assert_eq!(step(&mut harness, [key(true, false)]), [], "{held_before}");
+            assert_eq!(step(&mut harness, []), []);
+        }
+        step(&mut harness, [key(false, false)]);
+        wait(&mut harness);
+        assert_eq!(step(&mut harness, [key(true, false)]), [Press], "{held_before}");
+        // All of it between two pictures.
+        let blink = [key(false, false), Event::WindowFocused(false), Event::WindowFocused(true), key(true, false)];
+        assert_eq!(step(&mut harness, blink), [Release], "{held_before}");
+        assert_eq!(step(&mut harness, [key(true, true)]), [], "{held_before}");
+    }
+}
+
+/// Issue 21.2: a button that was not drawn, was locked, or had a dialog over it has seen no key up.
+#[test]
+fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
+    type Change = fn(&mut Jog, bool);
+    let changes: [(&str, Change); 2] =
+        [("locked", |jog, on| jog.locked = on), ("covered", |jog, on| jog.around.covered = on)];
+    for (what, change) in changes {
+        let mut harness = armed();
+        change(harness.state_mut(), true);
+        assert_eq!(step(&mut harness, [key(true, false)]), [], "{what}");
+        change(harness.state_mut(), false);
+        // What is locked loses the keyboard.
+        harness.step();
+        focus(&mut harness, "Jog up");
+        assert_eq!(step(&mut harness, [key(true, true)]), [], "{what}");
+        assert_eq!(step(&mut harness, [key(true, false)]), [], "{what}");
+        assert_eq!(step(&mut harness, [key(false, false)]), [], "{what}");
+        wait(&mut harness);
+        assert_eq!(step(&mut harness, [key(true, false)]), [Press], "{what}");
+        change(harness.state_mut(), true);
+        assert_eq!(step(&mut harness, []), [Release], "{what}");
+    }
+    let mut harness = armed();
+    harness.state_mut().hidden = true;
+    step(&mut harness, [key(true, false)]);
+    harness.state_mut().hidden = false;
+    harness.step();
+    focus(&mut harness, "Jog up");
+    assert_eq!(step(&mut harness, [key(true, true)]), []);
+}
+
+/// Issue 21.2: under a dialog the pointer holds nothing either, nor does a press that began there once it is closed.
+#[test]
+fn a_press_under_a_dialog_holds_nothing() {
+    let mut harness = jog();
+    let at = middle(&harness);
+    step(&mut harness, [Event::PointerMoved(at)]);
+    harness.state_mut().around.covered = true;
+    assert_eq!(step(&mut harness, [button(at, true)]), []);
+    harness.state_mut().around.covered = false;
+    assert_eq!(step(&mut harness, []), []);
+    assert_eq!(step(&mut harness, [Event::PointerMoved(at + Vec2::new(3.0, 0.0))]), []);
+    step(&mut harness, [button(at, false)]);
+    assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
+}
+
+/// Issue 21.2: any key, any modifier, another button and a second finger end what the pointer holds.
+#[test]
+fn whatever_comes_beside_the_pointer_ends_it() {
+    let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
+    let finger = || Event::Touch {
+        device_id: egui::TouchDeviceId(1),
+        id: egui::TouchId(2),
+        phase: egui::TouchPhase::Start,
+        pos: Pos2::ZERO,
+        force: None,
+    };
+    let second = |at| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Secondary,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    };
+    for case in 0..7 {
+        let mut harness = jog();
+        let at = middle(&harness);
+        step(&mut harness, [Event::PointerMoved(at)]);
+        assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
+        assert_eq!(step(&mut harness, [Event::ModifiersChanged(Modifiers::NONE)]), [Hold], "nothing has changed");
+        let event = match case {
+            0 => other(Key::Space),
+            1 => other(Key::A),
+            2 => other(Key::Escape),
+            3 => Event::ModifiersChanged(Modifiers::SHIFT),
+            4 => finger(),
+            5 => second(at),
+            _ => Event::PointerGone,
+        };
+        assert_eq!(step(&mut harness, [event]), [Release], "{case}");
+        assert_eq!(step(&mut harness, [Event::PointerMoved(at)]), [], "{case}");
+        assert_eq!(step(&mut harness, []), [], "{case}");
+    }
+}
+
+/// Issue 21.2: a key on the button while something else moves is a stop.
+#[test]
+fn a_key_stops_what_moves_already() {
+    let mut harness = armed();
+    harness.state_mut().around.moving = true;
+    assert_eq!(step(&mut harness, [key(true, false)]), [Stop]);
+    harness.state_mut().around.moving = false;
+    assert_eq!(step(&mut harness, [key(true, true)]), [Stop], "it is meant still");
+    step(&mut harness, [key(false, false)]);
+    wait(&mut harness);
+    assert_eq!(step(&mut harness, [key(true, false)]), [Stop], "on the heels of it");
+    step(&mut harness, [key(false, false)]);
+    for _ in 0..30 {
+        step(&mut harness, []);
+    }
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
 }
 

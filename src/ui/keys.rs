@@ -1,0 +1,79 @@
+//! Keys before any widget sees them: a key that repeats itself presses nothing, Space stops what moves, and so does every
+//! key while the pointer holds a drive. What holds a drive with a key judges for itself ([`HoldState`](crate::app::HoldState)).
+
+use egui::{Context, Event, Key};
+
+use super::stopping;
+use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
+use crate::app::{FreshKeys, PressKey};
+
+/// What is known of the keys that press buttons, in the whole window.
+pub(super) struct Keys {
+    fresh: FreshKeys,
+    /// In the last picture a consent was asked for.
+    asked: bool,
+}
+
+impl Keys {
+    pub(super) fn new() -> Self {
+        Keys { fresh: FreshKeys::UP, asked: false }
+    }
+
+    /// Takes out of this picture what no widget is to see. Whether everything that moves is to stop. `moves`: something moves
+    /// by this window; `asks`: a consent is asked for, which is given only by a key that was seen up since.
+    pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
+        if asks && !std::mem::replace(&mut self.asked, asks) {
+            self.fresh.forget();
+        }
+        self.asked = asks;
+        let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_keyboard(ctx));
+        let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
+        let space_stops = !for_hold_button && (moves || stopping::has_just_stopped(ctx, now));
+        let fresh = &mut self.fresh;
+        let mut stops = false;
+        let mut passes = |event: &Event| match event {
+            Event::WindowFocused(_) => {
+                fresh.forget();
+                true
+            }
+            Event::Key { key, pressed: false, .. } => {
+                if let Some(key) = press_key(*key).filter(|_| has_keyboard) {
+                    fresh.release(key, now);
+                }
+                true
+            }
+            Event::Key { key, .. } => {
+                let own = press_key(*key);
+                let repeats = own.is_some_and(|own| fresh.is_down(own));
+                let counts = match own {
+                    Some(own) => fresh.press(own, now),
+                    None => {
+                        if !asks {
+                            fresh.press_other(now);
+                        }
+                        true
+                    }
+                };
+                let stop = held || space_stops && own == Some(PressKey::Space) && !repeats;
+                stops |= stop;
+                // Escape does more than stop, and is judged where it is known what.
+                counts && !stop || *key == Key::Escape
+            }
+            _ => true,
+        };
+        ctx.input_mut(|input| input.events.retain(&mut passes));
+        if stops {
+            stopping::means_motion(ctx, true, now);
+        }
+        stops
+    }
+}
+
+/// The key that presses buttons, where it is one.
+pub(super) const fn press_key(key: Key) -> Option<PressKey> {
+    match key {
+        Key::Space => Some(PressKey::Space),
+        Key::Enter => Some(PressKey::Enter),
+        _ => None,
+    }
+}

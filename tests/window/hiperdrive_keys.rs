@@ -1,0 +1,229 @@
+//! Keys and drives: what a key holds, what it stops, and that one which repeats itself begins nothing (issue 21.2). The events
+//! are those that the window system delivers; egui calls the first repetition after a change of the window a first press.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit};
+use encoder_studio::app::{Action, Studio};
+use encoder_studio::worker::hiperdrive::Motion;
+
+use crate::hiperdrive::number;
+use crate::hiperdrive_stop::{begin, in_hand, moving, pointer, until_it_stands};
+use crate::screen::Screen;
+
+fn event(key: Key, pressed: bool) -> Event {
+    Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
+}
+
+/// A picture after these events.
+fn picture(screen: &mut Screen, events: impl IntoIterator<Item = Event>) {
+    events.into_iter().for_each(|event| screen.harness.event(event));
+    screen.harness.step();
+}
+
+fn down(screen: &mut Screen, key: Key) {
+    picture(screen, [event(key, true)]);
+}
+
+fn up(screen: &mut Screen, key: Key) {
+    picture(screen, [event(key, false)]);
+    screen.harness.step();
+}
+
+/// The key is held for longer than a key needs to repeat itself.
+fn repeats(screen: &mut Screen, key: Key) {
+    for _ in 0..8 {
+        down(screen, key);
+    }
+}
+
+/// The window without the keyboard, as the window system tells it while a key is down: the release is made up.
+fn leave(screen: &mut Screen, key: Key) {
+    screen.harness.input_mut().focused = false;
+    picture(screen, [event(key, false), Event::WindowFocused(false)]);
+}
+
+fn come_back(screen: &mut Screen) {
+    screen.harness.input_mut().focused = true;
+    picture(screen, [Event::WindowFocused(true)]);
+}
+
+fn focus(screen: &mut Screen, id: &'static str) {
+    screen.button(id).focus();
+    screen.steps();
+}
+
+fn motion(screen: &Screen) -> Motion {
+    screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone()
+}
+
+fn is_under_way(studio: &Studio) -> bool {
+    studio.is_under_way()
+}
+
+fn is_held(screen: &Screen) -> bool {
+    screen.studio().hiperdrive().unwrap().moves.is_held()
+}
+
+/// A pad that has the keyboard, and has seen Space up.
+fn on_pad() -> Screen {
+    let mut screen = in_hand();
+    focus(&mut screen, "hd_jog.up");
+    down(&mut screen, Key::Space);
+    assert!(!is_held(&screen), "it was not seen up");
+    up(&mut screen, Key::Space);
+    screen
+}
+
+/// Issue 21.2: 8 of 8 times it ran.
+#[test]
+fn a_key_that_is_held_in_another_window_moves_nothing_when_the_keyboard_comes_back() {
+    for key in [Key::Space, Key::Enter] {
+        let mut screen = on_pad();
+        leave(&mut screen, Key::A);
+        come_back(&mut screen);
+        repeats(&mut screen, key);
+        assert!(!is_under_way(screen.studio()), "{key:?}");
+        up(&mut screen, key);
+        assert!(!is_under_way(screen.studio()), "{key:?}");
+        down(&mut screen, key);
+        assert!(is_held(&screen), "{key:?}: a fresh act");
+        up(&mut screen, key);
+        assert!(!is_held(&screen), "{key:?}");
+    }
+}
+
+/// Issue 21.2: a jog that ends because the window loses the keyboard does not begin again while the key is held.
+#[test]
+fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
+    let mut screen = on_pad();
+    down(&mut screen, Key::Space);
+    assert!(is_held(&screen));
+    leave(&mut screen, Key::Space);
+    assert!(!is_held(&screen) && !is_under_way(screen.studio()));
+    come_back(&mut screen);
+    repeats(&mut screen, Key::Space);
+    assert!(!is_under_way(screen.studio()));
+    until_it_stands(&screen);
+    // All of it between two pictures.
+    up(&mut screen, Key::Space);
+    down(&mut screen, Key::Space);
+    assert!(is_held(&screen));
+    let blink =
+        [event(Key::Space, false), Event::WindowFocused(false), Event::WindowFocused(true), event(Key::Space, true)];
+    picture(&mut screen, blink);
+    repeats(&mut screen, Key::Space);
+    assert!(!is_under_way(screen.studio()));
+}
+
+/// Issue 21.2: buttons that begin a motion with a click are pressed once by a key that is held, and not by one that was held
+/// in another window.
+#[test]
+fn a_key_that_repeats_itself_presses_no_button() {
+    let mut screen = in_hand();
+    let step = |screen: &mut Screen| screen.button("hd_run.forth").focus();
+    step(&mut screen);
+    screen.steps();
+    leave(&mut screen, Key::A);
+    come_back(&mut screen);
+    repeats(&mut screen, Key::Enter);
+    assert!(!is_under_way(screen.studio()));
+    up(&mut screen, Key::Enter);
+    down(&mut screen, Key::Enter);
+    assert!(is_under_way(screen.studio()), "a fresh act");
+    let motion = motion(&screen);
+    motion.stop();
+    screen.until("it has ended", |studio| !is_under_way(studio));
+    repeats(&mut screen, Key::Enter);
+    assert!(!is_under_way(screen.studio()), "held since then");
+}
+
+/// Issue 21.2: Space stops wherever the keyboard is, and presses nothing on the way.
+#[test]
+fn space_stops_what_moves_wherever_the_keyboard_is() {
+    let mut screen = in_hand();
+    let places = [None, Some("hd_move.go"), Some("hd_run.forth"), Some("hd_jog.up"), Some("shell.help")];
+    for (place, modifiers) in places.into_iter().zip([Modifiers::NONE, Modifiers::SHIFT].into_iter().cycle()) {
+        begin(&mut screen);
+        if let Some(id) = place {
+            screen.button(id).focus();
+            screen.harness.step();
+        }
+        let space = Event::Key { key: Key::Space, physical_key: None, pressed: true, repeat: false, modifiers };
+        picture(&mut screen, [space]);
+        assert!(!is_under_way(screen.studio()), "{place:?}");
+        // It is let go and hit again in a fright, and then held.
+        picture(&mut screen, [event(Key::Space, false)]);
+        repeats(&mut screen, Key::Space);
+        assert!(!is_under_way(screen.studio()), "{place:?}");
+        up(&mut screen, Key::Space);
+        until_it_stands(&screen);
+        screen.steps();
+    }
+}
+
+/// Issue 21.2: in a text entry Space is a character, and a stop as well where something moves.
+#[test]
+fn space_in_a_text_entry_is_typed_and_stops_what_moves() {
+    for moves in [false, true] {
+        let mut screen = if moves { moving() } else { in_hand() };
+        let label = screen.say("hd_move.target");
+        let entry = |screen: &Screen| {
+            let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
+            node.focus();
+            node.accesskit_node().value().unwrap_or_default()
+        };
+        entry(&screen);
+        screen.harness.step();
+        picture(&mut screen, [event(Key::Num1, true), Event::Text("1".to_owned()), event(Key::Num1, false)]);
+        assert_eq!(screen.studio().is_under_way(), moves);
+        picture(&mut screen, [event(Key::Space, true), Event::Text(" ".to_owned()), event(Key::Space, false)]);
+        assert!(!is_under_way(screen.studio()));
+        picture(&mut screen, []);
+        assert_eq!(entry(&screen), "1 ", "{moves}");
+    }
+}
+
+/// Issue 21.2: any key while the pointer holds a pad ends it and means nothing else.
+#[test]
+fn any_key_while_the_pointer_holds_a_pad_stops() {
+    let mut screen = in_hand();
+    for key in [Key::Space, Key::Enter, Key::F1, Key::A] {
+        // What Enter would press.
+        focus(&mut screen, "hd_run.forth");
+        let place = screen.button("hd_jog.up").rect().center();
+        screen.harness.hover_at(place);
+        screen.harness.step();
+        pointer(&mut screen, place, true);
+        assert!(is_held(&screen), "{key:?}");
+        screen.harness.step();
+        down(&mut screen, key);
+        assert!(!is_under_way(screen.studio()), "{key:?}");
+        repeats(&mut screen, key);
+        assert!(!is_under_way(screen.studio()), "{key:?}");
+        up(&mut screen, key);
+        pointer(&mut screen, place, false);
+        until_it_stands(&screen);
+        screen.steps();
+    }
+}
+
+/// Issue 22.29: a write that is asked for takes a key only after it was seen up on the open review.
+#[test]
+fn a_review_takes_a_key_only_after_it_was_seen_up() {
+    let mut screen = in_hand();
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
+    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
+    let writes = |studio: &Studio| studio.hiperdrive().unwrap().session.is_writing();
+    screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
+    screen.button("review.write").focus();
+    screen.steps();
+    down(&mut screen, Key::Enter);
+    assert!(!writes(screen.studio()), "down before it was open");
+    up(&mut screen, Key::Enter);
+    down(&mut screen, Key::Enter);
+    screen.until("it is written", |studio| !studio.shown().unwrap().is_dirty());
+}
