@@ -47,10 +47,11 @@ impl Control {
         self.motion.clone()
     }
 
-    /// What a drive says over the cyclic connection, while there is one.
+    /// What a drive says over the cyclic connection, while there is one and something has come over it.
     pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let view = self.motion.view();
-        view.drives.iter().find(|own| view.open && own.number == drive).map(|own| own.actual)
+        let speaks = view.open && view.link.received > 0;
+        view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
     }
 
     /// The device and its drives, while drives may be moved.
