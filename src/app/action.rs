@@ -56,6 +56,8 @@ pub enum Action {
     Escape,
     /// Close the window; asks when something would be lost.
     Close,
+    /// The system ends the program: close the window and ask nothing.
+    Quit,
     /// The answer to the open question: go on.
     Confirm,
     /// The notice that stands in the window has been read.
@@ -255,6 +257,8 @@ pub struct Opened<D: Kind> {
 /// What has had time enough before the window closes; the later ones include those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waited {
+    /// Drives.
+    Drives,
     /// The disk.
     Disk,
     /// Jobs that write nothing.

@@ -12,7 +12,12 @@ use super::studio::{SessionId, Studio};
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
-    /// The window may close now: nothing runs any more, not even in sessions that were let go, and what is to be kept is
+    /// The window closes: nothing is asked any more.
+    pub fn is_closing(&self) -> bool {
+        self.closing
+    }
+
+    /// The window may close now: no drive is in hand, nothing runs any more, not even in sessions that were let go, and what is to be kept is
     /// on disk; or it has had time enough.
     pub fn may_close(&self) -> bool {
         let services = &self.services;
@@ -21,6 +26,7 @@ impl Studio {
         let runs = !services.leaving.is_empty() || self.devices.iter().any(AnyDevice::is_busy);
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
+            && over(Waited::Drives, services.brakes.is_done())
             && over(Waited::Writes, !writes)
             && over(Waited::Jobs, !runs)
             && over(Waited::Disk, drafts && self.keeper.is_idle())
@@ -75,13 +81,27 @@ impl Studio {
         }
     }
 
+    /// The system ends the program: edits are kept as drafts, and nobody is there to be asked.
+    pub(super) fn quit(&mut self) {
+        self.question = None;
+        self.stop();
+        self.begin_to_close();
+    }
+
     fn begin_to_close(&mut self) {
         if std::mem::replace(&mut self.closing, true) {
             return;
         }
+        self.services.brakes.begin();
+        self.services.brakes.note_closing();
         self.signals.stop(&mut self.services);
         let patience = self.services.world.patience;
-        let limits = [(Waited::Disk, patience.disk), (Waited::Jobs, patience.job), (Waited::Writes, patience.write)];
+        let limits = [
+            (Waited::Drives, patience.drives),
+            (Waited::Disk, patience.disk),
+            (Waited::Jobs, patience.job),
+            (Waited::Writes, patience.write),
+        ];
         for (what, limit) in limits {
             self.services.tasks.run("close", move || {
                 std::thread::sleep(limit);

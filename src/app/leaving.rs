@@ -6,6 +6,7 @@ use std::time::Duration;
 use crossbeam_channel::Sender;
 
 use super::action::{Action, Done};
+use super::brakes::Brakes;
 use super::services::{JobEnd, Services};
 use super::session::{Kind, LastWords};
 use super::studio::SessionId;
@@ -17,6 +18,8 @@ use crate::worker::{Ending, JobId, Worker};
 /// How long closing waits, and opening for a wire that somebody still holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
+    /// For drives: they stop and are let go.
+    pub drives: Duration,
     /// For the disk.
     pub disk: Duration,
     /// For a job that writes nothing.
@@ -27,7 +30,12 @@ pub struct Patience {
 
 impl Default for Patience {
     fn default() -> Self {
-        Patience { disk: Duration::from_secs(3), job: Duration::from_secs(10), write: Duration::from_secs(90) }
+        Patience {
+            drives: Brakes::PATIENCE,
+            disk: Duration::from_secs(3),
+            job: Duration::from_secs(10),
+            write: Duration::from_secs(90),
+        }
     }
 }
 

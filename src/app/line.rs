@@ -9,7 +9,7 @@ use super::Text;
 use super::action::Opened;
 use super::session::Kind;
 use crate::link::TraceEntry;
-use crate::worker::{Device, Event, JobId, Progress, Ring, SubmitError, Worker};
+use crate::worker::{Device, Event, JobId, Progress, Ring, Stopper, SubmitError, Worker};
 
 /// A job that runs.
 #[derive(Clone, Debug)]
@@ -135,6 +135,11 @@ impl<D: Kind> Line<D> {
     /// Frames since the last time, and how many were dropped.
     pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
+    }
+
+    /// What ends the job that runs, from any thread.
+    pub(super) fn stopper(&self) -> Stopper {
+        self.worker.stopper()
     }
 
     /// Gives the thread back, to be closed where nobody waits for it.

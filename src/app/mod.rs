@@ -3,6 +3,7 @@
 
 mod action;
 pub mod biss;
+mod brakes;
 pub mod check;
 mod closing;
 pub mod connect;
@@ -40,6 +41,7 @@ mod trace;
 mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, Question, ReviewAction};
+pub use brakes::Brakes;
 pub use devices::{AnyDevice, Wish};
 pub use hold::{HoldEvent, HoldInput, HoldScene, HoldState};
 pub use keep::{SettingsRead, SettingsWritten};

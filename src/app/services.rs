@@ -6,6 +6,7 @@ use std::sync::Arc;
 use jiff::Zoned;
 
 use super::action::{Action, Done, FileQuestion};
+use super::brakes::Brakes;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
@@ -113,6 +114,8 @@ pub struct Services {
     jobs: VecDeque<JobRecord>,
     /// A file that the user is asked for.
     pub(super) file_question: Option<FileQuestion>,
+    /// The drives of all sessions.
+    pub(super) brakes: Brakes,
     /// Sessions that were let go and have not ended.
     pub(super) leaving: Vec<Leaving>,
     /// Profiles that are being read.
@@ -151,6 +154,7 @@ impl Services {
             log,
             jobs,
             file_question: None,
+            brakes: Brakes::default(),
             leaving,
             opening_files,
             drafts_on_their_way: 0,

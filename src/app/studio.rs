@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::action::{Action, Done, FileQuestion, Question, Then, Waited};
 use super::biss;
+use super::brakes::Brakes;
 use super::connect::{self, Connect};
 use super::devices::{AnyDevice, Shown};
 use super::documents::{is_capture, read_document};
@@ -105,6 +106,7 @@ impl Studio {
             Action::LetGo => self.let_go_of_jogs(),
             Action::Escape => self.escape(),
             Action::Close => self.close(),
+            Action::Quit => self.quit(),
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
             Action::Connect(action) => self.act_connect(action),
@@ -180,6 +182,11 @@ impl Studio {
         for device in &mut self.devices {
             device.keep_draft(&mut self.services);
         }
+    }
+
+    /// The drives of all sessions, for what ends the program.
+    pub fn brakes(&self) -> Brakes {
+        self.services.brakes.clone()
     }
 
     /// Puts actions into the studio from other threads.

@@ -62,9 +62,10 @@ pub(super) trait Runs: Device {
         None
     }
 
-    /// What Ctrl-C does at once, before anything else, each time that it is pressed.
-    fn interrupt(_kept: &Self::Kept) -> Box<dyn Fn() + Send> {
-        Box::new(|| ())
+    /// What Ctrl-C does at once, before anything else, each time that it is pressed; the program ends after the second time,
+    /// for which it is told `true`.
+    fn interrupt(_kept: &Self::Kept) -> Box<dyn Fn(bool) + Send> {
+        Box::new(|_| ())
     }
 }
 
@@ -120,7 +121,7 @@ impl<D: Runs> Runner<D> {
         let interrupt = D::interrupt(&kept);
         ctrlc::set_handler(move || {
             let again = pressed.swap(true, Ordering::SeqCst);
-            interrupt();
+            interrupt(again);
             if again {
                 std::process::exit(130);
             }

@@ -7,6 +7,7 @@ mod check;
 mod controls;
 mod dialogs;
 mod docks;
+mod end;
 mod foot;
 mod header;
 mod hiperdrive;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::{Window, install_fonts};
+use super::{Window, end, install_fonts};
 use crate::app::{Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
@@ -31,6 +31,7 @@ pub fn run(start: Start) -> Result<(), String> {
     let mut studio = Studio::new(World { codes: start.codes, ..World::real(store) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
+    end::prepare(&studio);
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("encoder-studio")
@@ -69,6 +70,10 @@ struct Shown {
 }
 
 impl eframe::App for Shown {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.window.logic(ctx);
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         // The second picture begins when the first is on the screen.
         if ui.ctx().cumulative_frame_nr() > 0

@@ -82,6 +82,8 @@ pub struct Window {
     views: Views,
     docks: Docks,
     keys: Keys,
+    /// In this picture it was heard already that the window is to close.
+    close_heard: bool,
     look: &'static Look,
     dressed: Option<crate::app::Theme>,
     /// Which notice stands, and since when on the window's clock.
@@ -102,7 +104,7 @@ impl Window {
     pub fn new(studio: Studio, look: &'static Look) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views { rate: 50_000, plot: super::plot::View::in_panel(), ..Views::default() };
-        Window { studio, views, docks, keys: Keys::new(), look, dressed: None, notice_since: None }
+        Window { studio, views, docks, keys: Keys::new(), close_heard: false, look, dressed: None, notice_since: None }
     }
 
     /// All state.
@@ -244,14 +246,46 @@ impl Window {
         }
     }
 
+    /// What goes on where nothing is drawn as well: a window that is minimised hears that it is to close. It keeps nothing
+    /// alive that moves.
+    pub fn logic(&mut self, ctx: &egui::Context) {
+        self.hear_close(ctx);
+        // What draws hears of it in this very picture.
+        self.close_heard = true;
+        if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
+            return;
+        }
+        self.studio.poll();
+        if self.studio.may_close() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        ctx.request_repaint_after(Duration::from_millis(30));
+    }
+
+    /// The window is asked to close: what moves stops first, then something may be asked.
+    fn hear_close(&mut self, ctx: &egui::Context) {
+        let (asked, minimised) = ctx.input(|input| {
+            let viewport = input.raw.viewport();
+            (viewport.close_requested(), viewport.minimized == Some(true))
+        });
+        if !asked || self.studio.may_close() {
+            return;
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+        self.studio.act(Action::Close);
+        if self.studio.question.is_some() && minimised {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Minimized(false));
+            ctx.send_viewport_cmd(egui::ViewportCommand::Focus);
+        }
+    }
+
     /// The keyboard, and files that are dropped on the window.
     fn take_input(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        if !std::mem::take(&mut self.close_heard) {
+            self.hear_close(ctx);
+        }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
-        if ctx.input(|input| input.viewport().close_requested()) && !self.studio.may_close() {
-            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            actions.push(Action::Close);
-        }
         let (moves, asks) = (self.studio.moves_by_hand(), self.asks());
         if self.keys.take(ctx, moves, asks) {
             actions.push(Action::StopMotion);

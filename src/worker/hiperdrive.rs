@@ -193,8 +193,10 @@ impl Device for Hiperdrive {
 
     /// Drives that are in control are stopped and let go.
     fn leave(&mut self, desk: &mut Desk) {
-        if let Err(why) = self.give(desk) {
-            tracing::warn!("{why}");
-        }
+        self.end(desk);
+    }
+
+    fn is_urgent(&self) -> bool {
+        self.is_to_end()
     }
 }

@@ -108,6 +108,11 @@ pub trait Device: Send + 'static {
         None
     }
 
+    /// What [`idle`](Self::idle) does cannot wait until it is looked at the next time.
+    fn is_urgent(&self) -> bool {
+        false
+    }
+
     /// The session ends: what must not be left as it is.
     fn leave(&mut self, _desk: &mut Desk) {}
 }

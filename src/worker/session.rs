@@ -75,6 +75,11 @@ impl<D: Device> Session<D> {
         self.device.idle(&mut self.desk)
     }
 
+    /// What goes on without being asked needs a look now.
+    pub(super) fn is_urgent(&self) -> bool {
+        self.device.is_urgent()
+    }
+
     /// The session ends: what must not be left as it is.
     pub(super) fn leave(&mut self) {
         self.device.leave(&mut self.desk);

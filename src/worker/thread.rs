@@ -101,7 +101,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             next_check = Instant::now() + bench.session.idle_interval();
             continue;
         }
-        if now >= next_check {
+        if now >= next_check || bench.session.is_urgent() {
             next_check = now + bench.session.idle_interval();
             if !lost && let Err(error) = bench.session.check() {
                 lost = true;

@@ -278,3 +278,21 @@ fn an_interrupt() {
     ran.fails(1, &["stopped", &position]);
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault");
 }
+
+/// Issue 21.1: whatever the system ends a command with, also twice, the drive stands, is off, and its watchdog has nothing to
+/// say.
+#[test]
+fn signals_that_end_a_command() {
+    for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {
+        let mut drive = Drive::start();
+        let child = moving(&mut drive);
+        for _ in 0..times {
+            signal(&child, name);
+            sleep(Duration::from_millis(30));
+        }
+        drive.stands_within(WATCHDOG);
+        let ran = ended(child, Instant::now());
+        assert!(ran.status.is_some_and(|status| status != 0), "{name}: {ran:?}");
+        assert_eq!(drive.actual().status.word() & 0x000F, 0, "{name}, {times} times: off, and no fault");
+    }
+}

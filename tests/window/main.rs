@@ -15,6 +15,7 @@ mod drafts;
 mod each_kind;
 mod hiperdrive;
 mod hiperdrive_axis;
+mod hiperdrive_closing;
 mod hiperdrive_control;
 mod hiperdrive_keys;
 mod hiperdrive_motion;

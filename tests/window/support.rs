@@ -172,7 +172,12 @@ impl Desk {
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
-        outside.patience = Patience { disk: milliseconds(50), job: milliseconds(100), write: milliseconds(1_500) };
+        outside.patience = Patience {
+            drives: milliseconds(50),
+            disk: milliseconds(50),
+            job: milliseconds(100),
+            write: milliseconds(1_500),
+        };
         let mut desk = Desk { studio: outside.studio(), outside };
         desk.open(&format!("serial:{PORT}"));
         desk.until_read();

@@ -101,7 +101,11 @@ impl Unit {
         self.target = opened.aside.target.clone();
         // What was read over a link before says nothing any more.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
+        let motion = opened.aside.motion.clone();
         self.session.take_line(opened, services);
+        if let Some(line) = self.session.line() {
+            services.brakes.add(motion, line.stopper());
+        }
         self.submit(HiperdriveJob::Hello, services);
     }
 

@@ -18,6 +18,8 @@ use crate::worker::{OpenError, Session};
 
 /// Some of the longest intervals: a stop word is out before the program may end.
 const STOPPED: Duration = Duration::from_millis(500);
+/// The drives are off, and their connection is closed.
+const RELEASED: Duration = Duration::from_secs(1);
 const LOOKS: Duration = Duration::from_millis(1);
 
 /// A session with an adapter or a hub on its thread.
@@ -60,14 +62,21 @@ impl Runs for Hiperdrive {
         Some(Pace { replies: station.replies(), timeout: station.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
-    /// What moves is told to stop, and that is waited for.
-    fn interrupt(motion: &Motion) -> Box<dyn Fn() + Send> {
+    /// What moves is told to stop, and that is waited for; before the program ends, that the drives are off and let go.
+    fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();
-        Box::new(move || {
+        Box::new(move |again| {
             motion.stop();
             let until = Instant::now() + STOPPED;
             while !motion.is_standing() && Instant::now() < until {
                 sleep(LOOKS);
+            }
+            if again {
+                motion.leave();
+                let until = Instant::now() + RELEASED;
+                while motion.is_connected() && Instant::now() < until {
+                    sleep(LOOKS);
+                }
             }
         })
     }

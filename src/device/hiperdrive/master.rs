@@ -246,6 +246,17 @@ impl<'a> Master<'a> {
         Ok(frame.session)
     }
 
+    /// Ends the session at the device. Nothing answers that.
+    ///
+    /// # Errors
+    /// The way.
+    pub fn unregister(&mut self) -> Result<(), Error> {
+        let Some(session) = self.station.session.take() else { return Ok(()) };
+        let bytes = Frame::unregister(session).emit();
+        let now = self.line.now();
+        Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
+    }
+
     /// Asks, and again where that may help and does no harm.
     fn again<T>(
         &mut self,

@@ -116,6 +116,7 @@ impl Hiperdrive {
         match started {
             Ok(cyclic) => {
                 self.control.open = Some(Open { cyclic, close: opened.close });
+                self.control.motion.set_connected(true);
                 self.control.identity = Some(identity);
                 Ok(())
             }
@@ -133,7 +134,26 @@ impl Hiperdrive {
     pub(super) fn give(&mut self, desk: &mut Desk) -> Result<(), Error> {
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
-        self.master(desk).forward_close(&close)
+        let closed = self.master(desk).forward_close(&close);
+        self.control.motion.set_connected(false);
+        closed
+    }
+
+    /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
+    pub(super) fn end(&mut self, desk: &mut Desk) {
+        let had_control = self.control.identity.is_some();
+        if let Err(why) = self.give(desk) {
+            tracing::warn!("{why}");
+        }
+        // Nothing answers that, and a device that is gone needs not to know.
+        if had_control && let Err(why) = self.master(desk).unregister() {
+            tracing::debug!("{why}");
+        }
+    }
+
+    /// The program ends, and drives are in control still.
+    pub(super) fn is_to_end(&self) -> bool {
+        self.control.open.is_some() && self.control.motion.is_leaving()
     }
 
     /// A cyclic connection that was lost is closed at the other end as well, and told once. It is lost also where explicit
@@ -141,6 +161,9 @@ impl Hiperdrive {
     pub(super) fn let_go_of_lost(&mut self, desk: &mut Desk) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();
+        }
+        if self.is_to_end() {
+            return self.end(desk);
         }
         if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {
             return;

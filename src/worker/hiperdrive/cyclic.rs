@@ -1,7 +1,7 @@
 //! The thread of a cyclic connection: it sends at absolute deadlines, takes what comes in between, and asks the dead-men for
 //! each packet. A stop is on the wire with the next packet, one interval later at most.
 //!
-//! It ends when it is asked to, when its handle goes, when the connection is lost, and with the program: the drives are told
+//! It ends when it is asked to, when the program ends, when its handle goes, when the connection is lost, and with the program: the drives are told
 //! to stop, then to be off; then nothing is sent any more. Where it fails, nothing is sent any more at once, and the target's
 //! watchdog stops the drives.
 
@@ -158,7 +158,7 @@ impl Pump {
         if let Some(why) = self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner).take() {
             self.drives.lose(now, why);
         }
-        if self.wishes.end.load(Ordering::SeqCst) {
+        if self.wishes.end.load(Ordering::SeqCst) || self.motion.is_leaving() {
             self.drives.close(now);
         }
     }

@@ -32,6 +32,10 @@ struct Cell {
     session: SessionWatch,
     punctual: bool,
     view: View,
+    /// The program ends: nothing moves any more.
+    leaving: bool,
+    /// The target holds a cyclic connection that was opened here.
+    connected: bool,
 }
 
 /// The drives at one moment: what they do, and what they may do.
@@ -88,6 +92,8 @@ impl Motion {
             session: SessionWatch::default(),
             punctual: false,
             view: View::default(),
+            leaving: false,
+            connected: false,
         };
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
@@ -262,6 +268,31 @@ impl Motion {
 
     pub(super) fn lost(&self) -> Option<CyclicLost> {
         self.lock().view.lost.clone()
+    }
+
+    /// The program ends: all drives stop, are switched off, and their connection is closed. Nothing moves any more.
+    pub fn leave(&self) {
+        self.lock().leaving = true;
+    }
+
+    /// The program ends.
+    pub(super) fn is_leaving(&self) -> bool {
+        self.lock().leaving
+    }
+
+    /// The target holds a cyclic connection that was opened here and has not been closed.
+    pub fn is_connected(&self) -> bool {
+        self.lock().connected
+    }
+
+    /// The cyclic connection was opened, or closed at both ends.
+    pub(super) fn set_connected(&self, connected: bool) {
+        self.lock().connected = connected;
+    }
+
+    /// The session is gone: nothing else has a handle to its drives.
+    pub fn is_left_over(&self) -> bool {
+        Arc::strong_count(&self.0) == 1
     }
 
     /// No drive was sent a word with which it moves: a stop that was asked for is on the wire.

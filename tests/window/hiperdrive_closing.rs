@@ -1,0 +1,148 @@
+//! The window closes, or the system ends the program, while a drive moves: it stops first, is switched off, and its connection
+//! is closed; whatever is asked comes after that (issue 21.1). The drive itself is asked.
+
+use std::time::{Duration, Instant};
+
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor};
+use encoder_studio::app::{Action, Tab};
+use encoder_studio::device::hiperdrive::dead_man::Goal;
+use encoder_studio::protocol::hiperdrive::{Direction, RunEnd, State, StatusBit};
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, drive, edit, number, unit};
+use crate::hiperdrive_motion::in_control;
+use crate::support::{Desk, LONG};
+
+/// What the drive and its station say: its state, that it stands, and that somebody has the cyclic connection.
+fn says(desk: &Desk) -> (State, bool, bool) {
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| {
+        let status = station.drive(ONE).unwrap().actual(Moment::default()).status;
+        (status.state(), status.has(StatusBit::StandingStill), station.is_open(Moment::default()))
+    })
+}
+
+fn moving() -> Desk {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    desk
+}
+
+#[track_caller]
+fn until_let_go(desk: &Desk) {
+    let began = Instant::now();
+    while says(desk).2 {
+        assert!(began.elapsed() < LONG, "the connection is open");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // A fault of the watchdog would be one now.
+    assert_eq!((says(desk).0, says(desk).1), (State::NotReady, true));
+}
+
+/// Issue 21.1: with nothing to ask. The window waits for the drive, and nothing moves any more.
+#[test]
+fn a_window_that_closes_lets_go_of_the_drives_first() {
+    for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
+        let mut desk = moving();
+        desk.act(action);
+        assert!(desk.studio.question.is_none() && desk.studio.is_closing(), "{closes}");
+        assert!(!desk.studio.may_close(), "{closes}: the drive is in hand");
+        drive(&mut desk, Motor::Move { target: 1 });
+        desk.until("it may close", |studio| studio.may_close());
+        until_let_go(&desk);
+        assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
+        drive(&mut desk, Motor::Lead(Goal::Enabled));
+        desk.settle();
+        assert_eq!(says(&desk).0, State::NotReady, "{closes}");
+    }
+}
+
+/// Issue 21.1: a question comes after the stop, and nothing resumes where it is answered with no.
+#[test]
+fn a_question_comes_after_the_stop_and_nothing_resumes() {
+    let mut desk = moving();
+    edit(&mut desk, Edit::Set(number(24), 7));
+    desk.act(Action::Close);
+    assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_under_way());
+    // No picture is drawn: the stop was said before the question.
+    let began = Instant::now();
+    while !says(&desk).1 {
+        assert!(began.elapsed() < LONG, "it moves under the question");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    desk.until("the window knows it", |studio| !studio.moves_by_hand());
+    desk.act(Action::Escape);
+    assert!(desk.studio.question.is_none());
+    for _ in 0..300 {
+        desk.studio.poll();
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let (state, stands, open) = says(&desk);
+    assert_eq!((state, stands, open), (State::Enabled, true, true), "as it was stopped");
+    desk.act(Action::Close);
+    desk.act(Action::Confirm);
+    desk.until("it may close", |studio| studio.may_close());
+    until_let_go(&desk);
+}
+
+/// Issue 21.1: the system asks nobody.
+#[test]
+fn a_signal_asks_nothing() {
+    let mut desk = moving();
+    edit(&mut desk, Edit::Set(number(24), 7));
+    desk.act(Action::Close);
+    assert!(desk.studio.question.is_some());
+    desk.act(Action::Quit);
+    assert!(desk.studio.question.is_none());
+    desk.until("it may close", |studio| studio.may_close());
+    until_let_go(&desk);
+}
+
+/// Issue 21.1: a window that stands still, as one whose display does not answer, is not needed for it.
+#[test]
+fn drives_are_let_go_without_the_window() {
+    let desk = moving();
+    let brakes = desk.studio.brakes();
+    assert!(!brakes.is_done() && !brakes.has_begun());
+    brakes.begin();
+    assert!(brakes.wait(LONG) && brakes.has_begun());
+    until_let_go(&desk);
+    assert!(!brakes.wait_for_window(Duration::ZERO));
+}
+
+/// Issue 21.1: a session that is closed stops its own drive before it asks; what another one runs without an end stops because
+/// its page is not seen, and a session that was closed is waited for when the window closes.
+#[test]
+fn a_session_that_is_closed_behind_a_motion() {
+    let mut desk = in_control("sim:");
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
+    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    let (target, id) = (unit(&desk).target.clone().unwrap(), unit(&desk).session.id);
+    let other = desk.studio.devices().iter().find(|own| own.id() != id).map(|own| own.id());
+    if let Some(other) = other {
+        desk.act(Action::CloseSession(other));
+        assert!(desk.studio.settings.tab == Tab::Hiperdrive && unit(&desk).moves.is_under_way());
+    }
+    desk.act(Action::CloseSession(id));
+    desk.act(Action::Close);
+    desk.until("it may close", |studio| studio.may_close());
+    let (status, open) = target.with(|station| {
+        (station.drive(ONE).unwrap().actual(Moment::default()).status, station.is_open(Moment::default()))
+    });
+    assert_eq!((status.state(), open), (State::NotReady, false));
+}
+
+/// Issue 21.1: control that was given back before leaves nothing to wait for.
+#[test]
+fn a_window_without_control_closes_at_once() {
+    let mut desk = in_control("sim:");
+    act(&mut desk, Hiperdrive::Give);
+    desk.until("it is given", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        !own.moves.is_open() && own.session.is_ready()
+    });
+    desk.act(Action::Close);
+    assert!(desk.studio.brakes().is_done());
+    desk.until("it may close", |studio| studio.may_close());
+}
