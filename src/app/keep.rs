@@ -186,17 +186,16 @@ impl Keeper {
         true
     }
 
-    /// They were read. Whether that counts: not while a write is on its way, which may read what is there before.
-    pub(super) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> bool {
-        let began = self.looking.take();
+    /// They were read. While a write is on its way, which tells later what it has found, they come back.
+    pub(super) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
+        self.looked = self.looking.take();
         if self.busy.is_some() {
-            return false;
+            return found;
         }
-        self.looked = began;
         if let Some(found) = found {
             self.meet(&found, settings);
         }
-        true
+        None
     }
 
     /// They were not read for so long.

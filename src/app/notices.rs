@@ -30,6 +30,17 @@ pub struct Notice {
     pub texts: Vec<Text>,
     /// Whose it is: the name of a session.
     pub about: Option<String>,
+    /// Which part of that: a drive of a hub.
+    pub part: Option<Text>,
+}
+
+impl Notice {
+    /// Whose it is, before what happened; empty where it is nobody's.
+    pub fn whose(&self, words: impl Fn(&Text) -> String) -> String {
+        let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
+        let names: Vec<String> = names.collect();
+        if names.is_empty() { String::new() } else { format!("{}: ", names.join(", ")) }
+    }
 }
 
 /// The log of the window: the newest last, the oldest go.
@@ -94,10 +105,7 @@ impl Log {
 
 fn terminal(notice: &Notice) -> String {
     let words: Vec<String> = notice.texts.iter().map(Text::terminal).collect();
-    match &notice.about {
-        Some(about) => format!("{about}: {}", words.join(" ")),
-        None => words.join(" "),
-    }
+    format!("{}{}", notice.whose(Text::terminal), words.join(" "))
 }
 
 #[cfg(test)]
@@ -106,7 +114,8 @@ mod tests {
 
     #[test]
     fn what_went_well_does_not_push_away_what_somebody_has_to_read() {
-        let notice = |severity| Notice { at: Zoned::now(), severity, texts: vec![Text::new("x")], about: None };
+        let notice =
+            |severity| Notice { at: Zoned::now(), severity, texts: vec![Text::new("x")], about: None, part: None };
         let cases = [
             (Severity::Note, Severity::Good, true),
             (Severity::Good, Severity::Note, true),
@@ -133,7 +142,13 @@ mod tests {
     fn what_is_true_no_more_stands_no_more() {
         let mut log = Log::default();
         let texts = vec![Text::new("session.not_connected")];
-        log.add(Notice { at: Zoned::now(), severity: Severity::Warning, texts, about: Some("one".to_owned()) });
+        log.add(Notice {
+            at: Zoned::now(),
+            severity: Severity::Warning,
+            texts,
+            about: Some("one".to_owned()),
+            part: None,
+        });
         log.settle("session.busy", Some("one"));
         log.settle("session.not_connected", Some("other"));
         assert!(log.standing().is_some());

@@ -173,13 +173,23 @@ impl Services {
         self.log.add(self.notice(severity, texts, about));
     }
 
+    /// The same about a part of what it is about.
+    pub(super) fn tell_of_part(
+        &mut self,
+        severity: Severity,
+        texts: Vec<Text>,
+        (about, part): (Option<&str>, Option<Text>),
+    ) {
+        self.log.add(Notice { part, ..self.notice(severity, texts, about) });
+    }
+
     /// Adds to the log only: the window shows it elsewhere.
     pub(super) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.keep(self.notice(severity, texts, about));
     }
 
     fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
-        Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned) }
+        Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
     /// The table of encoder types as it was read; the built-in one where the user's own cannot be, which is told.

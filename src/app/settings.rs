@@ -288,14 +288,15 @@ mod tests {
             links.iter().rev().for_each(|link| settings.use_link(Tab::Biss, link));
             settings
         };
-        let cases: [(&[&str], &[&str], &[&str], &[&str]); 5] = [
-            (&["x", "a", "b"], &["a", "b"], &["a", "b"], &["x", "a", "b"]),
-            (&["x", "a", "b"], &["a", "b"], &["b", "a"], &["b", "x", "a"]),
-            (&["x", "a", "b"], &["a", "b"], &["n", "a", "b"], &["n", "x", "a", "b"]),
-            (&["b", "a"], &["a", "b"], &["n", "b", "a"], &["n", "b", "a"]),
-            (&["a"], &[], &[], &["a"]),
+        type Links<'l> = &'l [&'l str];
+        let cases: [[Links<'_>; 4]; 5] = [
+            [&["x", "a", "b"], &["a", "b"], &["a", "b"], &["x", "a", "b"]],
+            [&["x", "a", "b"], &["a", "b"], &["b", "a"], &["b", "x", "a"]],
+            [&["x", "a", "b"], &["a", "b"], &["n", "a", "b"], &["n", "x", "a", "b"]],
+            [&["b", "a"], &["a", "b"], &["n", "b", "a"], &["n", "b", "a"]],
+            [&["a"], &[], &[], &["a"]],
         ];
-        for (there, known, ours, expected) in cases {
+        for [there, known, ours, expected] in cases {
             let merged = of(there).with_changes(&of(known), &of(ours));
             assert_eq!(merged.links(Tab::Biss), expected, "{there:?} {known:?} {ours:?}");
         }

@@ -8,7 +8,7 @@ use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperdrive::Unit;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Language, Notice, Studio, Theme, Wish};
+use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme, Wish};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
@@ -168,7 +168,18 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
         Phase::Silent(_) => ("shell.silent", palette.bad),
         Phase::Offline => ("shell.offline", palette.muted),
     };
-    ui.label(RichText::new(skin.say(id)).color(colour));
+    let moving = device.hiperdrive().filter(|unit| id == "shell.moving" && unit.drives().len() > 1);
+    let drives: Vec<String> = moving.map(moving_drives).unwrap_or_default();
+    let words = if drives.is_empty() {
+        skin.say(id)
+    } else {
+        skin.words(&Text::new("shell.moving_drives").with("drives", drives.join(", ")))
+    };
+    ui.label(RichText::new(words).color(colour));
+}
+
+fn moving_drives(unit: &Unit) -> Vec<String> {
+    unit.moving_drives().into_iter().map(|drive| drive.get().to_string()).collect()
 }
 
 fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
@@ -237,7 +248,7 @@ pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, notice: &Notice, actions: &mut
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                let about = notice.whose(|text| skin.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
             });
         });

@@ -181,7 +181,10 @@ fn a_pitch_and_what_is_measured_in_come_back() {
     // 2.5 turns of 65536 steps on 4 mm.
     let place = unit(&desk).place(ONE, 163_840).words(encoder_studio::app::Language::English);
     assert_eq!(place, "10.00000 mm");
-    desk.settle();
+    let path = desk.outside.store().settings_path();
+    desk.until("it is kept", |_| {
+        std::fs::read_to_string(&path).is_ok_and(|text| text.contains("4000000") && text.contains("Millimetres"))
+    });
     let mut desk = desk.crash();
     desk.act(Action::ShowTab(Tab::Hiperdrive));
     desk.open("sim:");

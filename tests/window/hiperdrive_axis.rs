@@ -157,7 +157,7 @@ fn the_pads_of_the_run_have_an_effort_of_their_own() {
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
         stands(&mut desk);
-        assert_eq!(unit(&desk).moves.jog_effort(), chosen);
+        assert_eq!(unit(&desk).moves.jog_effort(unit(&desk).drive()), chosen);
     }
 }
 

@@ -122,9 +122,7 @@ fn nothing_moves_before_everything_was_read_anew_with_the_control() {
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"]);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
-    std::thread::sleep(Duration::from_millis(30));
-    desk.settle();
-    assert!(unit(&desk).may_move(ONE).is_ok());
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
 
 /// 4096 steps are a sixteenth of a turn (reference 4); a step of them ends with 3E37 (reference 9), or its like with another

@@ -85,7 +85,7 @@ fn until_standing(desk: &Desk) {
 fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
     let mut desk = in_control("sim:");
     assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
-    assert_eq!(unit(&desk).moves.jog_effort(), Effort::JOG);
+    assert_eq!(unit(&desk).moves.jog_effort(ONE), Effort::JOG);
     jog(&mut desk);
     assert!(desk.studio.moves() && !stands(&desk));
     let sent = unit(&desk).moves.sent(ONE).unwrap();

@@ -90,8 +90,8 @@ impl Unit {
             Motor::JogHold => return self.moves.hold(),
             Motor::JogRelease => return self.moves.release(),
             Motor::Stop => return self.moves.stop(),
-            Motor::JogEffort(effort) => return self.moves.set_jog_effort(effort),
-            Motor::MoveEffort(effort) => return self.moves.set_move_effort(effort),
+            Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
+            Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
             Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
             Motor::FreeOutward => return self.free_outward(drive, services),
             Motor::ConfirmLimits(drive) => {
@@ -101,21 +101,20 @@ impl Unit {
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
                 let outward = self.moves.is_freed(drive, direction);
-                Wish::Jog { direction, effort: self.moves.jog_effort(), outward }
+                Wish::Jog { direction, effort: self.moves.jog_effort(drive), outward }
             }
             Motor::SlowJogPress { direction, .. } => Wish::Jog { direction, effort: Effort::JOG, outward: false },
             Motor::Lead(goal) => Wish::Lead(goal),
             Motor::Acknowledge => Wish::Acknowledge,
-            Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort() },
-            Motor::Move { target } => Wish::Move { target, effort: self.moves.move_effort() },
-            Motor::Run { direction, end } => Wish::Run { direction, end, effort: self.moves.move_effort() },
+            Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort(drive) },
+            Motor::Move { target } => Wish::Move { target, effort: self.moves.move_effort(drive) },
+            Motor::Run { direction, end } => Wish::Run { direction, end, effort: self.moves.move_effort(drive) },
             Motor::Pause => Wish::Pause,
             Motor::Resume => Wish::Resume,
         };
         if let Err(why) = self.may(drive, wish) {
             // What was under way goes on: nothing else has begun.
-            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
-            return;
+            return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
         match wish {
             Wish::Jog { .. } => self.moves.press(drive, wish),

@@ -104,10 +104,14 @@ impl Studio {
 
     /// The settings were read.
     pub(in crate::app) fn saw_settings(&mut self, found: Option<Settings>) {
-        let marks = if self.keeper.saw(found, &mut self.settings) { Marks::Read } else { Marks::Unread };
+        if let Some(found) = self.keeper.saw(found, &mut self.settings) {
+            for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
+                unit.remembered_as().into_iter().for_each(|key| unit.lock_by(&found.drives(&key)));
+            }
+        }
         self.remember_drives();
         let reading = |unit: &&mut Unit| unit.marks == Marks::Reading;
-        self.hiperdrives_in_hand().filter(reading).for_each(|unit| unit.marks = marks);
+        self.hiperdrives_in_hand().filter(reading).for_each(|unit| unit.marks = Marks::Read);
     }
 
     fn hiperdrives_in_hand(&mut self) -> impl Iterator<Item = &mut Unit> {

@@ -20,8 +20,9 @@ pub struct Moves {
     /// What the drives said at the last look.
     view: View,
     act: Option<Act>,
-    jog: Effort,
-    job: Effort,
+    /// How drives are jogged, and moved, where that is not as it usually is.
+    jogs: BTreeMap<DriveNumber, Effort>,
+    jobs: BTreeMap<DriveNumber, Effort>,
     /// Drives for which a person has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
     /// The way further out from outside the limits, freed for the next press, and used by the one that is held.
@@ -42,6 +43,8 @@ struct Act {
     drive: DriveNumber,
     number: u64,
     kind: Kind,
+    /// The drive moves by it, or has a job that waits.
+    moves: bool,
     /// How it ended was told.
     told: bool,
 }
@@ -66,8 +69,8 @@ impl Default for Moves {
             motion: None,
             view: View::default(),
             act: None,
-            jog: Effort::JOG,
-            job: Effort::MOVE,
+            jogs: BTreeMap::new(),
+            jobs: BTreeMap::new(),
             experts: BTreeSet::new(),
             freed: None,
             used: None,
@@ -106,6 +109,7 @@ impl Moves {
         self.stop();
         self.limits.clear();
         self.limits_changed.clear();
+        (self.jogs, self.jobs) = (BTreeMap::new(), BTreeMap::new());
     }
 
     /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.
@@ -163,7 +167,8 @@ impl Moves {
         // For one press: whatever is asked for next needs it freed again.
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
-        self.act = Some(Act { drive, number, kind, told: false });
+        let moves = wish.moves() || wish == Wish::Pause;
+        self.act = Some(Act { drive, number, kind, moves, told: false });
         Some(number)
     }
 
@@ -256,12 +261,12 @@ impl Moves {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
 
-    pub(super) fn set_jog_effort(&mut self, effort: Effort) {
-        self.jog = effort;
+    pub(super) fn set_jog_effort(&mut self, drive: DriveNumber, effort: Effort) {
+        self.jogs.insert(drive, effort);
     }
 
-    pub(super) fn set_move_effort(&mut self, effort: Effort) {
-        self.job = effort;
+    pub(super) fn set_move_effort(&mut self, drive: DriveNumber, effort: Effort) {
+        self.jobs.insert(drive, effort);
     }
 
     pub(super) fn set_expert(&mut self, drive: DriveNumber, expert: bool) {
@@ -362,10 +367,6 @@ impl Moves {
 
     /// Some drive moves, is about to, or is led to where it may.
     pub fn is_moving(&self) -> bool {
-        let moves = |own: &DriveView| {
-            own.actual.status.state() == State::Moving
-                || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
-        };
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
 
@@ -378,18 +379,56 @@ impl Moves {
         self.act.as_ref().is_some_and(own)
     }
 
-    /// How a jog turns.
-    pub fn jog_effort(&self) -> Effort {
-        self.jog
+    /// A drive moves, is about to, or is led to where it may.
+    pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
+        self.drive(drive).is_some_and(moves) || self.mover() == Some(drive)
     }
 
-    /// How a move, a step and a run turn.
-    pub fn move_effort(&self) -> Effort {
-        self.job
+    /// The drive that is being moved from here, or whose job waits. Whatever is asked of a drive ends that.
+    pub fn mover(&self) -> Option<DriveNumber> {
+        let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
+        let has_job =
+            |own: &&DriveView| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
+        let busy = self.view.drives.iter().find(has_job).filter(|_| self.view.open);
+        asked.or_else(|| busy.map(|own| own.number))
+    }
+
+    /// How a jog of a drive turns.
+    pub fn jog_effort(&self, drive: DriveNumber) -> Effort {
+        self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
+    }
+
+    /// How a move, a step and a run of a drive turn.
+    pub fn move_effort(&self, drive: DriveNumber) -> Effort {
+        self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
+    }
+
+    /// With which effort a drive is being jogged; `None` while it is not.
+    pub fn jogs_with(&self, drive: DriveNumber) -> Option<Effort> {
+        self.sent_effort(drive).filter(|_| self.is_jog(drive))
+    }
+
+    /// With which effort a move, a step or a run is under way; `None` while none is.
+    pub fn moves_with(&self, drive: DriveNumber) -> Option<Effort> {
+        self.sent_effort(drive).filter(|_| !self.is_jog(drive))
+    }
+
+    fn is_jog(&self, drive: DriveNumber) -> bool {
+        self.act.is_some_and(|act| act.drive == drive && act.kind == Kind::Held)
+    }
+
+    fn sent_effort(&self, drive: DriveNumber) -> Option<Effort> {
+        let own = self.drive(drive).filter(|own| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_)))?;
+        Some(Effort { speed: own.sent.speed, torque: own.sent.torque })
     }
 
     /// A person has allowed an endless run of a drive.
     pub fn is_expert(&self, drive: DriveNumber) -> bool {
         self.experts.contains(&drive)
     }
+}
+
+fn moves(own: &DriveView) -> bool {
+    own.actual.status.state() == State::Moving
+        || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
 }

@@ -158,7 +158,7 @@ impl Unit {
             return;
         }
         let words = explain::hiperdrive::ended(ended, |steps| self.place(drive, steps));
-        services.tell(weight, vec![words], Some(&self.session.name()));
+        self.tell_of(drive, weight, vec![words], services);
     }
 
     /// Where a drive is: recorded where it is the one that is shown.

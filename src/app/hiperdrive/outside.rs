@@ -60,7 +60,7 @@ impl Unit {
             Some(direction) => self.moves.free(drive, direction),
             None => {
                 let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
-                services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                self.tell_of(drive, Severity::Warning, vec![why], services);
             }
         }
     }

@@ -172,6 +172,16 @@ impl Unit {
         (next != *kept).then_some(next)
     }
 
+    /// Locks what was marked elsewhere, before the settings know of it.
+    pub(in crate::app) fn lock_by(&mut self, found: &Remembered) {
+        let Some(before) = &mut self.exchanged else { return };
+        for drive in found.marked_since(&before.kept).into_iter().filter_map(DriveNumber::new) {
+            self.moves.unconfirm(drive);
+            // It is no mark of this session.
+            before.unconfirmed.insert(drive);
+        }
+    }
+
     fn take_remembered(&mut self, kept: &Remembered) -> Exchanged {
         for (drive, nanometres) in &kept.pitches {
             if let Some(drive) = DriveNumber::new(*drive) {

@@ -3,6 +3,7 @@
 use super::ruler::Measure;
 use super::unit::Unit;
 use crate::app::number::decimals_of;
+use crate::app::services::Services;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperdrive::DriveLimits;
@@ -104,6 +105,7 @@ impl Unit {
             Wish::Move { target, .. } => Some(target),
             _ => None,
         };
+        self.may_end_what_moves(drive, wish)?;
         match wish {
             Wish::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
             _ if wish.moves() => self.may_move(drive)?,
@@ -113,6 +115,37 @@ impl Unit {
         let place = |steps| self.place(drive, steps);
         let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(wish, actual));
         permit.check(wish, asks_target).and(here).map_err(|refusal| explain::hiperdrive::refusal(refusal, place))
+    }
+
+    /// Whatever is asked of a drive ends what moves just now. A stop is meant so, and a jog of the same drive; no other drive's
+    /// motion ends that way, and no step or move becomes another one before its end.
+    fn may_end_what_moves(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+        match self.moves.mover() {
+            Some(mover) if mover != drive && wish != Wish::Stop => {
+                Err(Text::new("hd_refused.other_moves").with("drive", mover.get()))
+            }
+            Some(_) if matches!(wish, Wish::Step { .. } | Wish::Move { .. } | Wish::Run { .. }) => {
+                Err(Text::new("hd_refused.still_moves"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Tells something about a drive, which is named where there are others.
+    pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
+        services.tell_of_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
+    }
+
+    /// The name of a drive; `None` where there is only one.
+    pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
+        (self.drives().len() > 1).then(|| Text::new("hd_bar.named").with("drive", drive.get()))
+    }
+
+    /// The drives that move, as far as is known here, or are about to.
+    pub fn moving_drives(&self) -> Vec<DriveNumber> {
+        let moves =
+            |drive: &DriveNumber| self.moves.is_drive_moving(*drive) || self.state_now(*drive) == Some(State::Moving);
+        self.drives().into_iter().filter(moves).collect()
     }
 
     /// A place as a person measures it, with its unit.

@@ -112,7 +112,7 @@ impl Unit {
             Action::Edit(entries) => axis.edit(*entries),
             Action::Press(button) => match axis.ask(button, &seen) {
                 Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
-                Err(why) => services.tell(Severity::Warning, vec![why], Some(&self.session.name())),
+                Err(why) => self.tell_of(drive, Severity::Warning, vec![why], services),
             },
             Action::TakePlace => axis.take_limit(&seen),
             Action::Next => {
@@ -148,7 +148,7 @@ impl Unit {
 
     fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
         if let Err(why) = self.may_set_up() {
-            return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
@@ -181,7 +181,7 @@ impl Unit {
             Ask::BelieveRestart => {}
             Ask::Acknowledge => {
                 if let Err(why) = self.may(drive, Wish::Acknowledge) {
-                    return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                    return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }
                 self.moves.want(drive, Wish::Acknowledge);
             }
@@ -195,7 +195,7 @@ impl Unit {
             Ask::Move(target) => {
                 let wish = Wish::Move { target: *target, effort: Effort::JOG };
                 if let Err(why) = self.may(drive, wish) {
-                    return services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+                    return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }
                 let act = self.moves.want(drive, wish);
                 if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {

@@ -121,7 +121,7 @@ impl Unit {
             counts.then_some(()).ok_or_else(|| explain::hiperdrive::lock(Lock::Unread))
         });
         if let Err(why) = &counts {
-            services.tell(Severity::Warning, vec![why.clone()], Some(&self.session.name()));
+            self.tell_of(drive, Severity::Warning, vec![why.clone()], services);
         }
         counts.is_ok()
     }

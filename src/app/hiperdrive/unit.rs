@@ -260,12 +260,15 @@ impl Unit {
 
     /// Some drive moves, as far as is known here, or is about to.
     pub fn is_moving(&self) -> bool {
-        let said = || {
-            let mut last = self.readings.values();
-            last.any(|own| own.actual.status.state() == State::Moving)
-        };
+        self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
+    }
+
+    /// In which state a drive is, as it says again and again; `None` for one that is not asked just now.
+    pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
+        let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // What was said before it was asked no more is old by now.
-        self.moves.is_moving() || self.session.is_polling() && !self.moves.is_open() && said()
+        let read = self.readings.get(&drive).filter(|_| is_polled).map(|reading| reading.actual);
+        self.moves.actual(drive).or(read).map(|own| own.status.state())
     }
 
     /// Steps and what a person measures in, of a drive as it is.

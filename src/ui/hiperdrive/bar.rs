@@ -3,9 +3,11 @@
 use egui::{RichText, Stroke, Ui, vec2};
 
 use super::outside;
+use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
-use crate::app::{Action, Studio};
-use crate::ui::controls::{allowed_button, name, options, paragraph};
+use crate::app::{Action, Studio, Text};
+use crate::protocol::hiperdrive::{DriveNumber, State};
+use crate::ui::controls::{allowed_button, name, paragraph};
 use crate::ui::stopping::{goes_down, means_motion, pressed_at};
 use crate::ui::{Skin, icons};
 
@@ -71,9 +73,42 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         return;
     }
     ui.label(skin.label(skin.say("hd_bar.drive")));
-    let mut shown = unit.drive();
-    let named = drives.into_iter().map(|drive| (drive, drive.get().to_string()));
-    if options(ui, &skin.say("hd_bar.drive"), &mut shown, named) {
-        actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SelectDrive(shown)));
-    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+        ui.spacing_mut().button_padding.x = 6.0;
+        let moving = unit.moving_drives();
+        for drive in drives {
+            if drive_button(ui, skin, unit, (drive, moving.contains(&drive))) {
+                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SelectDrive(drive)));
+            }
+        }
+    });
+}
+
+/// A drive with its state, as a sign and in words.
+fn drive_button(ui: &mut Ui, skin: &Skin, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
+    let palette = skin.palette;
+    let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };
+    // Each sign is as wide as the others: no button changes its place because a drive changes its state.
+    let (sign, colour) = match state {
+        Some(State::Moving) => (icons::PLAY, palette.accent),
+        Some(State::Fault) => (icons::WARNING_CIRCLE, palette.bad),
+        Some(State::Locked) => (icons::LOCK_SIMPLE, palette.bad),
+        Some(State::Enabled) => (icons::LIGHTNING, palette.good),
+        Some(State::Operational | State::Ready) => (icons::PLUGS_CONNECTED, palette.muted),
+        Some(State::NotReady) => (icons::PLUGS, palette.muted),
+        None => (icons::QUESTION, palette.muted),
+    };
+    let words = state.map_or_else(|| skin.say("hd_bar.unknown"), |state| skin.words(&explain::state(state)));
+    let name = Text::new("hd_bar.named").with("drive", drive.get());
+    let name = skin.words(&Text::new("hd_bar.state").with_text("drive", name).with("state", words));
+    let is_shown = drive == unit.drive();
+    let ink = if is_shown { palette.text } else { palette.muted };
+    let font = skin.strong(skin.sizes.body);
+    let mut label = egui::text::LayoutJob::default();
+    label.append(&drive.get().to_string(), 0.0, egui::TextFormat::simple(font.clone(), ink.into()));
+    label.append(sign, 6.0, egui::TextFormat::simple(font, colour.into()));
+    let response = ui.add(egui::Button::selectable(is_shown, label).frame_when_inactive(true)).on_hover_text(&name);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, is_shown, &name));
+    response.clicked()
 }

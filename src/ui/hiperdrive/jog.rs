@@ -20,8 +20,10 @@ const BELOW: f32 = 120.0;
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     card(ui, skin, "hd_jog.title", |ui| {
         let drafts = &mut view.jog_effort;
-        let effort = effort_ui(ui, skin, unit, (unit.moves.jog_effort(), drafts), Motor::JogEffort, actions);
-        let allowed = effort.and(unit.may_move(unit.drive()));
+        let drive = unit.drive();
+        let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
+        let effort = effort_ui(ui, skin, unit, own, Motor::JogEffort, actions);
+        let allowed = effort.and(unit.may_move(drive));
         pads_ui(ui, skin, unit, allowed.is_ok(), actions);
         // Always as high: nothing moves away under a finger that holds a drive.
         ui.scope(|ui| {

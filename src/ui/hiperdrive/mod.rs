@@ -14,11 +14,14 @@ pub(in crate::ui) mod outside;
 mod parameters;
 mod scale;
 
+use std::collections::BTreeMap;
+
 use egui::{ScrollArea, Ui};
 
 use super::{Skin, backups, foot, icons};
 use crate::app::hiperdrive::Unit;
 use crate::app::{Action, AnyDevice, Studio};
+use crate::protocol::hiperdrive::DriveNumber;
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,11 +91,17 @@ pub(in crate::ui) struct View {
     pub page: Page,
     /// The device that the rest is about.
     serial_number: Option<String>,
-    motion: motion::View,
+    drives: BTreeMap<DriveNumber, DriveEntries>,
     parameters: parameters::View,
-    axis: axis::View,
     leds: leds::View,
     network: network::View,
+}
+
+/// What is typed for one drive.
+#[derive(Default)]
+struct DriveEntries {
+    motion: motion::View,
+    axis: axis::View,
 }
 
 impl View {
@@ -132,6 +141,7 @@ pub(super) fn page_ui(
             .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
     }
     let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
+    let drive = unit.drive();
     if view.page == Page::Parameters {
         // A table scrolls by itself.
         let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
@@ -140,9 +150,16 @@ pub(super) fn page_ui(
     }
     ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
         frame.show(ui, |ui| match view.page {
-            Page::Motion => motion::page_ui(ui, skin, unit, &mut view.motion, actions),
+            // No entry, and nothing that undoes what was typed into it, is another drive's.
+            Page::Motion => {
+                let own = &mut view.drives.entry(drive).or_default().motion;
+                ui.push_id(drive, |ui| motion::page_ui(ui, skin, unit, own, actions));
+            }
             Page::Parameters => {}
-            Page::Axis => axis::page_ui(ui, skin, unit, &mut view.axis, actions),
+            Page::Axis => {
+                let own = &mut view.drives.entry(drive).or_default().axis;
+                ui.push_id(drive, |ui| axis::page_ui(ui, skin, unit, own, actions));
+            }
             Page::Diagnosis => {
                 errors::cards_ui(ui, skin, unit, actions);
                 ui.add_space(skin.space.groups);

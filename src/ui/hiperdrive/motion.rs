@@ -72,7 +72,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 /// Why nothing moves, and what to do.
 fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
-    for lock in unit.moves.locks(drive) {
+    // Without control nothing is read again and again, and nothing is to be waited for.
+    let counts = |lock: &Lock| *lock != Lock::Outdated || unit.moves.is_open();
+    for lock in unit.moves.locks(drive).into_iter().filter(counts) {
         skin.sunken().show(ui, |ui| {
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
@@ -185,7 +187,14 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
     }
     length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
-    let effort = effort_ui(ui, skin, unit, (unit.moves.move_effort(), drafts), Motor::MoveEffort, actions);
+    let effort = effort_ui(
+        ui,
+        skin,
+        unit,
+        (unit.moves.move_effort(drive), unit.moves.moves_with(drive), drafts),
+        Motor::MoveEffort,
+        actions,
+    );
     let allowed = effort.and(unit.may_move(drive));
     ui.horizontal_wrapped(|ui| {
         if allowed_button(ui, skin, &allowed, icons::PLAY, &skin.say("hd_move.go")).clicked() {
@@ -246,7 +255,8 @@ fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, a
     }
 }
 
-/// Speed and torque, in percent. What is typed counts at once, so that nothing begins with what stood there before.
+/// Speed and torque, in percent. What is typed counts at once, so that nothing begins with what stood there before; what is
+/// under way goes on as it began, which is said.
 ///
 /// # Errors
 /// What is typed is no percentage: nothing may begin with it.
@@ -254,15 +264,17 @@ pub(super) fn effort_ui(
     ui: &mut Ui,
     skin: &Skin,
     unit: &Unit,
-    (effort, drafts): (Effort, &mut [Draft; 2]),
+    (effort, under_way, drafts): (Effort, Option<Effort>, &mut [Draft; 2]),
     set: impl Fn(Effort) -> Motor,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
     let [speed, torque] = drafts;
     let mut taken = Ok(());
-    for (word, own, draft, is_speed) in
-        [("hd_effort.speed", effort.speed, speed, true), ("hd_effort.torque", effort.torque, torque, false)]
-    {
+    let sent = (under_way.map(|own| own.speed), under_way.map(|own| own.torque));
+    for (word, own, sent, draft, is_speed) in [
+        ("hd_effort.speed", effort.speed, sent.0, speed, true),
+        ("hd_effort.torque", effort.torque, sent.1, torque, false),
+    ] {
         let word = skin.say(word);
         entry(ui, skin, &word, |ui| {
             let mut text = draft.take().unwrap_or_else(|| own.get().to_string());
@@ -281,7 +293,12 @@ pub(super) fn effort_ui(
             }
             ui.label(skin.label("%"));
             let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
-            if let Some(beside) = beside.filter(|_| typed.is_ok()) {
+            let waits = sent.filter(|sent| *sent != own && typed.is_ok());
+            if let Some(sent) = waits {
+                let words = Text::new("hd_effort.sent").with("sent", sent.get());
+                let label = ui.label(RichText::new(skin.words(&words)).color(skin.palette.warn));
+                label.on_hover_text(skin.say("hd_effort.waits"));
+            } else if let Some(beside) = beside.filter(|_| typed.is_ok()) {
                 ui.label(skin.caption(skin.words(&beside)));
             }
             if let Err(why) = typed {

@@ -1,5 +1,6 @@
 //! Every parameter: what it is, what is wanted of it, what it may be, what it comes with from the factory, whether it is kept.
 
+use std::collections::BTreeMap;
 use std::iter::once;
 
 use egui::{RichText, ScrollArea, Ui};
@@ -7,7 +8,7 @@ use egui::{RichText, ScrollArea, Ui};
 use super::scale;
 use crate::app::hiperdrive::{Action as Hiperdrive, Edit, Row, Unit, forms};
 use crate::app::{Action, Text};
-use crate::protocol::hiperdrive::ParameterNumber;
+use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber};
 use crate::ui::controls::{empty, options, paragraph, text_entry};
 use crate::ui::widgets::{
     Place, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView, register_table,
@@ -22,7 +23,7 @@ pub(super) struct View {
     table: RegisterView,
     /// The lines of the table when it was drawn the last time.
     lines: Vec<Vec<ParameterNumber>>,
-    scale: scale::View,
+    scales: BTreeMap<DriveNumber, scale::View>,
 }
 
 /// Which parameters; or not them, but what two of them mean.
@@ -48,7 +49,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     ui.add_space(skin.space.inside);
     if view.shows_scale() {
         ScrollArea::vertical().id_salt("scale").auto_shrink(false).show(ui, |ui| {
-            scale::card_ui(ui, skin, unit, &mut view.scale, actions);
+            let drive = unit.drive();
+            let own = view.scales.entry(drive).or_default();
+            ui.push_id(drive, |ui| scale::card_ui(ui, skin, unit, own, actions));
         });
         return;
     }

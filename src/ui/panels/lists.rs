@@ -74,7 +74,7 @@ pub(in crate::ui) fn log_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
                 ui.label(skin.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
                 ui.label(RichText::new(icon).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.about.as_ref().map(|about| format!("{about}: ")).unwrap_or_default();
+                let about = notice.whose(|text| skin.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
             });
         }

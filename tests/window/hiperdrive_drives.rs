@@ -1,0 +1,271 @@
+//! Each drive of a hub for itself: what is typed for one, what is said of it, and what it does while another one is shown.
+
+use egui::accesskit::Role;
+use egui_kittest::Node;
+use egui_kittest::kittest::{AccessKitNode, Queryable};
+use encoder_studio::app::explain::hiperdrive as explain;
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::{Action, Language, Severity, Studio, Tab};
+use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Phase};
+use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
+use encoder_studio::units::Moment;
+
+use crate::hiperdrive::{ONE, act, drive, unit};
+use crate::hiperdrive_motion::in_control;
+use crate::screen::Screen;
+use crate::support::Desk;
+
+const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
+
+fn two() -> DriveNumber {
+    DriveNumber::new(2).unwrap()
+}
+
+fn percent(percent: u8) -> Percent {
+    Percent::new(percent).unwrap()
+}
+
+#[track_caller]
+fn until_free(desk: &mut Desk, drive: DriveNumber) {
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(drive).is_ok());
+}
+
+fn moves(studio: &Studio, drive: DriveNumber) -> bool {
+    studio.hiperdrive().unwrap().state(drive) == Some(State::Moving)
+}
+
+/// Issue 21.7: effort and *Endless* of one drive are not another's.
+#[test]
+fn what_is_set_for_one_drive_is_not_set_for_another() {
+    let mut desk = in_control(HUB);
+    let slow = Effort { speed: percent(7), torque: percent(50) };
+    drive(&mut desk, Motor::MoveEffort(slow));
+    drive(&mut desk, Motor::JogEffort(slow));
+    drive(&mut desk, Motor::Expert(true));
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    until_free(&mut desk, two());
+    let moves = &unit(&desk).moves;
+    assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (Effort::MOVE, Effort::JOG));
+    assert_eq!((moves.is_expert(ONE), moves.is_expert(two())), (true, false));
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.endless"]);
+    drive(&mut desk, Motor::Step { by: 64 });
+    desk.until("it has been sent", |studio| {
+        studio.hiperdrive().unwrap().moves.sent(two()).is_some_and(|own| own.target == 64)
+    });
+    let sent = unit(&desk).moves.sent(two()).unwrap();
+    assert_eq!((sent.speed.get(), sent.torque.get()), (25, 100), "as a step usually is");
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    assert_eq!((unit(&desk).moves.move_effort(ONE), unit(&desk).moves.jog_effort(ONE)), (slow, slow));
+}
+
+/// Issue 21.7: a second motion is refused in words, and ends none that is under way, whichever drive it is asked of.
+#[test]
+fn a_second_motion_waits_for_the_end_of_the_first() {
+    let mut desk = in_control(HUB);
+    until_free(&mut desk, ONE);
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    // Before the drive itself has said that it moves.
+    drive(&mut desk, Motor::Step { by: 64 });
+    desk.until("it moves", |studio| moves(studio, ONE));
+    drive(&mut desk, Motor::Step { by: 64 });
+    drive(&mut desk, Motor::Move { target: 0 });
+    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.still_moves"; 4]);
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    desk.until("the other one is read", |studio| {
+        studio.hiperdrive().unwrap().moves.limits(two()).is_some_and(|own| own.limits().is_some())
+    });
+    let all = [
+        Motor::Step { by: 64 },
+        Motor::JogPress { direction: Direction::Clockwise, repeated: false },
+        Motor::Lead(Goal::Ready),
+        Motor::Acknowledge,
+    ];
+    for motor in all {
+        drive(&mut desk, motor);
+        assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.other_moves"), "{motor:?}");
+    }
+    desk.settle();
+    assert!(moves(&desk.studio, ONE), "it goes on");
+    assert_eq!(unit(&desk).moving_drives(), [ONE]);
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+    until_free(&mut desk, two());
+    drive(&mut desk, Motor::Step { by: 64 });
+    desk.until("now it may", |studio| studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64));
+}
+
+/// Issue 21.7: a job that waits is not discarded by what is asked of another drive.
+#[test]
+fn a_job_that_waits_is_not_discarded_by_another_drive() {
+    let mut desk = in_control(HUB);
+    until_free(&mut desk, ONE);
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| moves(studio, ONE));
+    drive(&mut desk, Motor::Pause);
+    desk.until("it waits", |studio| {
+        let phase = studio.hiperdrive().unwrap().moves.phase(ONE);
+        matches!(phase, Some(Phase::Paused { .. }))
+    });
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
+    drive(&mut desk, Motor::Lead(Goal::Ready));
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.other_moves"]);
+    act(&mut desk, Hiperdrive::SelectDrive(ONE));
+    until_free(&mut desk, ONE);
+    drive(&mut desk, Motor::Resume);
+    desk.until("it goes on", |studio| moves(studio, ONE));
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+}
+
+/// Issue 21.7: what is told names the drive of a hub; an adapter has one.
+#[test]
+fn what_is_told_names_the_drive() {
+    for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
+        let mut desk = in_control(link);
+        act(&mut desk, Hiperdrive::SelectDrive(own));
+        until_free(&mut desk, own);
+        drive(&mut desk, Motor::Move { target: 30_000_000 });
+        desk.until("it moves", |studio| moves(studio, own));
+        let target = unit(&desk).target.clone().unwrap();
+        target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+        desk.until("the fault is told", |studio| {
+            studio.services.log.notices().any(|one| one.texts[0].id() == "hd_end.fault")
+        });
+        let notice = desk.studio.services.log.notices().rev().find(|one| one.texts[0].id() == "hd_end.fault").unwrap();
+        let whose = notice.whose(|text| text.words(Language::English));
+        assert_eq!(whose.strip_suffix(": ").unwrap().contains("drive 2"), named.is_some(), "{whose}");
+        assert_eq!(notice.part.as_ref().map(|part| part.words(Language::English)).as_deref(), named);
+    }
+}
+
+/// Issue 21.7: what is sent while a motion is under way, beside what is set meanwhile.
+#[test]
+fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
+    let mut desk = in_control("sim:");
+    until_free(&mut desk, ONE);
+    let (before, after) =
+        (Effort { speed: percent(40), ..Effort::MOVE }, Effort { speed: percent(20), ..Effort::MOVE });
+    assert_eq!(unit(&desk).moves.moves_with(ONE), None);
+    drive(&mut desk, Motor::MoveEffort(before));
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
+    desk.until("it moves", |studio| moves(studio, ONE));
+    drive(&mut desk, Motor::MoveEffort(after));
+    desk.settle();
+    assert_eq!((unit(&desk).moves.move_effort(ONE), unit(&desk).moves.moves_with(ONE)), (after, Some(before)));
+    assert_eq!(unit(&desk).moves.jogs_with(ONE), None, "that is no jog");
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+    drive(&mut desk, Motor::Step { by: 1_000_000 });
+    desk.until("it moves", |studio| moves(studio, ONE));
+    assert_eq!(unit(&desk).moves.moves_with(ONE), Some(after));
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+}
+
+/// A hub on the screen, with its drives in hand.
+fn on_screen() -> Screen {
+    let mut screen = Screen::opened_in(Tab::Hiperdrive, HUB, [1280.0, 900.0]);
+    screen.until("it is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.status.is_some())
+    });
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    screen.until("it is in hand", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    screen
+}
+
+fn choose(screen: &mut Screen, of: DriveNumber) {
+    let drive = screen.studio().hiperdrive().unwrap();
+    let state = screen.words(&explain::state(drive.state(of).unwrap()));
+    let label = format!("drive {}, {state}", of.get());
+    screen.harness.get_by_role_and_label(Role::RadioButton, &label).click();
+    screen.steps();
+    screen.until("it is shown", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.drive() == of && own.may_move(of).is_ok()
+    });
+    screen.steps();
+}
+
+fn target(screen: &Screen) -> Node<'_> {
+    let label = screen.say("hd_move.target");
+    let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
+    screen.harness.query_all_by(is_it).last().unwrap()
+}
+
+/// Moves drive 1, does something meanwhile, and looks while it still moves: a window that is held up stops what it moves, so
+/// that a busy machine may need several attempts.
+fn while_it_moves(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    let own = |action| Action::Hiperdrive(id, action);
+    for _ in 0..20 {
+        screen.act(own(Hiperdrive::SelectDrive(ONE)));
+        screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.moves());
+        screen.act(own(Hiperdrive::Drive(Motor::MoveEffort(Effort::MOVE))));
+        screen.act(own(Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
+        screen.until("it moves or stands again", |studio| moves(studio, ONE) || !studio.moves());
+        screen.act(own(then()));
+        screen.steps();
+        let seen = look(screen);
+        if screen.studio().hiperdrive().unwrap().moving_drives() == [ONE] {
+            return seen;
+        }
+    }
+    panic!("it never moved for long enough");
+}
+
+/// Issue 21.7: what is typed for one drive stands in the entries of that drive.
+#[test]
+fn what_is_typed_for_one_drive_stands_on_its_page() {
+    let mut screen = on_screen();
+    target(&screen).focus();
+    screen.steps();
+    target(&screen).type_text("12345");
+    screen.steps();
+    assert!(stands(&screen, "12345"));
+    choose(&mut screen, two());
+    assert!(!stands(&screen, "12345"));
+    choose(&mut screen, ONE);
+    assert!(stands(&screen, "12345"));
+}
+
+/// Some entry has this in it.
+fn stands(screen: &Screen, text: &str) -> bool {
+    screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
+}
+
+/// Issue 21.7: the buttons that choose a drive say what it does, whichever is shown.
+#[test]
+fn the_buttons_of_the_drives_show_their_states() {
+    let mut screen = on_screen();
+    let says = |screen: &Screen, words: &str| screen.harness.query_by_label(words).is_some();
+    let shown = while_it_moves(
+        &mut screen,
+        || Hiperdrive::SelectDrive(two()),
+        |screen| says(screen, "drive 1, Moving") && says(screen, "drive 1 moving"),
+    );
+    assert!(shown, "while another one is shown, at the buttons and in the header");
+    screen.act(Action::StopMotion);
+    screen.until("it stands", |studio| !studio.moves());
+    let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();
+    target.with(|station| station.drive(ONE).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
+    screen.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
+    screen.steps();
+    assert!(says(&screen, "drive 1, Fault"));
+}
+
+/// Issue 21.7: what is typed during a motion is marked where it is typed.
+#[test]
+fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
+    let mut screen = on_screen();
+    let slower = Motor::MoveEffort(Effort { speed: percent(20), ..Effort::MOVE });
+    let waits = "sent: 25 %";
+    assert!(!screen.shows(waits));
+    assert!(while_it_moves(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
+    screen.act(Action::StopMotion);
+    screen.until("it stands", |studio| !studio.moves());
+    screen.steps();
+    assert!(!screen.shows(waits));
+}
