@@ -46,10 +46,7 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     let mut desk = until_jog();
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).step(), Step::Confirm);
-    act(&mut desk, Hiperdrive::Take);
-    desk.until("control", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
-    });
+    control(&mut desk);
     assert!(axis(&desk).may_move(&seen(&desk)).is_err());
     let before = position(&desk);
     act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));

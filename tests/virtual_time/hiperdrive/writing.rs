@@ -45,8 +45,12 @@ fn what_is_tried_is_not_saved() {
     let mut stand = Stand::new("");
     let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
     assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
+    // Issue 21.6 (d): a recall is about the adapter's own parameters.
     stand.change(Change::Do(Service::Recall)).unwrap();
-    assert_eq!(stand.value(166), 350);
+    assert_eq!(stand.value(166), 100);
+    let now = stand.clock.now();
+    stand.target.with(|station| station.power_cycle(now));
+    assert_eq!((stand.value(166), stand.value(170)), (350, 4096));
 }
 
 #[test]
@@ -73,6 +77,8 @@ fn a_profile_comes_back_after_everything_was_set_back() {
     };
     assert_eq!(profile.image.get(number(258)), None, "an empty place keeps nothing");
     stand.change(Change::Do(Service::Factory)).unwrap();
+    assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 400, -131_072), "the hub's own alone");
+    stand.change(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 256, -33_488_896));
     // From the factory a hub asks for no drive: that it does has to come back, too.
     let change = || Change::Restore { profile: profile.clone(), options: RestoreOptions::default() };
@@ -201,7 +207,7 @@ fn what_rules_motion_is_known_after_every_write() {
     assert!(motion.permitted(drive(1)).locks.is_empty());
     stand.change(Change::Do(Service::Recall)).unwrap();
     assert!(motion.permitted(drive(1)).locks.is_empty(), "the scale is as it was saved");
-    stand.change(Change::Do(Service::Factory)).unwrap();
+    stand.change(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!(motion.permitted(drive(1)).locks, [Lock::LimitsUnconfirmed], "the scale is another one");
     stand.change(Change::Write(image(&[(152, 0)]))).unwrap();
     assert!(motion.permitted(drive(1)).locks.contains(&Lock::NotRequested));
