@@ -103,7 +103,10 @@ impl Unit {
                 let outward = self.moves.is_freed(drive, direction);
                 Wish::Jog { direction, effort: self.moves.jog_effort(drive), outward }
             }
-            Motor::SlowJogPress { direction, .. } => Wish::Jog { direction, effort: Effort::JOG, outward: false },
+            Motor::SlowJogPress { direction, .. } => {
+                let outward = self.moves.is_freed(drive, direction);
+                Wish::Jog { direction, effort: Effort::JOG, outward }
+            }
             Motor::Lead(goal) => Wish::Lead(goal),
             Motor::Acknowledge => Wish::Acknowledge,
             Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort(drive) },

@@ -5,7 +5,7 @@ use egui::{RichText, Ui, vec2};
 use super::Shown;
 use crate::app::hiperdrive::Motor;
 use crate::app::hiperdrive::axis::{Action as Run, Button, Entries, Place, Step, words};
-use crate::app::{Action, Text};
+use crate::app::{Action, Severity, Text};
 use crate::protocol::hiperdrive::Direction;
 use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
 use crate::ui::hiperdrive::jog::pad_ui;
@@ -104,13 +104,17 @@ fn control(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action
     ui.add_space(skin.space.inside);
 }
 
-fn may_jog(shown: &Shown<'_>) -> Result<(), Text> {
-    shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_move(shown.axis.drive()))
+fn may_jog(shown: &Shown<'_>, direction: Direction) -> Result<(), Text> {
+    shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
 /// Why the pads do nothing, or what the drive does by them.
 fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
-    if let Err(why) = may_jog(shown)
+    let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
+    if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
+        super::line(ui, skin, Severity::Error, &outside);
+    }
+    if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
         && shown.axis.fallen().is_none()
     {
@@ -124,14 +128,13 @@ fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 
 /// The two buttons that are held, slow and weak.
 fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let enabled = may_jog(shown).is_ok();
     let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
     let caption = skin.words(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
-            let label = skin.say(label);
+            let (label, enabled) = (skin.say(label), may_jog(shown, direction).is_ok());
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
