@@ -3,6 +3,7 @@
 use super::AnyDevice;
 use super::Text;
 use super::action::{Action, Done, Question, Then, Waited};
+use super::brakes::Brakes;
 use super::recorder;
 use super::services::JobEnd;
 use super::session::Source;
@@ -12,6 +13,11 @@ use super::studio::{SessionId, Studio};
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
+    /// The drives of all sessions, for what ends the program.
+    pub fn brakes(&self) -> Brakes {
+        self.services.brakes.clone()
+    }
+
     /// The window closes: nothing is asked any more.
     pub fn is_closing(&self) -> bool {
         self.closing

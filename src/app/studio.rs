@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::action::{Action, Done, FileQuestion, Question, Then, Waited};
 use super::biss;
-use super::brakes::Brakes;
 use super::connect::{self, Connect};
 use super::devices::{AnyDevice, Shown};
 use super::documents::{is_capture, read_document};
@@ -182,11 +181,6 @@ impl Studio {
         for device in &mut self.devices {
             device.keep_draft(&mut self.services);
         }
-    }
-
-    /// The drives of all sessions, for what ends the program.
-    pub fn brakes(&self) -> Brakes {
-        self.services.brakes.clone()
     }
 
     /// Puts actions into the studio from other threads.

@@ -38,7 +38,8 @@ pub(super) fn prepare(studio: &Studio) {
         }
     });
     if let Err(why) = heard {
-        tracing::warn!("signals cannot be heard: {why}");
+        // Signals end it at once then.
+        tracing::warn!("{why}");
     }
 }
 
