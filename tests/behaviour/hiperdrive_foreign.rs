@@ -45,7 +45,7 @@ fn change(session: &mut Session<Hiperdrive>, change: Change) -> Result<Committed
 fn whatever_the_target_is_like_it_is_read_and_written() {
     let cases: [(&[&str], &str); 6] = [
         (&[], ""),
-        (&["--counted", "--wide", "--pieces"], ""),
+        (&["--counted", "--pieces"], ""),
         (&["--stale", "--forget=7"], ""),
         (&["--cut=40", "--busy=300"], "?timeout=60"),
         (&["--late=90:50"], "?timeout=60"),
@@ -167,6 +167,95 @@ fn services_settings_and_positions_are_carried_out_as_they_were_planned() {
     );
     let done = change(&mut session, Change::Network(settings)).unwrap();
     assert!(done.backup.is_none() && foreign.requests().is_empty(), "what is so already is not set");
+}
+
+/// Issue 21.8: what the manual allows long for is waited for, whatever a usual reply may take: 47 with each of its values, and 152
+/// from 0 to 1. With 8000 ms for a hub it is the same, and takes as long.
+#[test]
+fn what_takes_long_is_answered_late_and_done_once() {
+    let bench = Bench::new();
+    let slow = "--slow=47:-4:1700,47:-3:1400,47:-2:1400,47:-1:1400,47:1:190,152:1:1300";
+    let Some(foreign) = bench.target(&["--topology=hub4", "--drives=1,3", slow]) else { return };
+    let mut session = session(&bench, &foreign, "?timeout=60");
+    change(&mut session, Change::Write(image(&[(152, 0)]))).unwrap();
+    foreign.requests();
+    let cases = [
+        (Change::Write(image(&[(152, 1)])), "SET 152 1, SET 47 1, STORE"),
+        (Change::Do(Service::Reset), "SET 47 -4, RESET"),
+        (Change::Do(Service::FactoryAll), "SET 47 -3, STORE"),
+        (Change::Do(Service::Recall), "SET 47 -2"),
+        (Change::Do(Service::Factory), "SET 47 -1"),
+        (Change::Do(Service::Save), "SET 47 1, STORE"),
+    ];
+    for (own, log) in cases {
+        let said = format!("{own:?}");
+        change(&mut session, own).unwrap_or_else(|why| panic!("{said}: {why}"));
+        assert_eq!(foreign.requests().join(", "), log, "{said}");
+    }
+}
+
+/// Issue 21.9: a number of another length than the manual's is shown by no command, kept in no file and written beside; both
+/// lengths are told, and so is what to do.
+#[test]
+fn a_number_of_another_length_is_shown_nowhere() {
+    let bench = Bench::new();
+    let (file, other) = (bench.file("file.ron"), bench.file("other.ron"));
+    {
+        let Some(foreign) = bench.target(&[]) else { return };
+        let link = ["--link", foreign.url.as_str()];
+        assert_eq!(bench.run(&[&["save", "hiperdrive", "-o", &file], &link[..]].concat()).status, Some(0));
+    }
+    let cases: [(&str, &[&str], &[&str]); 9] = [
+        ("107:2", &["read", "hiperdrive", "107"], &["107", "received: 2", "expected: 4"]),
+        ("107:2", &["position", "hiperdrive"], &["107", "received: 2", "expected: 4"]),
+        ("186:1", &["read", "hiperdrive", "186"], &["186", "received: 1", "expected: 2"]),
+        ("119:2", &["status", "hiperdrive"], &["119", "received: 2", "expected: 1"]),
+        ("158:2", &["save", "hiperdrive", "-o", &other], &["158", "received: 2", "expected: 4"]),
+        ("158:2", &["diff", &file], &["158", "received: 2", "expected: 4"]),
+        ("160:1", &["restore", &file, "--yes"], &["160", "received: 1", "expected: 4"]),
+        ("186:4", &["do", "hiperdrive", "check"], &["186", "received: 4", "expected: 2"]),
+        ("24:2", &["write", "hiperdrive", "24", "7", "--yes"], &["24", "received: 2", "expected: 4"]),
+    ];
+    for (lengths, words, said) in cases {
+        let foreign = bench.target(&[&format!("--lengths={lengths}")]).unwrap();
+        let ran = bench.run(&[words, &["--link", foreign.url.as_str()]].concat());
+        ran.fails(1, said);
+        assert!(ran.out.is_empty() && ran.err.contains("parameter 19"), "{words:?}: {ran:?}");
+        assert!(foreign.requests().is_empty(), "{words:?}");
+    }
+    assert!(!std::path::Path::new(&other).exists(), "a save that fails leaves no file");
+    // What is read all at once goes on without it, and names it.
+    let foreign = bench.target(&["--lengths=24:2,158:1"]).unwrap();
+    let survey = match session(&bench, &foreign, "").run_inline(HiperdriveJob::Survey).unwrap() {
+        HiperdriveOutput::Surveyed(survey) => *survey,
+        other => panic!("{other:?}"),
+    };
+    let wrong: Vec<_> = survey.wrong_lengths.iter().map(|own| (own.number.get(), own.expected, own.got)).collect();
+    assert_eq!(wrong, [(24, 4, 2), (158, 4, 1)]);
+    assert!(wrong.iter().all(|(own, ..)| !survey.values.contains_key(&ParameterNumber::new(*own).unwrap())));
+}
+
+/// Issue 21.10: beyond the turns of the drive nothing is sent; both limits are told in the steps of its scale.
+#[test]
+fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.target(&[]) else { return };
+    let ask = |words: &[&str]| bench.run(&[words, &["--link", foreign.url.as_str()]].concat());
+    let file = bench.file("before.ron");
+    assert_eq!(ask(&["save", "hiperdrive", "-o", &file]).status, Some(0));
+    ask(&["write", "hiperdrive", "158", "-33554433", "--yes"]).fails(1, &["-33554432 to 33554432"]);
+    let text = std::fs::read_to_string(&file).unwrap().replace("33488896", "33554433");
+    std::fs::write(&file, text).unwrap();
+    ask(&["restore", &file, "--yes"]).fails(1, &["158", "-33554432 to 33554432"]);
+    assert!(foreign.requests().is_empty());
+    assert_eq!(ask(&["write", "hiperdrive", "160", "33554432", "--yes"]).status, Some(0));
+    // 400/1 are 102400 steps a turn, 52428800 of 512 turns.
+    assert_eq!(ask(&["write", "hiperdrive", "154", "400", "--yes"]).status, Some(0));
+    ask(&["write", "hiperdrive", "160", "52428801", "--yes"]).fails(1, &["160", "-52428800 to 52428800"]);
+    assert_eq!(ask(&["write", "hiperdrive", "160", "52428800", "--yes"]).status, Some(0));
+    let log = foreign.requests();
+    let sets: Vec<&String> = log.iter().filter(|line| line.starts_with("SET 1")).collect();
+    assert_eq!(sets, ["SET 160 33554432", "SET 154 400", "SET 160 52428800"], "{log:?}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::support::Bench;
 #[test]
 fn golden_words_and_process_data_are_explained() {
     let bench = Bench::new();
-    let cases: [(&[&str], &[&str]); 24] = [
+    let cases: [(&[&str], &[&str]); 27] = [
         (&["0400"], &["OUT: control word, keeps it ready: bits 10 control by PLC"]),
         (
             &["0x0439"],
@@ -56,6 +56,16 @@ fn golden_words_and_process_data_are_explained() {
         (&["2F 20 00 00 FC FF 00 00"], &["write -4 (reset the drives) to parameter 47"]),
         (&["79 50 00 00 48 44 41 33"], &["parameter 121 (drive name of drive 1) is \"HDA3\""]),
         (&["A6 20 00 00 5F 01 00 00"], &["write 351 (35.1 rpm)", "warning: it may be 5 to 350"]),
+        // Issue 21.9: a word where the parameter has a double word, the other way, and data of another length.
+        (
+            &["6B 10 00 00 02 00 00 00", "--direction", "in"],
+            &["parameter 107 (actual position of drive 1) is no value (2 bytes where its type has 4: 0x2)"],
+        ),
+        (
+            &["A6 20 00 00 02 00 00 00", "--direction", "in"],
+            &["parameter 166 (maximum speed of drive 1) is no value (4 bytes where its type has 2: 0x2)"],
+        ),
+        (&["10 03 20 65 24 01 30 BA 0A"], &["parameter 186", "a value of 1 bytes where 2 were expected: 0A"]),
     ];
     for (arguments, words) in cases {
         let ran = bench.run(&[&["decode", "hiperdrive"], arguments].concat());

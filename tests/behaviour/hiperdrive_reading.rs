@@ -94,6 +94,22 @@ fn a_check_says_each_thing_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
+/// Issue 21.10: a speed is in tenths of rpm with the factory's scale alone (manual 6.2); nominal data may be tenths. A drive that
+/// stands has speed 0 in any scale.
+#[test]
+fn units_are_those_of_the_manual() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &[]);
+    let read = |number: &str| device.ask(&bench, &["read", "hiperdrive", number]).json();
+    assert_eq!(read("106")["unit"], json!("0.1 rpm"));
+    // 162 = 100.
+    assert_eq!(device.request(&[0x10, 3, 0x20, 0x65, 0x24, 1, 0x30, 162, 100, 0])[..3], [0x90, 0, 0]);
+    assert!(read("106").get("unit").is_none());
+    let text = |number: &str| bench.run(&["read", "hiperdrive", number, "--link", &device.url()]).out;
+    assert_eq!((text("106").as_str(), text("127").as_str()), ("0 = 0.0 rpm\n", "A25 = 2.5 A\n"));
+    assert_eq!((read("127")["value"].clone(), read("127").get("unit")), (json!("A25"), None));
+}
+
 /// 65536 steps a turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
 #[test]
 fn a_position_has_turns_with_a_sign() {

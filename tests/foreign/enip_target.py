@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """An EtherNet/IP target with HIPERDRIVE parameters in a dictionary, with the troubles that are asked for.
 
-Written from the project's reference (protocol/hiperdrive.md) alone, with the Python standard library alone. Explicit messages
-over TCP, ListIdentity and cyclic data over UDP at the same port. Its drives are where they are told to be at once. The log has
-a line for what happens: `SET 158 -65536`, `STORE`, `RESET`, `NETWORK 3`, `OPEN 16`, `STW 1 0479`, `CLOSE`, `LOST`.
+Written from the project's reference (protocol/hiperdrive.md) and the manual's table (6.2) alone, with the Python standard
+library alone. Explicit messages over TCP, ListIdentity and cyclic data over UDP at the same port. Its drives are where they are
+told to be at once. The log has a line for what happens: `SET 158 -65536`, `STORE`, `RESET`, `NETWORK 3`, `OPEN 16`, `STW 1 0479`, `CLOSE`, `LOST`.
 """
 
 import argparse
+import contextlib
 import select
 import signal
 import socket
@@ -16,11 +17,12 @@ import time
 
 import cip
 
-# Number of drive 1: (type, first value, written, saved, least, most). Section 4.
+# Number of drive 1: (type, first value, written, saved, least, most), or one of a list for the last two. Section 4; types are the
+# manual's (6.2).
 U8, I8, U16, I16, U32, I32, TEXT = "B", "b", "H", "h", "I", "i", "s"
 DEVICE = {
     9: (U16, 241), 11: (I16, 29), 12: (U16, 0), 13: (TEXT, ""), 15: (TEXT, "POSITIONER"), 16: (TEXT, "7800.1234"),
-    17: (U16, 0), 18: (TEXT, "07/2023"), 19: (TEXT, "2.10"), 47: (I16, 0, True, False, -4, 1),
+    17: (U16, 0), 18: (TEXT, "07/2023"), 19: (TEXT, "2.10"), 47: (I16, 0, True, False, (-4, -3, -2, -1, 1)),
     **{number: (U32, 0, True, True, 0, 0xFFFFFFFF) for number in range(24, 43, 2)},
 }
 LEAST, MOST = -2**31, 2**31 - 1
@@ -35,11 +37,14 @@ DRIVE = {
     162: (U16, 10, True, True, 1, 65535), 164: (U16, 1, True, True, 1, 65535), 166: (U16, 350, True, True, 5, 350),
     170: (I32, 4096, True, False, LEAST, MOST), 172: (U8, 100, True, False, 1, 100), 174: (U8, 100, True, False, 1, 100),
     176: (I32, -4096, True, False, LEAST, MOST), 178: (U8, 100, True, False, 1, 100), 180: (U8, 100, True, False, 1, 100),
-    182: (U16, 1000, True, False, 100, 10000), 186: (U8, 20, True, True, 1, 255), 188: (U8, 1, True, True, 0, 253),
-    190: (U32, 38400, True, True, 9600, 38400), 192: (U16, 50, True, True, 0, 65535), 197: (U8, 0, True, False, 0, 0),
+    182: (U16, 1000, True, False, 100, 10000), 186: (U16, 20, True, True, (*range(1, 101), 255)), 188: (U8, 1, True, True, 0, 253),
+    190: (U32, 38400, True, True, (9600, 19200, 38400)), 192: (U16, 50, True, True, 0, 65535), 197: (U8, 0, True, False, 0, 0),
     198: (I32, 0, True, True, LEAST, MOST), 199: (U8, 0, True, False, 0, 1),
 }
-ASSUMED = (11, 119, 186, 188)
+# Turns either way (section 5), of variants 1 to 12 and of 13; what is a step of the keys is no longer than both ways together.
+TURNS = {**{variant: 512 for variant in range(1, 13)}, 13: 16000}
+REACH = {158: 1, 160: 1, 198: 1, 170: 2, 176: 2}
+NUMBERS = {1: {True: I8, False: U8}, 2: {True: I16, False: U16}, 4: {True: I32, False: U32}}
 CATEGORIES = {"adapter": ("HIPERDRIVE SINGLE", 1), "hub4": ("HIPERDRIVE HUB-4", 4), "hub8": ("HIPERDRIVE HUB-8", 8)}
 
 
@@ -56,6 +61,7 @@ class Station:
         self.busy_until = 0.0
         self.network = {3: struct.pack("<I", 2), 5: struct.pack("<IIIIIH", 0xC0A80107, 0xFFFFFF00, 0, 0, 0, 0)}
         self.acknowledged = {}
+        self.answers_after = 0.0
 
     def note(self, line):
         if self.options.log:
@@ -71,9 +77,10 @@ class Station:
             raise cip.Refused(cip.PATH_UNKNOWN)
         return drive, base, row
 
-    def kind(self, base, row):
-        wide = {U8: U16, I8: I16, I16: I16}
-        return wide.get(row[0], row[0]) if self.options.wide and base in ASSUMED else row[0]
+    def kind(self, number, row):
+        """As it is read: of the manual's length, unless another one is asked for."""
+        length = self.options.lengths.get(number)
+        return NUMBERS[length][row[0].islower()] if length else row[0]
 
     def read(self, number):
         drive, base, row = self.row(number)
@@ -85,7 +92,10 @@ class Station:
             raise cip.Refused(cip.STATE)
         value = int(time.monotonic() < self.busy_until) if number == 47 else self.values[number]
         if row[0] != TEXT:
-            return struct.pack("<" + self.kind(base, row), value)
+            kind = self.kind(number, row)
+            if kind == row[0]:
+                return struct.pack("<" + kind, value)
+            return value.to_bytes(8, "little", signed=value < 0)[:struct.calcsize("<" + kind)]
         text = value.encode("ascii")
         return bytes([len(text)]) + text if self.options.counted else text
 
@@ -95,26 +105,36 @@ class Station:
             raise cip.Refused(cip.NOT_SETTABLE)
         if drive and drive not in self.plugged or time.monotonic() < self.busy_until:
             raise cip.Refused(cip.STATE)
-        kind = self.kind(base, row)
+        kind = row[0]
         if len(data) != struct.calcsize("<" + kind):
             raise cip.Refused(cip.TOO_SHORT if len(data) < struct.calcsize("<" + kind) else cip.TOO_LONG)
         (value,) = struct.unpack("<" + kind, data)
-        place = {158: (LEAST, self.of(drive, 160) - 1), 160: (self.of(drive, 158) + 1, MOST),
+        reach = self.reach(drive, base)
+        place = {158: (-reach, min(reach, self.of(drive, 160) - 1)), 160: (max(-reach, self.of(drive, 158) + 1), reach),
                  198: (self.of(drive, 158), self.of(drive, 160))} if drive else {}
-        least, most = place.get(base, row[4:])
-        inside = least <= value <= most
+        allowed = place.get(base, row[4:])
+        inside = value in allowed[0] if len(allowed) == 1 else allowed[0] <= value <= allowed[1]
+        inside = inside and abs(value) <= reach
         if base in (158, 160) and inside:
             position = self.of(drive, 107)
             inside = value <= position if base == 158 else value >= position
         if not inside:
             raise cip.Refused(cip.INVALID)
         self.note(f"SET {number} {value}")
+        self.answers_after = self.options.slow.get((number, value), 0) / 1000
         if number == 47:
             self.save(value)
         elif base == 198:
             self.values[number] = self.values[number - 91] = (value + 32) // 64 * 64
         elif base != 199:
             self.values[number] = value
+
+    def reach(self, drive, base):
+        """The most steps either way, of a parameter that turns bound; of another as far as a number goes."""
+        if base not in REACH:
+            return 2**32
+        turns = REACH[base] * TURNS[self.of(drive, 120)]
+        return min(MOST, turns * 256 * self.of(drive, 154) // self.of(drive, 156))
 
     def of(self, drive, base):
         return self.values[base + 100 * (drive - 1)]
@@ -307,9 +327,16 @@ def serve(options):
     udp.bind(("127.0.0.1", port))
     target = Target(options, udp, port)
     print("ready", f"127.0.0.1:{port}", flush=True)
-    buffers, peers = {}, {}
+    buffers, peers, waiting = {}, {}, []
     while True:
         wait = target.tick()
+        now = time.monotonic()
+        for due, client, answer in [own for own in waiting if own[0] <= now]:
+            waiting.remove((due, client, answer))
+            with contextlib.suppress(OSError):
+                client.sendall(answer)
+        waits = [due - now for due, _, _ in waiting] + ([] if wait is None else [wait])
+        wait = max(0.0, min(waits)) if waits else None
         ready, _, _ = select.select([server, udp, *buffers] + ([sys.stdin] if options.stdin_eof else []), [], [], wait)
         if sys.stdin in ready:
             return
@@ -329,6 +356,11 @@ def serve(options):
                     answer = target.take(frame, peers[client])
                     if answer is None:
                         return
+                    if target.station.answers_after:
+                        # What is asked meanwhile is answered meanwhile.
+                        waiting.append((time.monotonic() + target.station.answers_after, client, answer))
+                        target.station.answers_after = 0.0
+                        continue
                     if options.late and target.requests % options.late[1] == 0:
                         time.sleep(options.late[0] / 1000)
                     for piece in [answer[at:at + 1] for at in range(len(answer))] if options.pieces else [answer]:
@@ -345,6 +377,13 @@ def arguments():
     def refusals(text):
         return {int(number): int(status, 0) for number, status in (pair.split(":") for pair in text.split(","))}
 
+    def lengths(text):
+        return {int(number): int(length) for number, length in (pair.split(":") for pair in text.split(","))}
+
+    def slow(text):
+        parts = (part.split(":") for part in text.split(","))
+        return {(int(number), int(value)): int(ms) for number, value, ms in parts}
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--stdin-eof", action="store_true", help="end when stdin ends")
@@ -357,7 +396,8 @@ def arguments():
     add("--position", type=int, default=0)
     add("--order", dest="struct", type=lambda text: {"little": "<", "big": ">"}[text], default="little")
     add("--counted", action="store_true", help="texts have their length before them")
-    add("--wide", action="store_true", help="types that are assumed have two bytes")
+    add("--lengths", type=lengths, default={}, help="NUMBER:BYTES,… of what is read with another length than the manual's")
+    add("--slow", type=slow, default={}, help="NUMBER:VALUE:MS,… of what is answered late when it is set, as 47:-4:8000")
     add("--refuse", type=refusals, default={}, help="NUMBER:STATUS,… of what is not read")
     add("--busy", type=int, default=60, help="milliseconds for which parameter 47 is not 0")
     add("--owned", action="store_true", help="another master has the cyclic connection")

@@ -78,7 +78,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
         None => digits.parse().ok(),
     };
     let value = value.ok_or_else(|| Text::new("hd_entry.whole").with("entry", text.trim()))?;
-    let checked = row.kind.check(row.number, value);
+    let checked = row.kind.check(row.number, value, row.travel);
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| explain::hiperdrive::out_of_range(&error))
 }
 

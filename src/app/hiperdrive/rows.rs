@@ -8,7 +8,7 @@ use crate::app::number::decimals_of;
 use crate::app::{Text, explain};
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{
-    Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Range, Topology, Value,
+    Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Topology, Travel, Value,
 };
 
 /// A parameter as a row of the table.
@@ -30,6 +30,8 @@ pub struct Row {
     pub unit: Option<Text>,
     /// What it may be; `None` of texts.
     pub range: Option<Text>,
+    /// How far its drive turns, in steps as they are wanted to be scaled.
+    pub travel: Travel,
     /// What it is from the factory; empty where nothing is said of it.
     pub factory: String,
     /// What is wanted of it; `None` where it cannot be edited, or nothing is.
@@ -75,6 +77,7 @@ impl Unit {
     fn row(&self, number: ParameterNumber, kind: &'static ParameterRow) -> Row {
         let own = || self.staged.base().and_then(|image| image.get(number)).map(Value::Number);
         let value = self.said_since(number).or_else(|| self.value(number).cloned()).or_else(own);
+        let travel = self.travel(number);
         let is_editable = is_editable(kind) && (self.profile().is_none() || Image::holds(kind));
         let staged = self.staged.value(number).filter(|_| is_editable);
         let meant = match (&value, staged) {
@@ -88,7 +91,8 @@ impl Unit {
             shown: value.as_ref().map(|value| words::shown(number, value)).unwrap_or_default(),
             meaning: meant.and_then(|value| self.meaning(number, &value)),
             unit: words::unit(kind),
-            range: self.range(number, kind).filter(|_| is_editable).map(explain::hiperdrive::range),
+            range: kind.allowed(travel).filter(|_| is_editable).map(explain::hiperdrive::range),
+            travel,
             factory: self.factory_value(number, kind).map(|own| own.to_string()).unwrap_or_default(),
             staged,
             is_edited: self.staged.differs(number).is_some(),
@@ -130,22 +134,20 @@ impl Unit {
         variant.row().map(|row| row.family)
     }
 
-    /// What a parameter may be: of limits and of the position that is set, the turns that the drive has (reference 5), as they
-    /// are wanted to be scaled.
-    fn range(&self, number: ParameterNumber, kind: &ParameterRow) -> Option<Range> {
-        let of_drive = || {
-            let drive = number.drive().filter(|_| matches!(number.base(), 158 | 160 | 198))?;
-            let turns = f64::from(self.family(drive)?.most_turns());
-            let most =
-                (turns * self.wanted_ruler(drive).scale.steps_per_turn()).floor().min(f64::from(i32::MAX)) as i64;
-            Some(Range::Within(-most, most))
-        };
-        of_drive().or_else(|| kind.allowed())
+    /// How far the drive of a parameter turns, in steps as they are wanted to be scaled.
+    fn travel(&self, number: ParameterNumber) -> Travel {
+        number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
+            family: self.family(drive),
+            scale: Some(self.wanted_ruler(drive).scale),
+        })
     }
 
     /// What a value means, where the number alone does not say it.
     fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
-        let Value::Number(value) = value else { return None };
+        let value = match value {
+            Value::Number(value) => value,
+            Value::Text(text) => return words::nominal(number, text),
+        };
         let drive = number.drive();
         match (number.base(), drive) {
             // Places, as they are wanted to be scaled.

@@ -10,6 +10,8 @@ mod mark;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 pub use edit::{Edit, EditError, LimitsStay};
@@ -17,7 +19,7 @@ pub use mark::Mark;
 
 use crate::app::history::History;
 use crate::profile::hiperdrive::Image;
-use crate::protocol::hiperdrive::{Access, ParameterNumber, ParameterRow};
+use crate::protocol::hiperdrive::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
 /// What the edits stand beside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +43,12 @@ pub struct Staged {
     history: History<Image>,
     /// Edits of an earlier time whose parameter was not read yet.
     waiting: Vec<Kept>,
+    /// What the drives are, as far as their variants are known.
+    families: Families,
 }
+
+/// What drives are, and so how many turns they have.
+pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
 /// An edit that is kept: the parameter's own number, and what is wanted of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,6 +76,11 @@ impl Staged {
     /// Of a profile, which can be made to say what it does not say yet.
     pub fn of_profile(image: Image) -> Self {
         Staged { ground: Ground::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
+    }
+
+    /// The drives are these: what they turn bounds their limits from now on.
+    pub(super) fn know(&mut self, families: Families) {
+        self.families = families;
     }
 
     /// The profile was saved and says this now. What is wanted stays, and so do the steps that led to it.
@@ -169,7 +181,7 @@ impl Staged {
     /// Why it cannot be.
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
-        edit::edited((base, wanted), edit, self.ground)
+        edit::edited((base, wanted), edit, self.ground, &self.families)
     }
 
     /// Takes all edits back, as one step that can be undone.
@@ -236,6 +248,12 @@ impl Staged {
         }
         self.step(wanted);
     }
+}
+
+/// How far the drive of a parameter turns, in the steps of an image.
+fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel {
+    let Some(drive) = number.drive() else { return Travel::UNKNOWN };
+    Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
 }
 
 /// Keeps what was changed against what was said before; all else is as it is said now.

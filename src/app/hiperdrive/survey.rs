@@ -28,6 +28,13 @@ impl Unit {
         self.notice_scales(&image);
         self.session.title = Some(title(&survey.identity));
         self.unsaved.read(&survey.values);
+        let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
+        for error in survey.wrong_lengths.iter().filter(|error| !known.contains(error)) {
+            let text = explain::hiperdrive::wrong_length(error);
+            services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+        }
+        let drives = survey.identity.drives.iter();
+        self.staged.know(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();

@@ -131,7 +131,12 @@ impl Unit {
         services: &Services,
     ) -> Self {
         let staged = match &document.body {
-            Body::Hiperdrive(profile) => Staged::of_profile(profile.image.clone()),
+            Body::Hiperdrive(profile) => {
+                let mut staged = Staged::of_profile(profile.image.clone());
+                let drives = profile.identity.drives.iter();
+                staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
+                staged
+            }
             _ => Staged::default(),
         };
         let mut unit = Unit::with(Session::in_file(id, (path, key), document), staged);

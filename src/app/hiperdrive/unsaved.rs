@@ -101,7 +101,7 @@ impl Unit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::hiperdrive::{Image, Positions, plan_edits, plan_service};
+    use crate::profile::hiperdrive::{DeviceState, Image, Positions, ProfileIdentity, plan_edits, plan_service};
 
     fn image(values: &[(u16, i64)]) -> Image {
         let number = |(number, value): &(u16, i64)| (ParameterNumber::new(*number).unwrap(), *value);
@@ -119,7 +119,9 @@ mod tests {
         let (factory, mut now) = (image(&[(24, 0), (366, 350)]), image(&[(24, 0), (366, 350)]));
         let mut own = Unsaved::default();
         for speed in [300, 200] {
-            let plan = plan_edits(&now, &image(&[(366, speed)]), &Positions::new()).unwrap().without_save();
+            let (identity, positions) = (ProfileIdentity::default(), Positions::new());
+            let state = DeviceState { identity, image: now.clone(), positions };
+            let plan = plan_edits(&state, &image(&[(366, speed)])).unwrap().without_save();
             own.begin(&plan);
             own.done(&plan);
             now = now.with(&image(&[(366, speed)]));

@@ -3,8 +3,9 @@
 use super::staged::{EditError, Mark};
 use crate::app::Text;
 use crate::app::explain::{self, hiperdrive, plain};
+use crate::app::number::decimals_of;
 use crate::protocol::hiperdrive::{
-    AddressSwitch, ErrorCode, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
+    self as protocol, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
 };
 
 /// A value as it is written: words of bits and codes in hexadecimal.
@@ -16,9 +17,10 @@ pub fn shown(number: ParameterNumber, value: &Value) -> String {
     }
 }
 
-/// The unit of a parameter's number; `None` where it has none.
+/// The unit of a parameter's number; `None` where it has none. A text is no number, whatever it tells.
 pub fn unit(row: &ParameterRow) -> Option<Text> {
     match row.unit {
+        _ if row.kind == Kind::Text => None,
         "" => None,
         "steps" => Some(Text::new("unit.steps")),
         "0.1 rpm" => Some(Text::new("hd_unit.tenth_rpm")),
@@ -26,6 +28,13 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
         "0.1 s" => Some(Text::new("hd_unit.tenth_second")),
         own => Some(plain(own)),
     }
+}
+
+/// What a text tells as a number with its unit; `None` of other texts.
+pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
+    let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
+    let value = protocol::nominal(text)?;
+    Some(Text::new("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
 }
 
 /// What a number means by itself; `None` where it says it.

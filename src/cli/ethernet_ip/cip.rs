@@ -52,15 +52,15 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
     let said = match place {
         Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)) => {
             let source = ConfigurationControl::parse(data).map(|control| source_words(control.source()));
-            Some(("where the address comes from".to_owned(), source.ok()))
+            Some(("where the address comes from".to_owned(), source.map_err(|why| why.to_string())))
         }
         Some((class, attribute)) if device == Device::Hiperdrive => parameter_words(class, attribute, data),
         _ => None,
     };
     match said {
-        Some((name, Some(value))) if !data.is_empty() => vec![format!("{name} = {value}")],
         Some((name, _)) if data.is_empty() => vec![name],
-        Some((name, _)) => vec![format!("{name}; data of another length: {}", hex(data))],
+        Some((name, Ok(value))) => vec![format!("{name} = {value}")],
+        Some((name, Err(why))) => vec![format!("{name}; no value, {why}: {}", hex(data))],
         None if data.is_empty() => Vec::new(),
         None => vec![data_words(data)],
     }

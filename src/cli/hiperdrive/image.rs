@@ -144,7 +144,8 @@ fn parameter_word(bytes: &[u8], known: &Known) -> Vec<Reading> {
         .into_iter()
         .filter(|(is, _, direction, _)| *is && known.direction.is_none_or(|known| known == *direction))
         .map(|(_, direction, _, words)| {
-            let json = json!({"parameter": pkw.number(), "element": pkw.ind, "value": pkw.pwe});
+            let fits = direction == "OUT" || answer_fits(pkw, row);
+            let json = json!({"parameter": pkw.number(), "element": pkw.ind, "value": fits.then_some(pkw.pwe)});
             Reading { direction, lines: vec![words(pkw)], json }
         })
         .collect()
@@ -179,8 +180,23 @@ fn answer_words(pkw: Pkw) -> String {
     format!("parameter word: {said}")
 }
 
+/// An answer has the width of its parameter's type.
+fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
+    match pkw.answer() {
+        Answer::Word(_) => is_of_width(row, true),
+        Answer::Double(_) => is_of_width(row, false),
+        _ => true,
+    }
+}
+
+/// A number that comes as a word, or as a double word, is one of this parameter. Of a text four characters are a double word.
+fn is_of_width(row: &ParameterRow, word: bool) -> bool {
+    row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
+}
+
 fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
-    let warning = row(pkw).map_or(String::new(), |row| meaning::warning(row, number(row, raw, word)));
+    let own = row(pkw).filter(|row| is_of_width(row, word));
+    let warning = own.map_or(String::new(), |row| meaning::warning(row, number(row, raw)));
     format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
 }
 
@@ -188,11 +204,15 @@ fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
 fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),
+        Some(row) if !is_of_width(row, word) => {
+            let (got, expected) = if word { (2, 4) } else { (4, row.kind.length().unwrap_or(2).max(2)) };
+            format!("no value ({got} bytes where its type has {expected}: 0x{raw:X})")
+        }
         Some(row) if row.kind == Kind::Text => match Kind::Text.parse(&raw.to_le_bytes()) {
             Ok(Value::Text(text)) => format!("\"{text}\""),
             _ => raw.to_string(),
         },
-        Some(row) => meaning::number_words(row, number(row, raw, word)),
+        Some(row) => meaning::number_words(row, number(row, raw)),
     }
 }
 
@@ -201,10 +221,10 @@ fn row(pkw: Pkw) -> Option<&'static ParameterRow> {
 }
 
 /// With its sign, where its kind has one.
-fn number(row: &ParameterRow, raw: u32, word: bool) -> i64 {
-    match (row.kind, word) {
-        (Kind::I8 | Kind::I16, _) | (Kind::I32, true) => i64::from((raw as u16).cast_signed()),
-        (Kind::I32, false) => i64::from(raw.cast_signed()),
+fn number(row: &ParameterRow, raw: u32) -> i64 {
+    match row.kind {
+        Kind::I8 | Kind::I16 => i64::from((raw as u16).cast_signed()),
+        Kind::I32 => i64::from(raw.cast_signed()),
         _ => i64::from(raw),
     }
 }

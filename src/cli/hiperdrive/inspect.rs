@@ -11,7 +11,9 @@ use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::device::hiperdrive::{DriveIdentity, DriveStatus, Identity, Status};
 use crate::profile::hiperdrive::Item;
-use crate::protocol::hiperdrive::{ErrorCode, KIND, State, StatusBit, StatusWord, Value, Variant};
+use crate::protocol::hiperdrive::{
+    DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
+};
 use crate::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput};
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
@@ -228,17 +230,48 @@ fn number_text(item: Item, number: i64) -> String {
     }
 }
 
+/// The speed as it is scaled, by the number of drive 1.
+const SPEED: u16 = 106;
+
+/// The speed scale of a drive (162, 164); `None` where it has a 0 in it.
+fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
+    let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
+        Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
+        Some(Err(why)) => Err(why),
+        Some(Ok(Value::Text(_))) | None => Ok(0),
+    };
+    Ok(SpeedScale::new(part(162)?, part(164)?).ok())
+}
+
+/// A text of a parameter for a person: with the number that it tells, where it tells one.
+fn nominal_text(text: &str, unit: &str) -> String {
+    match nominal(text).filter(|_| !unit.is_empty()) {
+        Some(number) => format!("{text} = {number} {unit}"),
+        None => text.to_owned(),
+    }
+}
+
 pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     let item = item(&read.item, &read.of)?;
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);
+    // Tenths of rpm is what a speed is with the scale of the factory (manual 6.2).
+    let scale = item.0.drive().filter(|_| item.0.base() == SPEED).map(|drive| speed_scale(&mut runner, drive));
+    let scale = scale.transpose()?.flatten().filter(|scale| *scale != SpeedScale::FACTORY);
+    let unit = if scale.is_some() { "" } else { unit };
     let (own, text) = match value {
-        Value::Number(number) => (json!(number), number_text(item, number)),
-        Value::Text(text) => (json!(text), text),
+        Value::Number(number) => {
+            let rpm = scale.zip(i16::try_from(number).ok()).map(|(scale, speed)| scale.rpm(speed));
+            let text = rpm.map_or_else(|| number_text(item, number), |rpm| format!("{number} = {rpm:.1} rpm"));
+            (json!(number), text)
+        }
+        Value::Text(text) => (json!(text), nominal_text(&text, unit)),
     };
+    let is_number = own.is_number();
     let mut json = json!({"item": item.to_string(), "value": own, "name": item.name()});
-    if let (false, Some(keys)) = (unit.is_empty(), json.as_object_mut()) {
+    // Of a text the unit says nothing: it may be tenths.
+    if let (true, false, Some(keys)) = (is_number, unit.is_empty(), json.as_object_mut()) {
         keys.insert("unit".to_owned(), json!(unit));
     }
     output.show(&json, &format!("{text}\n"))?;

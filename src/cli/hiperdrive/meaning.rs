@@ -6,8 +6,8 @@ use super::image::direction_json;
 use crate::bits::hex;
 use crate::cli::args::Direction;
 use crate::protocol::hiperdrive::{
-    Access, ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterNumber, ParameterRow, StatusBit, StatusWord, Value,
-    Variant,
+    Access, ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterNumber, ParameterRow, StatusBit, StatusWord,
+    Travel, Value, Variant,
 };
 
 /// What is known of bytes beside themselves.
@@ -119,15 +119,19 @@ pub(super) fn status_words(status: StatusWord) -> String {
     format!("{}{present}: {bits}", status.state().name())
 }
 
-/// The parameter of an attribute with the value that is written; no value where the data are not of its kind.
-pub(in crate::cli) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Option<String>)> {
+/// The parameter of an attribute with the value that is written; why there is none where the data are not of its kind.
+pub(in crate::cli) fn parameter_words(
+    class: u16,
+    attribute: u16,
+    data: &[u8],
+) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::of_attribute(class, attribute)?;
     let row = number.row();
     let value = match row.map(|row| (row, row.kind.parse(data))) {
-        Some((row, Ok(Value::Number(value)))) => Some(format!("{}{}", number_words(row, value), warning(row, value))),
-        Some((_, Ok(Value::Text(text)))) => Some(format!("\"{text}\"")),
-        Some((_, Err(_))) => None,
-        None => Some(hex(data)),
+        Some((row, Ok(Value::Number(value)))) => Ok(format!("{}{}", number_words(row, value), warning(row, value))),
+        Some((_, Ok(Value::Text(text)))) => Ok(format!("\"{text}\"")),
+        Some((_, Err(why))) => Err(why.to_string()),
+        None => Ok(hex(data)),
     };
     Some((parameter_name(number.get()), value))
 }
@@ -173,7 +177,7 @@ pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
 
 /// What speaks against writing a number; empty where nothing does.
 pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
-    let beyond = row.allowed().filter(|range| !range.holds(number));
+    let beyond = row.allowed(Travel::UNKNOWN).filter(|range| !range.holds(number));
     match (row.access, beyond) {
         (Access::Read, _) => "; warning: it can only be read".to_owned(),
         (_, Some(range)) => format!("; warning: it may be {range}"),

@@ -12,7 +12,7 @@ use crate::cli::profiles::show_done;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::profile::hiperdrive::{Image, Item, PlanError, Service};
-use crate::protocol::hiperdrive::Access;
+use crate::protocol::hiperdrive::{Access, Travel};
 use crate::worker::hiperdrive::Change;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
@@ -30,6 +30,9 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     show_done(output, &item.to_string(), &operations, &spent, &[], &said)
 }
 
+/// The position that is set: it has 32 bits, whatever bounds it beside.
+const REFERENCE: u16 = 198;
+
 /// What writing a value comes to. What no device takes is refused before anything is opened.
 fn change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
@@ -42,13 +45,16 @@ fn change(item: Item, text: &str) -> Result<Change> {
         _ => {}
     }
     let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
-    let value = row.check(number, value).map_err(|error| refused(error.into()))?;
+    if (row.number, value) == (47, 0) {
+        return Err(failed(&Text::new("hd_cli.no_service")));
+    }
+    // What the turns of the drive bound the plan looks at: with the scale of the drive both limits can be named.
+    if row.reach.is_none() || row.number == REFERENCE {
+        row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
+    }
     match (row.number, number.drive()) {
-        (47, _) => match Service::of_code(value) {
-            Some(service) => Ok(Change::Do(service)),
-            None => Err(failed(&Text::new("hd_cli.no_service"))),
-        },
-        (198, Some(drive)) => {
+        (47, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
+        (REFERENCE, Some(drive)) => {
             // Of 32 bits.
             let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;
             Ok(Change::SetPosition { drive, position, save: true })

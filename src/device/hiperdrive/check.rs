@@ -9,7 +9,8 @@ use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
 use crate::device::check;
 use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{
-    AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, State, StatusBit, Topology, Variant,
+    AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
+    Variant,
 };
 
 pub use crate::device::check::Verdict;
@@ -164,12 +165,14 @@ pub enum Finding {
         /// Parameter 160.
         upper: i64,
     },
-    /// Limits lie farther apart than the drive turns.
+    /// A limit lies farther from 0 than the drive turns.
     BeyondTravel {
-        /// Turns between them.
+        /// Parameter 158 or 160.
+        limit: i64,
+        /// Its place in turns.
         turns: f64,
-        /// What it turns at most.
-        most: f64,
+        /// The turns that it has either way.
+        most: i32,
     },
     /// The position lies between the limits.
     Within(i64),
@@ -332,10 +335,15 @@ fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict,
     match scale.and_then(|(numerator, denominator)| PositionScale::new(numerator, denominator).ok()) {
         None => findings.push((Verdict::Bad, Finding::BadScale { numerator, denominator })),
         Some(scale) => {
-            let turns = (upper - lower) as f64 / scale.steps_per_turn();
-            let most = drive.variant.row().map(|row| 2.0 * f64::from(row.family.most_turns()));
-            let beyond = most.filter(|most| turns > *most);
-            findings.extend(beyond.map(|most| (Verdict::Bad, Finding::BeyondTravel { turns, most })));
+            let family = drive.variant.row().map(|row| row.family);
+            let travel = Travel { family, scale: Some(scale) };
+            if let Some((family, steps)) = family.zip(travel.steps(Reach::Position)) {
+                let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
+                findings.extend(beyond.map(|limit| {
+                    let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.most_turns());
+                    (Verdict::Bad, Finding::BeyondTravel { limit, turns, most })
+                }));
+            }
         }
     }
     Ok(findings)

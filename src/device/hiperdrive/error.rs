@@ -127,6 +127,20 @@ impl fmt::Display for Refusal {
     }
 }
 
+/// A parameter's number that came with another length than its type has: it is shown nowhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
+pub struct WrongLength {
+    /// Which.
+    pub number: ParameterNumber,
+    /// What it is.
+    pub name: &'static str,
+    /// Bytes of its type.
+    pub expected: usize,
+    /// Bytes that came.
+    pub got: usize,
+}
+
 /// Why something failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
@@ -227,6 +241,9 @@ pub enum Error {
     /// A value that the device refuses, with what it may be at the moment.
     #[error("{0}")]
     Refuses(OutOfRange),
+    /// A parameter's number came with another length than its type has.
+    #[error(transparent)]
+    Length(#[from] WrongLength),
     /// The value does not fit its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value {

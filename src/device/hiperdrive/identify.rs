@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::network::{Network, network};
-use super::{Error, Master};
+use super::{Error, Master, WrongLength};
 use crate::protocol::hiperdrive::{
     Access, Actual, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
 };
@@ -58,6 +58,8 @@ pub struct Survey {
     pub network: Network,
     /// Every parameter of the device and of its drives; what it refuses is left out.
     pub values: BTreeMap<ParameterNumber, Value>,
+    /// Parameters whose numbers came with another length than their types have; they are in no values.
+    pub wrong_lengths: Vec<WrongLength>,
 }
 
 /// What a device and its drives say of themselves.
@@ -205,19 +207,20 @@ pub fn survey(master: &mut Master<'_>, told: Told<'_>) -> Result<Survey, Error> 
     let identity = identify(master, told)?;
     let numbers: Vec<ParameterNumber> = readable(&identity).collect();
     let total = numbers.len() as u64;
-    let mut values = BTreeMap::new();
+    let (mut values, mut wrong_lengths) = (BTreeMap::new(), Vec::new());
     for (done, number) in numbers.into_iter().enumerate() {
         told(done as u64, total, number);
         match master.read(number) {
             Ok(value) => {
                 values.insert(number, value);
             }
+            Err(Error::Length(error)) => wrong_lengths.push(error),
             Err(error) if error.is_unsaid() => {}
             Err(error) => return Err(error),
         }
     }
     let network = network(master)?;
-    Ok(Survey { identity, network, values })
+    Ok(Survey { identity, network, values, wrong_lengths })
 }
 
 /// Every parameter that can be read of a device and its drives.

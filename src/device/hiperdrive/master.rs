@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use connection::Opened;
 
-use super::error::{Asked, Damage, Late, Refusal};
+use super::error::{Asked, Damage, Late, Refusal, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, TRIES};
@@ -20,13 +20,15 @@ use crate::protocol::ethernet_ip::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
     Request,
 };
-use crate::protocol::hiperdrive::{Access, Kind, ParameterNumber, ParameterRow, Topology, Value, ValueError};
+use crate::protocol::hiperdrive::{Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError};
 use crate::units::Moment;
 
 /// Behind bytes that are no frame: silence for so long, and what comes next is one again.
 const QUIET: Duration = Duration::from_millis(50);
 /// A wish to end is heard at least so often.
 const SLICE: Duration = Duration::from_millis(50);
+/// Beyond what the manual promises of something that takes long.
+const SPARE: Duration = Duration::from_millis(500);
 
 /// The host's side of the explicit messages of a device, for one job.
 pub struct Master<'a> {
@@ -51,8 +53,14 @@ impl<D: Into<Damage>> From<D> for Trouble {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Repeats {
     Always,
-    Never,
+    /// It is asked once, and its reply may take so long where that is longer than usual.
+    Never {
+        takes: Option<Duration>,
+    },
 }
+
+/// What is asked once, and answered as soon as anything else.
+const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
     /// A master over a station's wire, for one job.
@@ -97,10 +105,11 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a parameter. What the type of a number is its length says, where the table only assumes it.
+    /// Reads a parameter. A number has the length of its type, or is none.
     ///
     /// # Errors
-    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`]; the way.
+    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`],
+    /// [`Error::Length`]; the way.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == Access::Write {
@@ -112,11 +121,10 @@ impl<'a> Master<'a> {
             Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(asked, number, refusal)?),
             ended => ended?.data,
         };
-        let kind = kind_of_length(row.kind, data.len());
-        if kind != row.kind {
-            self.station.known.kinds.insert(row.number, kind);
-        }
-        kind.parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+        row.kind.parse(&data).map_err(|cause| match cause {
+            ValueError::Length { expected, got } => WrongLength { number, name: row.name, expected, got }.into(),
+            cause => Error::Damaged { asked, tries: 1, cause: cause.into() },
+        })
     }
 
     /// Reads a parameter that is a number.
@@ -151,15 +159,16 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; the way.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = settable(number)?;
-        row.check(number, wanted)?;
-        let kind = self.station.known.kinds.get(&row.number).copied().unwrap_or(row.kind);
-        let data = kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
+        // What its turns bound the plan has looked at.
+        row.check(number, wanted, Travel::UNKNOWN)?;
+        let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let asked = Asked::Set(number);
         let request = Request::set(number.class(), 1, number.attribute(), data);
+        let once = Repeats::Never { takes: row.takes(wanted, self.station.known.topology) };
         let mut tries = 0;
         loop {
             tries += 1;
-            match self.request(asked, &request, Repeats::Never) {
+            match self.request(asked, &request, once) {
                 Ok(_) => return Ok(()),
                 Err(Error::Refused { refusal, .. }) => return Err(self.why_not_set(number, wanted, refusal)?),
                 Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
@@ -190,7 +199,7 @@ impl<'a> Master<'a> {
         Ok(self.request(asked, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
-    /// Sets an attribute of another object, once.
+    /// Sets an attribute of the TCP/IP object, once; it is stored before it is answered.
     ///
     /// # Errors
     /// [`Error::Refused`]; the way.
@@ -200,8 +209,14 @@ impl<'a> Master<'a> {
         (class, attribute): (u16, u16),
         data: Vec<u8>,
     ) -> Result<(), Error> {
-        self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never)?;
+        self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never { takes: Some(STORES) })?;
         Ok(())
+    }
+
+    /// So long one waits for the end of what setting this value of a parameter begins.
+    pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
+        let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
+        Repeats::Never { takes }.within(self.station.timeout)
     }
 
     /// Asks something of an object.
@@ -265,6 +280,7 @@ impl<'a> Master<'a> {
         mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
     ) -> Result<T, Error> {
         let (mut tries, late) = (0, self.station.late);
+        let (usual, within) = (self.station.timeout, repeats.within(self.station.timeout));
         loop {
             tries += 1;
             let trouble = match once(self)? {
@@ -275,8 +291,10 @@ impl<'a> Master<'a> {
                 }
                 Err(trouble) => trouble,
             };
-            let longest = self.station.timeout + self.station.line.margin;
-            let may = self.line.may_ask_again(&mut self.station.line, tries, longest);
+            let longest = within + self.station.line.margin;
+            // What is refused for its session was answered at once.
+            let took = if let Trouble::Status(_) = trouble { usual + self.station.line.margin } else { longest };
+            let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
                 // It was not done: the device has forgotten the session.
                 Trouble::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
@@ -287,7 +305,7 @@ impl<'a> Master<'a> {
                 Trouble::Silence => {
                     let took = self.station.replies.longest();
                     let is_late = self.station.late > late && took >= longest;
-                    let late = is_late.then_some(Late { took, waited: self.station.timeout });
+                    let late = is_late.then_some(Late { took, waited: within });
                     return Err(Error::NoReply { asked, tries, late });
                 }
                 Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
@@ -299,11 +317,12 @@ impl<'a> Master<'a> {
     fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, Trouble>, Error> {
         self.line.start()?;
         let sent_at = self.line.now();
-        frame.context = self.station.begin(sent_at).to_le_bytes();
+        let takes_long = matches!(repeats, Repeats::Never { takes: Some(_) });
+        frame.context = self.station.begin(sent_at, takes_long).to_le_bytes();
         let bytes = frame.emit();
         self.station.line.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
-        let deadline = sent_at + self.station.timeout + self.station.line.margin;
+        let deadline = sent_at + repeats.within(self.station.timeout) + self.station.line.margin;
         let mut heard = Vec::new();
         loop {
             loop {
@@ -379,17 +398,12 @@ const fn does_something(row: &ParameterRow) -> bool {
     matches!(row.number, 47 | 197 | 198 | 199)
 }
 
-/// The kind of a number by the length of what came.
-const fn kind_of_length(assumed: Kind, length: usize) -> Kind {
-    let signed = matches!(assumed, Kind::I8 | Kind::I16 | Kind::I32);
-    match (assumed, length, signed) {
-        (Kind::Text, ..) => Kind::Text,
-        (_, 1, true) => Kind::I8,
-        (_, 1, false) => Kind::U8,
-        (_, 2, true) => Kind::I16,
-        (_, 2, false) => Kind::U16,
-        (_, 4, true) => Kind::I32,
-        (_, 4, false) => Kind::U32,
-        _ => assumed,
+impl Repeats {
+    /// So long a reply may take, beside the margin of the line; `timeout` is the usual.
+    fn within(self, timeout: Duration) -> Duration {
+        match self {
+            Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),
+            Repeats::Always | Repeats::Never { takes: None } => timeout,
+        }
     }
 }

@@ -22,7 +22,7 @@ mod station;
 pub mod write;
 
 pub use discover::{Found, discover};
-pub use error::{Asked, Damage, Error, Late, Refusal};
+pub use error::{Asked, Damage, Error, Late, Refusal, WrongLength};
 pub use identify::{
     DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
 };

@@ -1,7 +1,7 @@
 //! What a session knows about an adapter or a hub, from one job to the next.
 
+use std::collections::VecDeque;
 use std::collections::hash_map::RandomState;
-use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::device::Replies;
 use crate::device::line::LineState;
 use crate::link::{Query, UrlError};
 use crate::protocol::ethernet_ip::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
-use crate::protocol::hiperdrive::{ByteOrder, Kind, Topology};
+use crate::protocol::hiperdrive::{ByteOrder, Topology};
 use crate::units::Moment;
 
 /// Link parameters that describe the connection and nothing of a virtual device.
@@ -34,9 +34,9 @@ pub struct Station {
     pub(super) session: Option<u32>,
     /// The number of the next request.
     pub(super) next: u64,
-    /// Numbers of the last requests that have no reply yet, and when they were sent.
-    open: VecDeque<(u64, Moment)>,
-    /// How long replies take, the late ones as well.
+    /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
+    open: VecDeque<(u64, Moment, bool)>,
+    /// How long replies take, the late ones as well; not those for which the device itself takes long.
     pub(super) replies: Replies,
     /// What has come and is no whole frame.
     pub(super) receiver: Receiver,
@@ -50,12 +50,10 @@ pub struct Station {
 }
 
 /// What is known of the device.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Known {
     /// What it is.
     pub(super) topology: Option<Topology>,
-    /// Of parameters whose numbers are longer or shorter than the table assumes, by the number of drive 1.
-    pub(super) kinds: BTreeMap<u16, Kind>,
 }
 
 impl Station {
@@ -142,18 +140,18 @@ impl Station {
     }
 
     /// A request is sent; gives back its number.
-    pub(super) fn begin(&mut self, at: Moment) -> u64 {
+    pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);
         self.open.truncate(Self::OPEN - 1);
-        self.open.push_front((number, at));
+        self.open.push_front((number, at, takes_long));
         number
     }
 
     /// A frame with this number has come, which answers the request of that number, in time or not.
     pub(super) fn heard(&mut self, number: u64, at: Moment) {
-        if let Some(place) = self.open.iter().position(|(own, _)| *own == number)
-            && let Some((_, sent)) = self.open.remove(place)
+        if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
+            && let Some((_, sent, false)) = self.open.remove(place)
         {
             self.replies.note(at.since(sent));
         }

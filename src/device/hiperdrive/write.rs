@@ -15,7 +15,7 @@ use crate::profile::Consent;
 use crate::profile::hiperdrive::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
 use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration};
 use crate::protocol::hiperdrive::{
-    DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, Topology, nearest_reference,
+    DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };
 
 /// A plan that a person consented to and whose base still holds.
@@ -39,14 +39,6 @@ pub struct Interrupted {
 /// What is told of a write: the operation that begins, from 0.
 pub type News = usize;
 
-/// A save or a recall takes 200 ms at most; so long it is waited for.
-const SAVES: Duration = Duration::from_secs(2);
-/// A presence test takes so long with an adapter (reference 4).
-const ADAPTER_RESETS: Duration = Duration::from_secs(2);
-/// And so long with a hub.
-const HUB_RESETS: Duration = Duration::from_secs(8);
-/// Beyond what the manual promises.
-const SPARE: Duration = Duration::from_millis(500);
 /// Between two looks at parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
 /// Before the first look after something that resets: it may not have begun.
@@ -199,25 +191,21 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
         Service::Recall | Service::Factory | Service::Reset => {}
     }
     let Some(code) = service.code() else { return Ok(()) };
+    // How long it takes depends on it.
+    topology(master)?;
     master.set(ParameterNumber::SAVE, code)?;
-    await_idle(master, service)
+    let patience = master.patience(ParameterNumber::SAVE, code);
+    await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0.
-fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
-    let resets = match topology(master)? {
-        Topology::Adapter => ADAPTER_RESETS,
-        Topology::Hub4 | Topology::Hub8 => HUB_RESETS,
-    };
-    let patience = match service {
-        Service::Save | Service::Recall | Service::Factory => SAVES,
-        Service::Reset | Service::FactoryAll | Service::Acknowledge(_) => resets + SPARE,
-    };
+/// Waits until parameter 47 is 0: the device may answer before it is done.
+fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
         master.wait(BEGINS)?;
     }
     loop {
+        let waited = master.now().since(begun);
         // While it resets, it may refuse to say anything.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
@@ -225,7 +213,6 @@ fn await_idle(master: &mut Master<'_>, service: Service) -> Result<(), Error> {
             Err(error) if error.is_unsaid() => -1,
             Err(error) => return Err(error),
         };
-        let waited = master.now().since(begun);
         if waited >= patience {
             return Err(Error::Busy { reads, milliseconds: waited.as_millis() as u64 });
         }

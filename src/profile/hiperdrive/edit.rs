@@ -4,15 +4,16 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use super::record::REFERENCE;
-use super::{Base, HiperdrivePlan, Image, Item, Op, PlanError, Service};
-use crate::protocol::hiperdrive::{Access, DriveNumber, ParameterNumber, PositionScale, nearest_reference};
+use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
+use crate::protocol::hiperdrive::{Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference};
 
 /// Where drives stand, in steps as scaled (107).
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
 /// Makes a device what is wanted of it: only what differs is written, and saved where it can be. What the wanted image says
 /// nothing about stays as it is. `device` has all that it does speak of and, of each drive whose scale or limits it changes,
-/// all four of those (154 to 160); of a drive whose position is not known, the position is not checked.
+/// all four of those (154 to 160); of a drive whose position is not known, the position is not checked, and of one whose
+/// variant is not, how many turns it has.
 ///
 /// A drive is requested before anything else is written, since that resets it, and given up after all else. In between, drive
 /// by drive, comes the scale of the position, that of the speed and the greatest speed, then the limits in the order in which
@@ -21,17 +22,18 @@ pub type Positions = BTreeMap<DriveNumber, i32>;
 ///
 /// # Errors
 /// See [`PlanError`].
-pub fn plan_edits(device: &Image, wanted: &Image, positions: &Positions) -> Result<HiperdrivePlan, PlanError> {
+pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan, PlanError> {
+    let DeviceState { image: device, positions, .. } = state;
+    let after = device.with(wanted);
     let mut writes = Vec::new();
     for (&number, &new) in &wanted.values {
         let item = Item(number);
         let old = device.get(number).ok_or(PlanError::NotRead { item })?;
         if old != new {
-            check(number, new)?;
+            check(number, new, state.travel(number, &after))?;
             writes.push(Write { number, old, new });
         }
     }
-    let after = device.with(wanted);
     let mut base = device.of(writes.iter().map(|write| write.number));
     let mut upper_first = Vec::new();
     for drive in after.drives() {
@@ -59,8 +61,9 @@ pub fn plan_edits(device: &Image, wanted: &Image, positions: &Positions) -> Resu
 /// this number already, since writing it is what counts.
 ///
 /// # Errors
-/// The position is not within the limits once it is rounded, or the drive is not there.
-pub fn plan_set_position(device: &Image, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
+/// The position is not within the limits once it is rounded, or beyond the drive's turns; or the drive is not there.
+pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
+    let device = &state.image;
     let own = |number| ParameterNumber::of_drive(number, drive);
     let known = |number| own(number).and_then(|number| Some((number, device.get(number)?)));
     let not_read = |number| {
@@ -73,6 +76,10 @@ pub fn plan_set_position(device: &Image, drive: DriveNumber, position: i32) -> R
     let becomes = nearest_reference(position).map_or(i64::from(i32::MAX) + 1, i64::from);
     if !(lower..=upper).contains(&becomes) {
         return Err(PlanError::ReferenceOutside { drive, position, becomes, lower, upper });
+    }
+    // Limits that lie beyond the turns since their scale was changed bound nothing.
+    if let Some(row) = number.row() {
+        row.check(number, becomes, state.travel(number, device))?;
     }
     let values = device.of(PLACE.into_iter().chain([REFERENCE]).filter_map(own));
     let ops = vec![Op::Write { number, old: Some(old), new: becomes }, Op::Service(Service::Save)];
@@ -144,14 +151,14 @@ impl Write {
 }
 
 /// That a parameter may be written at all, and be this number.
-fn check(number: ParameterNumber, value: i64) -> Result<(), PlanError> {
+fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
     let item = Item(number);
     let row = number.row().ok_or(PlanError::NotRead { item })?;
     match (number.base(), row.access) {
         (101..=104, _) => Err(PlanError::Moves { item }),
         (47 | REFERENCE | 199, _) => Err(PlanError::Acts { item }),
         (_, Access::Read) => Err(PlanError::ReadOnly { item }),
-        _ => Ok(row.check(number, value).map(|_| ())?),
+        _ => Ok(row.check(number, value, travel).map(|_| ())?),
     }
 }
 

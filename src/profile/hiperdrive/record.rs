@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Image, Item};
 use crate::profile::ron_text::Unknown;
-use crate::protocol::hiperdrive::{DriveNumber, Topology, Variant};
+use crate::protocol::hiperdrive::{DriveNumber, Family, Topology, Variant};
 
 /// An adapter or a hub as it is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +114,11 @@ impl ProfileIdentity {
 }
 
 impl ProfileDrive {
+    /// What it is one of, as far as its variant is known.
+    pub fn family(&self) -> Option<Family> {
+        self.variant?.row().map(|row| row.family)
+    }
+
     /// A place of which nothing is known.
     pub fn at(number: DriveNumber) -> Self {
         ProfileDrive {

@@ -6,7 +6,7 @@ pub use crate::profile::RestoreOptions;
 use super::plan_edits;
 use super::record::REFERENCE;
 use super::{HiperdrivePlan, HiperdriveProfile, Image, Item, PlanError, Positions, ProfileDrive, ProfileIdentity};
-use crate::protocol::hiperdrive::DriveNumber;
+use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Travel};
 
 /// A device as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,14 @@ pub struct DeviceState {
     pub image: Image,
     /// Where its drives stand.
     pub positions: Positions,
+}
+
+impl DeviceState {
+    /// How far the drive of a parameter turns, in the steps of an image.
+    pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
+        let Some(drive) = number.drive() else { return Travel::UNKNOWN };
+        Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
+    }
 }
 
 /// What a restore would do.
@@ -48,7 +56,7 @@ pub fn plan_restore(
             }
         }
     }
-    let plan = plan_edits(&device.image, &wanted, &device.positions)?;
+    let plan = plan_edits(device, &wanted)?;
     Ok(Restore { plan, unchanged, missing, mounting_left })
 }
 

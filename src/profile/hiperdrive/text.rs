@@ -6,7 +6,7 @@
 use super::{HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
 use crate::profile::ProfileError;
 use crate::profile::ron_text::{Entries, Writer, value_text};
-use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Variant};
+use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Travel, Variant};
 
 const TEXT: &str = "a text";
 const PLACE: &str = "a number from 1 to 8";
@@ -202,7 +202,8 @@ fn read_parameters(
             return Err(wrong(format!("{} is not kept by the device, and no part of a profile", row.name)));
         }
         let value: i64 = value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: NUMBER })?;
-        let value = row.check(number, value).map_err(|error| wrong(error.to_string()))?;
+        // How many turns a number is depends on the drive that it is written into: the plan looks at that.
+        let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.to_string()))?;
         if image.values.insert(number, value).is_some() {
             return Err(wrong(format!("{} stands twice", Item(number))));
         }

@@ -16,6 +16,7 @@ mod scaling;
 mod state;
 mod status_word;
 mod switches;
+mod travel;
 mod value;
 mod variant;
 #[cfg(test)]
@@ -33,8 +34,8 @@ pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
 pub use leds::{
     BUS_LEDS, BusLamp, BusLedRow, BusLight, DriveLight, LedRow, LedSubject, PORT_LEDS, PortLedRow, PortLight,
 };
-pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range};
-pub use parameters::PARAMETERS;
+pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range, SlowSet};
+pub use parameters::{PARAMETERS, STORES};
 pub use pkw::{Answer, Pkw, PkwError, Task};
 pub use process_data::{
     Actual, ByteOrder, ImageError, InImage, Layout, OutData, OutImage, Percent, Setpoint, Topology,
@@ -44,5 +45,6 @@ pub use scaling::{Family, Length, PositionScale, ScaleError, SpeedScale, effecti
 pub use state::{State, TRANSITIONS, Transition, Trigger};
 pub use status_word::{StatusBit, StatusWord};
 pub use switches::AddressSwitch;
-pub use value::{Kind, Value, ValueError};
+pub use travel::{Reach, Travel};
+pub use value::{Kind, Value, ValueError, nominal};
 pub use variant::{VARIANTS, Variant, VariantRow};

@@ -1,9 +1,11 @@
 //! How parameters are numbered, where CIP has them, and what a row of their table says (reference 4 and 7).
 
 use std::fmt;
+use std::time::Duration;
 
 use super::process_data::Topology;
 use super::scaling::{Family, PositionScale};
+use super::travel::{Reach, Travel};
 use super::value::Kind;
 
 /// A drive of a hub: 1 to 8. An adapter has drive 1 alone.
@@ -32,8 +34,23 @@ pub struct ParameterRow {
     pub saved: bool,
     /// What it may be.
     pub range: Range,
+    /// How far from 0 it may be in turns of the drive, beside its range; `None` where turns do not bound it.
+    pub reach: Option<Reach>,
     /// What it is from the factory.
     pub factory: Factory,
+    /// Values that take the device long when they are set; of all others a reply takes as long as of a read.
+    pub slow: &'static [SlowSet],
+}
+
+/// A value whose set is answered when it is done, and how long that may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlowSet {
+    /// What is written.
+    pub value: i64,
+    /// With an adapter.
+    pub adapter: Duration,
+    /// With a hub.
+    pub hub: Duration,
 }
 
 /// What may be done with a parameter.
@@ -184,10 +201,15 @@ impl fmt::Display for ParameterNumber {
 }
 
 impl ParameterRow {
-    /// What it may be, with the limits of its kind where there are no others; `None` for texts.
-    pub fn allowed(&self) -> Option<Range> {
+    /// What it may be, with the limits of its kind where there are no others, and no more turns than the drive has as far as
+    /// those are known; `None` for texts.
+    pub fn allowed(&self, travel: Travel) -> Option<Range> {
         let (low, high) = self.kind.limits()?;
-        Some(if self.range == Range::Any { Range::Within(low, high) } else { self.range })
+        Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
+            (Range::Any, Some(most)) => Range::Within(low.max(-most), high.min(most)),
+            (Range::Any, None) => Range::Within(low, high),
+            (range, _) => range,
+        })
     }
 
     /// That it may be this number. What depends on other parameters the drive checks itself: 160 is above 158, position,
@@ -195,9 +217,16 @@ impl ParameterRow {
     ///
     /// # Errors
     /// [`OutOfRange`] with what it may be. A text may be no number.
-    pub fn check(&self, number: ParameterNumber, value: i64) -> Result<i64, OutOfRange> {
-        let range = self.allowed().unwrap_or(Range::OneOf(&[]));
+    pub fn check(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
+        let range = self.allowed(travel).unwrap_or(Range::OneOf(&[]));
         if range.holds(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
+    }
+
+    /// How long the device may take to answer when this value is set; `None` where that is no longer than any other reply. As
+    /// long as with a hub where it is not known which device it is.
+    pub fn takes(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
+        let slow = self.slow.iter().find(|slow| slow.value == value)?;
+        Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
 
     /// What it is from the factory, with factory scaling; `None` where nothing is said, or the drive finds it out.

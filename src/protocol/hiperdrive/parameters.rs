@@ -1,6 +1,9 @@
 //! All parameters, of the device and of drive 1 (reference 4). Names are ours: the manual's are German.
 
-use super::parameter::{Access, Factory, ParameterRow, Range};
+use std::time::Duration;
+
+use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
+use super::travel::Reach;
 use super::value::Kind;
 use Kind::{I8, I16, I32, Text, U8, U16, U32};
 use Range::{Any, OneOf, Within, WithinOr};
@@ -15,7 +18,9 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
         access: Access::Read,
         saved: false,
         range: Range::Any,
+        reach: None,
         factory: Factory::None,
+        slow: &[],
     }
 }
 
@@ -29,10 +34,50 @@ impl ParameterRow {
     const fn kept(self, range: Range, factory: Factory) -> Self {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
+
+    /// It is no more turns than the drive has.
+    const fn reaching(self, reach: Reach) -> Self {
+        ParameterRow { reach: Some(reach), ..self }
+    }
+
+    /// Some of its values take long.
+    const fn slow(self, slow: &'static [SlowSet]) -> Self {
+        ParameterRow { slow, ..self }
+    }
 }
 
-const fn text(number: u16, name: &'static str) -> ParameterRow {
-    read(number, name, Text, "")
+/// A store in the EEPROM takes so long at most (manual 6.2, parameter 47): so does that of the TCP/IP object, which is stored
+/// with each change (5).
+pub const STORES: Duration = Duration::from_millis(200);
+/// A reset of a drive: as −4 of an adapter, which has one.
+const DRIVE_RESETS: Duration = Duration::from_secs(2);
+/// A reset of all drives of a hub.
+const HUB_RESETS: Duration = Duration::from_secs(8);
+
+/// A save.
+const fn stores(value: i64) -> SlowSet {
+    SlowSet { value, adapter: STORES, hub: STORES }
+}
+
+/// Something with all drives.
+const fn all_drives(value: i64) -> SlowSet {
+    SlowSet { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
+}
+
+/// A reset of one drive.
+const fn one_drive(value: i64) -> SlowSet {
+    SlowSet { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
+}
+
+/// Parameter 47. Of −3, −2 and −1 the manual says nothing (`D`: they hand all parameters to all drives over RS-485; as −4).
+const SAVE_AND_RESET: &[SlowSet] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
+/// Parameter 152: 0 → 1 resets the drive (`D`: how long that takes).
+const REQUEST: &[SlowSet] = &[one_drive(1)];
+/// Parameter 199 (`D`: how long that takes).
+const RESET_DRIVE: &[SlowSet] = &[one_drive(0), one_drive(1)];
+
+const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
+    read(number, name, Text, unit)
 }
 
 const fn register(number: u16, name: &'static str) -> ParameterRow {
@@ -51,17 +96,17 @@ const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
     read(number, name, U16, "").kept(Within(1, 65535), Factory::Number(factory))
 }
 
-/// All of them, by number. Types of 11, 119, 186 and 188 are assumed (`U`): the manual has their bits alone, or nothing.
+/// All of them, by number. That 11 and 119 have a sign is assumed (`U`): the manual has their bits alone.
 pub const PARAMETERS: [ParameterRow; 71] = [
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),
     read(12, "address switch", U16, ""),
-    text(13, "category"),
-    text(15, "name"),
-    text(16, "article number"),
+    text(13, "category", ""),
+    text(15, "name", ""),
+    text(16, "article number", ""),
     read(17, "serial number", U16, ""),
-    text(18, "production date"),
-    text(19, "software version"),
+    text(18, "production date", ""),
+    text(19, "software version", ""),
     register(24, "free register 1"),
     register(26, "free register 2"),
     register(28, "free register 3"),
@@ -72,7 +117,7 @@ pub const PARAMETERS: [ParameterRow; 71] = [
     register(38, "free register 8"),
     register(40, "free register 9"),
     register(42, "free register 10"),
-    read(47, "save and reset", I16, "").written(Within(-4, 1), Factory::Number(0)),
+    read(47, "save and reset", I16, "").written(OneOf(&[-4, -3, -2, -1, 1]), Factory::None).slow(SAVE_AND_RESET),
     read(101, "control word", U16, "").written(Any, Factory::Number(0)),
     percent(102, "speed"),
     percent(103, "torque"),
@@ -93,35 +138,36 @@ pub const PARAMETERS: [ParameterRow; 71] = [
     error(118, "communication error"),
     read(119, "drive temperature", I8, "°C"),
     read(120, "variant", U16, ""),
-    text(121, "drive name"),
-    text(122, "drive article number"),
-    text(123, "drive serial number"),
-    text(124, "drive production date"),
-    text(125, "drive software version"),
-    text(126, "nominal voltage"),
-    text(127, "nominal current"),
-    text(128, "nominal torque"),
-    text(129, "nominal speed"),
-    read(152, "requested", U8, "").kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 }),
+    text(121, "drive name", ""),
+    text(122, "drive article number", ""),
+    text(123, "drive serial number", ""),
+    text(124, "drive production date", ""),
+    text(125, "drive software version", ""),
+    text(126, "nominal voltage", "V"),
+    text(127, "nominal current", "A"),
+    text(128, "nominal torque", "Nm"),
+    text(129, "nominal speed", "rpm"),
+    read(152, "requested", U8, "").kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 }).slow(REQUEST),
     scale(154, "position scale numerator", 256),
     scale(156, "position scale denominator", 1),
-    read(158, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)),
-    read(160, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)),
+    read(158, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(Reach::Position),
+    read(160, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(Reach::Position),
     scale(162, "speed scale numerator", 10),
     scale(164, "speed scale denominator", 1),
     read(166, "maximum speed", U16, "0.1 rpm").kept(Within(5, 350), Factory::Number(350)),
-    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)),
+    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)).reaching(Reach::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
-    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)),
+    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)).reaching(Reach::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
     read(182, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
-    read(186, "RS-485 time-out", U8, "0.1 s").kept(WithinOr(1, 100, 255), Factory::Number(20)),
+    read(186, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, 255), Factory::Number(20)),
     read(188, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
     read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)),
     read(192, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
     read(197, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
-    read(198, "set actual position", I32, "steps").kept(Any, Factory::Number(0)),
-    ParameterRow { access: Access::Write, ..read(199, "reset drive", U8, "").written(Within(0, 1), Factory::None) },
+    read(198, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),
+    ParameterRow { access: Access::Write, ..read(199, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
+        .slow(RESET_DRIVE),
 ];

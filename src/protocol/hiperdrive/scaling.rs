@@ -111,8 +111,12 @@ impl PositionScale {
 
     /// Steps of so many turns, rounded towards 0; `None` where they do not fit into 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
-        let steps = i64::from(turns) * UNIT * i64::from(self.numerator) / i64::from(self.denominator);
-        i32::try_from(steps).ok()
+        i32::try_from(self.whole_steps(turns)).ok()
+    }
+
+    /// Steps of so many turns, rounded towards 0, whether they fit into 32 bits or not.
+    pub fn whole_steps(self, turns: i32) -> i64 {
+        i64::from(turns) * UNIT * i64::from(self.numerator) / i64::from(self.denominator)
     }
 
     /// Turns of so many steps.

@@ -118,6 +118,12 @@ impl Kind {
     }
 }
 
+/// What a nominal datum says (parameters 126 to 129): a number, of tenths where an `A` stands before it (manual 6.2).
+pub fn nominal(text: &str) -> Option<f64> {
+    let (digits, by) = text.strip_prefix('A').map_or((text, 1.0), |tenths| (tenths, 10.0));
+    digits.parse::<u32>().ok().map(|number| f64::from(number) / by)
+}
+
 fn text(data: &[u8]) -> String {
     let characters = match data {
         [length, characters @ ..] if usize::from(*length) == characters.len() && *length < b' ' => characters,

@@ -9,6 +9,7 @@ use ControlBit as C;
 use StatusBit as S;
 
 mod numbers;
+mod table;
 
 const SINGLE: Layout = Layout { topology: Topology::Adapter, pkw: true, order: ByteOrder::Little };
 const BARE: Layout = Layout { pkw: false, ..SINGLE };

@@ -1,7 +1,10 @@
 //! The settings of virtual drives and what stands in front of them, as the query of a `sim:` link gives them:
 //! `hub=4&drives=1,0,1&position=65536`. It opens nothing.
 
+use std::time::Duration;
+
 use super::axis::{Defect, Load};
+use super::station::RESETS;
 use crate::protocol::hiperdrive::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
@@ -17,6 +20,7 @@ pub struct Config {
     pub(super) requested: Option<bool>,
     pub(super) position: i32,
     pub(super) speed: Option<u16>,
+    pub(super) resets: Duration,
     load: u8,
     blocked: bool,
     defect: Option<Defect>,
@@ -41,6 +45,7 @@ impl Default for Config {
             requested: None,
             position: 0,
             speed: None,
+            resets: RESETS,
             load: Load::default().percent,
             blocked: false,
             defect: None,
@@ -76,11 +81,12 @@ impl Config {
     /// | `s3` | switch S3, 0…9; away from 0 nothing moves from the bus |
     /// | `switch` | address switch, 0…99 |
     /// | `supply` | control supply in volts |
+    /// | `reset` | milliseconds that a reset of all drives takes (47 = −4), 0…8000: it is answered when it is done |
     /// | `serial`, `name` | parameters 17 and 15 |
     /// | `order` | `little` or `big`: of the numbers in process data (`U`) |
     /// | `text` | `plain`, or `counted` by a byte in front: texts of parameters (`U`) |
     /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets |
-    pub const KEYS: [&str; 19] = [
+    pub const KEYS: [&str; 20] = [
         "hub",
         "drives",
         "variant",
@@ -94,6 +100,7 @@ impl Config {
         "s3",
         "switch",
         "supply",
+        "reset",
         "serial",
         "name",
         "order",
@@ -158,6 +165,10 @@ impl Config {
             "supply" => {
                 // At most 1000 tenths.
                 self.supply_tenths = (setting.decimal(0.0..=100.0, "volts from 0 to 100")? * 10.0).round() as u16;
+            }
+            "reset" => {
+                let ms: u16 = setting.within(0..=8000, "milliseconds from 0 to 8000")?;
+                self.resets = Duration::from_millis(ms.into());
             }
             "serial" => self.serial_number = setting.number("a number from 0 to 65535")?,
             "name" => {
@@ -227,7 +238,6 @@ mod tests {
     use crate::sim::setting::pairs;
     use crate::units::Moment;
     use proptest::prelude::*;
-    use std::time::Duration;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
         Config::from_pairs(&pairs(query))
@@ -236,7 +246,7 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&defect=reversed&\
-                     temperature=-12.5&s3=2&switch=17&supply=23.5&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
+                     temperature=-12.5&s3=2&switch=17&supply=23.5&reset=8000&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
                      fault=drop:0.25";
         assert_eq!(query.split('&').count(), Config::KEYS.len());
         let expected = Config {
@@ -246,6 +256,7 @@ mod tests {
             requested: Some(true),
             position: -100,
             speed: Some(200),
+            resets: Duration::from_secs(8),
             load: 60,
             blocked: true,
             defect: Some(Defect::Reversed),
@@ -285,7 +296,7 @@ mod tests {
             assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
         }
         let wrong = "drives=2 drives= variant=0 variant=14 variant=HDA requested=2 position=2147483648 position=1.5 speed=4 speed=351 \
-                     load=201 blocked=1 temperature=NaN temperature=121 s3=10 switch=100 supply=-1 serial=65536 name=Ü order=le \
+                     load=201 blocked=1 temperature=NaN temperature=121 s3=10 switch=100 supply=-1 reset=8001 serial=65536 name=Ü order=le \
                      text=raw seed=-1";
         for query in wrong.split_whitespace() {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");

@@ -11,7 +11,7 @@ use super::axis::{Axis, Came, Load, TICK, TURN, Wanted};
 use super::memory::Memory;
 use crate::protocol::hiperdrive::{
     Actual, Begins, ControlBit, ControlWord, ErrorCode, Family, OutData, PositionScale, SpeedScale, State, StatusBit,
-    StatusWord, Topology, Trigger, Variant, effective_torque,
+    StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
 };
 use crate::units::Moment;
 
@@ -192,6 +192,11 @@ impl Drive {
     pub(super) fn position(&self) -> i32 {
         // A cast of a float saturates.
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
+    }
+
+    /// Its turns, in steps as scaled.
+    pub(super) fn travel(&self) -> Travel {
+        Travel { family: self.variant.row().map(|row| row.family), scale: Some(self.scale()) }
     }
 
     pub(super) fn scale(&self) -> PositionScale {

@@ -8,7 +8,8 @@
 //! | `drive` | a drive: its state, its motion, its faults |
 //! | `parameters` | what reading and writing a drive's parameters does |
 //! | `hindrance` | writes that are refused, or cut off in the middle |
-//! | `station` | the drives together: process data, parameter words, save and reset, the lost master |
+//! | `station` | the drives together: process data, save and reset, the lost master |
+//! | `words` | answers to parameter words |
 //! | `config` | the settings of a `sim:` link |
 //! | `target` | frames and packets of EtherNet/IP in front of a station |
 
@@ -22,6 +23,7 @@ mod station;
 mod target;
 #[cfg(test)]
 mod tests;
+mod words;
 
 pub use axis::{Defect, Load};
 pub use config::Config;

@@ -78,6 +78,11 @@ impl Drive {
         Some(Value::Number(value))
     }
 
+    /// It starts anew when this is written: 0 → 1 of 152, and 199.
+    pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
+        number == 199 || (number, value) == (152, 1) && self.memory.get(152) == Some(0)
+    }
+
     /// A parameter by the number of drive 1 is written; what its range says has been looked at.
     pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
         self.advance(now);
@@ -104,7 +109,11 @@ impl Drive {
                 return Ok(());
             }
             _ => {
+                let resets = self.is_reset_by(number, value);
                 self.memory.set(number, value);
+                if resets {
+                    self.reset(now);
+                }
                 return Ok(());
             }
         }

@@ -1,4 +1,4 @@
-//! The drives of an adapter or a hub together: process data, parameter words, parameters, saving, the lost master.
+//! The drives of an adapter or a hub together: process data, parameters, saving, the lost master.
 //!
 //! Chosen here (`U`): a connection that ends, in whatever way, is a lost master; a packet with an idle header stops as control
 //! words of 0 do; while it saves or resets, 47 is 1 and nothing is written; a reset drive has its saved parameters; of an empty
@@ -11,10 +11,10 @@ use super::config::Config;
 use super::drive::Drive;
 use super::hindrance::{Hindered, Hindrance};
 use super::memory::Memory;
-use super::parameters::{Refused, element};
+use super::parameters::Refused;
 use crate::protocol::hiperdrive::{
-    Access, Actual, DriveNumber, Family, InImage, Kind, OutData, OutImage, ParameterNumber, ParameterRow, Pkw,
-    PkwError, Task, Topology, Value, Variant,
+    Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
+    Travel, Value, Variant,
 };
 use crate::units::Moment;
 
@@ -38,8 +38,13 @@ pub struct Station {
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// The parameter word that is answered, with its answer.
+    /// When what was written last is answered: what resets drives is answered once it is done.
+    answers_at: Option<Moment>,
+    /// The parameter word that was taken, with the answer that stands there.
     words: (Pkw, Pkw),
+    /// The answer to it, and when it is there.
+    answers: Option<(Moment, Pkw)>,
+    resets: Duration,
     plate: Plate,
     store: Store,
     hindered: Hindered,
@@ -74,7 +79,10 @@ struct Master {
 
 /// Chosen, within what the manual promises.
 const SAVES: Duration = Duration::from_millis(150);
-const RESETS: Duration = Duration::from_secs(1);
+/// Of all drives, where the settings do not say how long.
+pub(super) const RESETS: Duration = Duration::from_secs(1);
+/// Of one drive.
+const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for Setup {
     /// An adapter with a drive HDA30A.
@@ -100,7 +108,10 @@ impl Station {
             memory,
             master: None,
             busy_until: Moment::START,
+            answers_at: None,
             words: Default::default(),
+            answers: None,
+            resets: RESETS,
             plate,
             store: Store::default(),
             hindered: Hindered::default(),
@@ -114,6 +125,7 @@ impl Station {
         let mut station = Station::new(setup);
         station.plate = Plate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths };
         station.store.dies_in = config.faults.die_in_store();
+        station.resets = config.resets;
         for drive in station.present() {
             drive.axis = Axis::at(config.position.into());
             config.requested.iter().for_each(|requested| drive.memory.preset(152, i64::from(*requested)));
@@ -194,13 +206,18 @@ impl Station {
             }
         }
         if let Some(request) = image.pkw.filter(|request| *request != self.words.0) {
-            self.words = (request, self.answer(now, request));
+            self.words.0 = request;
+            let answer = self.answer(now, request);
+            self.answers = Some((self.answers_at().unwrap_or(now), answer));
         }
     }
 
     /// Process data as they are sent at a moment.
     pub fn image(&mut self, now: Moment) -> InImage {
         self.advance(now);
+        if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {
+            self.words.1 = answer;
+        }
         let actual = |drive: &mut Option<Drive>| drive.as_mut().map_or(Actual::default(), |drive| drive.actual(now));
         InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
@@ -216,6 +233,7 @@ impl Station {
         self.advance(now);
         self.memory.restart();
         (self.master, self.busy_until, self.words) = (None, now, Default::default());
+        (self.answers_at, self.answers) = (None, None);
         (self.store.dies_at, self.store.dead) = (None, false);
         self.reset(now);
     }
@@ -226,6 +244,7 @@ impl Station {
     /// [`Refused`] for one that there is not, also of a drive that is not there.
     pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
         self.advance(now);
+        self.answers_at = None;
         let row = number.row().ok_or(Refused::Unknown)?;
         let Some(drive) = number.drive() else { return self.read_own(now, row).ok_or(Refused::Unknown) };
         if drive.get() > self.setup.topology.drives() {
@@ -238,12 +257,18 @@ impl Station {
         }
     }
 
+    /// When what was written last is answered, where that is not at once; asked for once.
+    pub const fn answers_at(&mut self) -> Option<Moment> {
+        self.answers_at.take()
+    }
+
     /// Writes a parameter.
     ///
     /// # Errors
     /// [`Refused`]; nothing was written.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
         self.advance(now);
+        self.answers_at = None;
         self.hindered.write(number)?;
         let row = number.row().ok_or(Refused::Unknown)?;
         let place = number.drive().filter(|drive| drive.get() > self.setup.topology.drives());
@@ -263,13 +288,18 @@ impl Station {
         row: &ParameterRow,
         value: i64,
     ) -> Result<(), Refused> {
-        let fits = row.check(own, value).is_ok();
         match own.drive() {
             Some(number) => {
                 let drive = self.drive(number).ok_or(Refused::State)?;
-                if fits { drive.write(now, row.number, value) } else { Err(drive.refuses()) }
+                if row.check(own, value, drive.travel()).is_err() {
+                    return Err(drive.refuses());
+                }
+                let resets = drive.is_reset_by(row.number, value);
+                drive.write(now, row.number, value)?;
+                self.answers_at = resets.then(|| now + DRIVE_RESETS);
+                Ok(())
             }
-            None if !fits => Err(Refused::Value),
+            None if row.check(own, value, Travel::UNKNOWN).is_err() => Err(Refused::Value),
             None if own == ParameterNumber::SAVE => {
                 self.keep_or_reset(now, value);
                 Ok(())
@@ -285,7 +315,8 @@ impl Station {
     fn keep_or_reset(&mut self, now: Moment, value: i64) {
         if value == -4 {
             self.reset(now);
-            self.busy_until = now + RESETS;
+            self.busy_until = now + self.resets;
+            self.answers_at = Some(self.busy_until);
             return;
         }
         let mut keep: fn(&mut Memory) = Memory::keep;
@@ -338,58 +369,6 @@ impl Station {
             number => self.memory.get(number)?,
         };
         Some(Value::Number(number))
-    }
-
-    /// The answer to a parameter word.
-    fn answer(&mut self, now: Moment, request: Pkw) -> Pkw {
-        let reply = |code: u16, value: u32| Pkw { pke: code << 12 | request.number(), ind: request.ind, pwe: value };
-        let refused = |error: PkwError| reply(7, error.code());
-        let number = ParameterNumber::new(request.number());
-        let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
-            return if request.task() == Some(Task::None) { Pkw::default() } else { refused(PkwError::NO_PARAMETER) };
-        };
-        let wide = row.kind.length() == Some(4);
-        match (request.task(), row.kind) {
-            (Some(Task::None), _) => Pkw::default(),
-            (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),
-            (Some(Task::Read), _) => match self.read(now, number) {
-                // Of a smaller number its lower bits are all there is.
-                Ok(Value::Number(value)) => {
-                    reply(if wide { 2 } else { 1 }, if wide { value as u32 } else { (value as u16).into() })
-                }
-                Ok(Value::Text(_)) => refused(PkwError::TYPE),
-                Err(why) => refused(why.error()),
-            },
-            (Some(Task::WriteWord), _) if wide || row.kind == Kind::Text => refused(PkwError::TYPE),
-            (Some(Task::WriteDouble), _) if !wide => refused(PkwError::TYPE),
-            (Some(Task::WriteWord | Task::WriteDouble), kind) => {
-                let value = match kind {
-                    Kind::I32 => i64::from(request.pwe.cast_signed()),
-                    Kind::I8 | Kind::I16 => i64::from((request.pwe as u16).cast_signed()),
-                    _ if wide => request.pwe.into(),
-                    _ => (request.pwe & 0xFFFF).into(),
-                };
-                match self.write(now, number, &Value::Number(value)) {
-                    Ok(()) => reply(if wide { 2 } else { 1 }, request.pwe),
-                    Err(why) => refused(why.error()),
-                }
-            }
-            (Some(Task::ReadElement | Task::Count), Kind::Text) => {
-                let text = match self.read(now, number) {
-                    Ok(Value::Text(text)) => text,
-                    Ok(Value::Number(_)) => return refused(PkwError::TYPE),
-                    Err(why) => return refused(why.error()),
-                };
-                if request.task() == Some(Task::Count) {
-                    // A text has some dozen characters.
-                    return reply(6, text.len().div_ceil(4) as u32);
-                }
-                element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))
-            }
-            (Some(Task::WriteElementWord | Task::WriteElementDouble), Kind::Text) => refused(PkwError::READ_ONLY),
-            (Some(_), _) => refused(PkwError::NO_ARRAY),
-            (None, _) => refused(PkwError::OTHER),
-        }
     }
 
     fn present(&mut self) -> impl Iterator<Item = &mut Drive> {

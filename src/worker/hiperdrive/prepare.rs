@@ -36,17 +36,17 @@ pub(super) fn prepare(
         }
         Change::Write(wanted) => {
             let (identity, state) = state(&mut master, beside(wanted))?;
-            let plan = plan_edits(&state.image, wanted, &state.positions)?;
+            let plan = plan_edits(&state, wanted)?;
             (identity, state.image, only(plan))
         }
         Change::Try(wanted) => {
             let (identity, state) = state(&mut master, beside(wanted))?;
-            let plan = plan_edits(&state.image, wanted, &state.positions)?.without_save();
+            let plan = plan_edits(&state, wanted)?.without_save();
             (identity, state.image, only(plan))
         }
         Change::SetPosition { drive, position, save } => {
             let (identity, state) = state(&mut master, Vec::new())?;
-            let plan = plan_set_position(&state.image, *drive, *position)?;
+            let plan = plan_set_position(&state, *drive, *position)?;
             (identity, state.image, only(if *save { plan } else { plan.without_save() }))
         }
         Change::Do(service) => {

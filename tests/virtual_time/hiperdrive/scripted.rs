@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::hiperdrive::{Asked, Damage, Error, Master, Station, read_rules};
+use encoder_studio::device::hiperdrive::{Asked, Error, Master, Station, read_rules};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
 use encoder_studio::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
 use encoder_studio::protocol::hiperdrive::{Topology, Value};
@@ -196,21 +196,60 @@ fn other_refusals_of_a_frame_are_told() {
 }
 
 #[test]
-fn values_are_taken_as_long_as_they_come() {
+fn values_are_of_their_type_and_sign() {
     for (own, cip, value) in [
         (119, "8E 00 00 00 1F", Value::Number(31)),
         (119, "8E 00 00 00 F6", Value::Number(-10)),
-        (119, "8E 00 00 00 F6 FF", Value::Number(-10)),
-        (11, "8E 00 00 00 1F", Value::Number(31)),
+        (11, "8E 00 00 00 1F 00", Value::Number(31)),
+        (11, "8E 00 00 00 F6 FF", Value::Number(-10)),
+        // Issue 21.9: 186 has 16 bits (manual 6.2).
         (186, "8E 00 00 00 FF 00", Value::Number(255)),
-        (188, "8E 00 00 00 01 00 00 00", Value::Number(1)),
+        (188, "8E 00 00 00 FD", Value::Number(253)),
+        (24, "8E 00 00 00 FF FF FF FF", Value::Number(4_294_967_295)),
+        (106, "8E 00 00 00 FF FF", Value::Number(-1)),
+        (107, "8E 00 00 00 FF FF FF FF", Value::Number(-1)),
         (13, "8E 00 00 00 48 49 50 45", Value::Text("HIPE".to_owned())),
         (13, "8E 00 00 00 04 48 49 50 45", Value::Text("HIPE".to_owned())),
     ] {
         assert_eq!(Desk::with([Act::Reply(cip)]).read(own).unwrap(), value, "{own}: {cip}");
     }
-    let error = Desk::with([Act::Reply("8E 00 00 00 01 02 03")]).read(107).unwrap_err();
-    assert!(matches!(error, Error::Damaged { cause: Damage::Value(_), .. }), "{error}");
+}
+
+/// Issue 21.9: a number that comes with another length than its type has is refused with both lengths, whatever asks for it.
+#[test]
+fn a_number_of_another_length_is_refused_with_both() {
+    const REPLIES: [&str; 5] =
+        ["8E 00 00 00", "8E 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 01 00 00", "8E 00 00 00 01 00 00 00"];
+    // Bits of the manual's table (6.2).
+    for (own, length) in
+        [(11, 2), (47, 2), (107, 4), (108, 2), (119, 1), (152, 1), (158, 4), (182, 2), (186, 2), (188, 1), (190, 4)]
+    {
+        for (got, reply) in REPLIES.into_iter().enumerate() {
+            let mut desk = Desk::with([Act::Reply(reply)]);
+            match desk.read(own) {
+                Ok(value) => assert_eq!((got, value), (length, Value::Number(1)), "{own}"),
+                Err(Error::Length(error)) => {
+                    assert_eq!((error.number, error.expected, error.got), (number(own), length, got), "{own}");
+                    assert!(got != length);
+                }
+                Err(error) => panic!("{own}: {error}"),
+            }
+            assert_eq!(desk.sent().len(), 2, "it is no damage of the way, and not asked again");
+        }
+    }
+    let error = Desk::with([Act::Reply("8E 00 00 00 02 00")]).read(107).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "parameter 107 (actual position) has the wrong length (bytes received: 2, expected: 4)"
+    );
+    // What rules a drive is not ruled by half a number.
+    let replies = ["8E 00 00 00 01", "8E 00 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 00 FF"].map(Act::Reply);
+    let error = Desk::with(replies).ask(|master| read_rules(master, drive(1))).unwrap_err();
+    assert_eq!(error.to_string(), "parameter 158 (lower limit) has the wrong length (bytes received: 2, expected: 4)");
+    // Nor is it said why something was refused by it: 120 of one byte tells of no empty place.
+    let refused =
+        Desk::with(["8E 00 0C 00", "8E 00 00 00 00", "8E 00 00 00 01"].map(Act::Reply)).read(258).unwrap_err();
+    assert!(matches!(refused, Error::Refused { .. }), "{refused}");
 }
 
 #[test]

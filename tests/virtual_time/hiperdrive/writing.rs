@@ -1,7 +1,7 @@
 //! What is written: exactly what was planned, each read back, then one save; and what is refused names why.
 
 use encoder_studio::device::hiperdrive::dead_man::Lock;
-use encoder_studio::device::hiperdrive::{Error, LimitsSeen};
+use encoder_studio::device::hiperdrive::{Asked, Error, LimitsSeen};
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
@@ -115,8 +115,9 @@ fn values_out_of_range_name_both_limits_whoever_refuses_them() {
     stand.target.with(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
     let error = device_error(stand.commit(prepared));
     let Error::Refuses(out) = &error else { panic!("{error}") };
-    assert_eq!(out.range, Range::Within(i64::from(i32::MIN), 640), "no lower limit above the position");
-    assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000: it may be -2147483648 to 640");
+    // 512 turns of 65536 steps.
+    assert_eq!(out.range, Range::Within(-33_554_432, 640), "no lower limit above the position");
+    assert_eq!(error.to_string(), "parameter 158 (lower limit) cannot be 60000: it may be -33554432 to 640");
 }
 
 #[test]
@@ -153,6 +154,50 @@ fn services_wait_until_they_are_done() {
     assert!(took < std::time::Duration::from_secs(9), "{took:?}");
     let prepared = stand.prepare(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
+}
+
+/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). So long is waited for, it
+/// is sent once, and it tells nothing of how fast the network is.
+#[test]
+fn a_presence_test_is_given_the_time_of_the_manual() {
+    for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
+        let mut stand = Stand::new(query);
+        let begun = stand.elapsed();
+        stand.change(Change::Do(Service::Reset)).unwrap_or_else(|why| panic!("{query}: {why}"));
+        let took = (stand.elapsed() - begun).as_millis();
+        assert!((ms..ms + 1000).contains(&took), "{query}: {took} ms");
+        assert_eq!(stand.sets(), [(47, vec![0xFC, 0xFF])], "{query}");
+        let longest = stand.session.station().replies().longest();
+        assert!(longest.as_millis() < 100, "{query}: {longest:?} of a usual reply");
+    }
+}
+
+/// Issue 21.8: what is slower than the manual allows, and what falls silent while it is waited for, ends in time (CLI.md: within
+/// 10 s), is sent once, and is told as what it is: nobody knows whether it was done.
+#[test]
+fn a_presence_test_that_is_not_answered_ends_in_time() {
+    // As many frames as come before it.
+    let mut whole = Stand::new("hub=8");
+    whole.change(Change::Do(Service::Reset)).unwrap();
+    let is_set = |frame: &Vec<u8>| frame.ends_with(&[0x10, 3, 0x20, 0x64, 0x24, 1, 0x30, 47, 0xFC, 0xFF]);
+    let before = whole.tap().sent.iter().position(is_set).unwrap();
+    let silent = format!("hub=8&fault=silent-after:{before}");
+    for (query, within) in [("reset=8000", 2000..3000), (silent.as_str(), 8000..9500)] {
+        let mut stand = Stand::new(query);
+        let prepared = stand.prepare(Change::Do(Service::Reset)).unwrap();
+        let begun = stand.elapsed();
+        let ended = stand.commit(prepared);
+        let took = (stand.elapsed() - begun).as_millis();
+        let Err(JobError::Interrupted { interrupted, .. }) = ended else { panic!("{query}: {ended:?}") };
+        assert_eq!(
+            interrupted.cause,
+            Error::NoReply { asked: Asked::Set(number(47)), tries: 1, late: None },
+            "{query}"
+        );
+        assert_eq!((interrupted.unclear.as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");
+        assert!(within.contains(&took), "{query}: {took} ms");
+        assert_eq!(stand.sets(), [(47, vec![0xFC, 0xFF])], "{query}");
+    }
 }
 
 #[test]

@@ -83,8 +83,8 @@ fn finding(finding: &Finding) -> Text {
         Finding::LimitsCrossed { lower, upper } => {
             Text::new("hd_check.crossed").with("lower", lower).with("upper", upper)
         }
-        Finding::BeyondTravel { turns, most } => {
-            Text::new("hd_check.beyond").with_number("turns", *turns, 1).with_number("most", *most, 0)
+        Finding::BeyondTravel { limit, turns, most } => {
+            Text::new("hd_check.beyond").with("limit", limit).with_number("turns", *turns, 1).with("most", most)
         }
         Finding::Within(position) => Text::new("hd_check.within").with("position", position),
         Finding::Outside { position, lower, upper } => {

@@ -3,7 +3,7 @@
 use super::names::parameter;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
-use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal};
+use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal, WrongLength};
 use crate::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
 use crate::protocol::hiperdrive::{OutOfRange, ParameterNumber, Range, Topology};
 
@@ -51,6 +51,7 @@ pub fn device(error: &Error) -> Text {
         Error::NotRequested { drive } => Text::new("hd_said.not_requested").with("drive", drive.get()),
         Error::OutOfRange(error) => out_of_range(error),
         Error::Refuses(error) => ranged("hd_said.refuses", error),
+        Error::Length(error) => wrong_length(error),
         Error::Value { number, cause } => named("hd_said.value", *number).with("why", cause),
         Error::ReadOnly { number, .. } => named("hd_said.read_only", *number),
         Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
@@ -75,6 +76,11 @@ pub fn out_of_range(error: &OutOfRange) -> Text {
         Range::OneOf([]) => named("hd_said.a_text", error.number),
         _ => ranged("hd_said.out_of_range", error),
     }
+}
+
+/// A number that came with another length than its type has.
+pub fn wrong_length(error: &WrongLength) -> Text {
+    named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
 
 /// What a parameter may be, in a sentence.

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use super::{device, ended, lock, plan, warning, weight};
+use super::{device, ended, lock, plan, warning, weight, wrong_length};
 use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
 use crate::device::hiperdrive::dead_man::{Ended, Lock, Refusal};
-use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal as Refused};
+use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal as Refused, WrongLength};
 use crate::profile::hiperdrive::{Item, PlanError, Warning};
 use crate::protocol::ethernet_ip::{AddressError, GeneralStatus, Service};
 use crate::protocol::hiperdrive::{
@@ -57,6 +57,7 @@ fn errors_say_what_happened_and_what_to_do() {
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
     let late = Late { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
     let ranged = |range| OutOfRange { number: number(186), name: "RS-485 time-out", value: 0, range };
+    let length = WrongLength { number: number(107), name: "actual position", expected: 4, got: 2 };
     let errors = [
         Error::NeverSilent,
         Error::NoReply { asked: Asked::Session, tries: 5, late: None },
@@ -72,6 +73,7 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::OutOfRange(ranged(Range::WithinOr(1, 100, 255))),
         Error::Refuses(ranged(Range::OneOf(&[9600, 19200, 38400]))),
         Error::Value { number: number(158), cause: ValueError::Kind("a number is expected, not a text") },
+        length.into(),
         Error::ReadOnly { number: number(107), name: "actual position" },
         Error::WriteOnly { number: number(199), name: "reset drive" },
         Error::Motion { number: number(104), name: "target position" },
@@ -85,6 +87,13 @@ fn errors_say_what_happened_and_what_to_do() {
     ];
     for error in errors {
         says(&device(&error), 2);
+    }
+    // Issue 21.9: both lengths, in both languages.
+    for (language, said) in [
+        (Language::English, "Parameter 107 (Actual position) has the wrong length (bytes received: 2, expected: 4)"),
+        (Language::German, "Parameter 107 (Istposition) hat die falsche Länge (Bytes empfangen: 2, erwartet: 4)"),
+    ] {
+        assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));
     }
     // Where more time may help, the command line says how to give it, and the window speaks of no link.
     for late in [None, Some(late)] {

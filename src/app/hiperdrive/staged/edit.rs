@@ -1,6 +1,6 @@
 //! The edits: what each makes of what is wanted, and why it may not be.
 
-use super::{Ground, is_editable};
+use super::{Families, Ground, is_editable, travel};
 use crate::app::hiperdrive::ruler::Ruler;
 use crate::profile::hiperdrive::Image;
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
@@ -72,10 +72,15 @@ pub enum EditError {
 }
 
 /// What is wanted after a change.
-pub(super) fn edited((base, wanted): (&Image, &Image), edit: &Edit, ground: Ground) -> Result<Image, EditError> {
+pub(super) fn edited(
+    (base, wanted): (&Image, &Image),
+    edit: &Edit,
+    ground: Ground,
+    families: &Families,
+) -> Result<Image, EditError> {
     let mut after = wanted.clone();
     match *edit {
-        Edit::Set(number, value) => set(&mut after, number, value, ground)?,
+        Edit::Set(number, value) => set(&mut after, number, value, ground, families)?,
         Edit::Revert(number) => {
             match base.get(number) {
                 Some(value) => after.values.insert(number, value),
@@ -90,16 +95,16 @@ pub(super) fn edited((base, wanted): (&Image, &Image), edit: &Edit, ground: Grou
             if lower >= upper {
                 return Err(EditError::Crossed { lower, upper });
             }
-            put(&mut after, drive, [(158, lower), (160, upper)], ground)?;
+            put(&mut after, drive, [(158, lower), (160, upper)], ground, families)?;
         }
         Edit::Scale { drive, scale, limits } => {
             let before = wanted.scale(drive).unwrap_or(PositionScale::FACTORY);
             let parts = [(154, i64::from(scale.numerator())), (156, i64::from(scale.denominator()))];
-            put(&mut after, drive, parts, ground)?;
+            put(&mut after, drive, parts, ground, families)?;
             if let (LimitsStay::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
                 let ruler = Ruler { scale: before, pitch: None };
                 let moved = [(158, ruler.rescaled(lower, scale)), (160, ruler.rescaled(upper, scale))];
-                put(&mut after, drive, moved, ground)?;
+                put(&mut after, drive, moved, ground, families)?;
             }
         }
     }
@@ -111,16 +116,23 @@ fn put<const N: usize>(
     drive: DriveNumber,
     values: [(u16, i64); N],
     ground: Ground,
+    families: &Families,
 ) -> Result<(), EditError> {
     for (number, value) in values {
         if let Some(number) = ParameterNumber::of_drive(number, drive) {
-            set(after, number, value, ground)?;
+            set(after, number, value, ground, families)?;
         }
     }
     Ok(())
 }
 
-fn set(after: &mut Image, number: ParameterNumber, value: i64, ground: Ground) -> Result<(), EditError> {
+fn set(
+    after: &mut Image,
+    number: ParameterNumber,
+    value: i64,
+    ground: Ground,
+    families: &Families,
+) -> Result<(), EditError> {
     let row = number.row().ok_or(EditError::Unknown(number))?;
     if !is_editable(row) || ground == Ground::Profile && !Image::holds(row) {
         return Err(EditError::NotAValue(number));
@@ -128,6 +140,7 @@ fn set(after: &mut Image, number: ParameterNumber, value: i64, ground: Ground) -
     if ground == Ground::Device && after.get(number).is_none() {
         return Err(EditError::NotRead(number));
     }
-    after.values.insert(number, row.check(number, value)?);
+    let value = row.check(number, value, travel(number, after, families))?;
+    after.values.insert(number, value);
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! What is not right in what is wanted, where it stands.
 
-use super::Staged;
+use super::{Staged, travel};
 use crate::app::hiperdrive::ruler::Ruler;
 use crate::profile::hiperdrive::Image;
-use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
+use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 
 /// Something that a person should look at. An edit may lead here: another scale moves limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +65,20 @@ impl Staged {
     /// All that is not right; `position` tells where a drive stands, in steps as it is scaled now.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
-        let check = |(number, value): (&ParameterNumber, &i64)| number.row()?.check(*number, *value).err();
-        let mut marks: Vec<Mark> = wanted.values.iter().filter_map(check).map(Mark::OutOfRange).collect();
+        let mut of_drives = Vec::new();
         for drive in wanted.drives() {
-            mark_drive(base, wanted, drive, position(drive), &mut marks);
+            mark_drive(base, wanted, drive, position(drive), &mut of_drives);
         }
+        let moved: Vec<ParameterNumber> =
+            of_drives.iter().filter(|mark| matches!(mark, Mark::LimitsMove { .. })).flat_map(Mark::numbers).collect();
+        let check = |(number, value): (&ParameterNumber, &i64)| {
+            // Where limits have moved with the scale, that is told, in turns.
+            let moves = moved.contains(number);
+            let travel = if moves { Travel::UNKNOWN } else { travel(*number, wanted, &self.families) };
+            number.row()?.check(*number, *value, travel).err()
+        };
+        let mut marks: Vec<Mark> = wanted.values.iter().filter_map(check).map(Mark::OutOfRange).collect();
+        marks.extend(of_drives);
         marks
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged};
 use crate::profile::hiperdrive::Image;
-use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, PositionScale, Range};
+use crate::protocol::hiperdrive::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
 
 const ONE: DriveNumber = DriveNumber::FIRST;
 
@@ -61,6 +61,35 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert_eq!(staged.edit(&crossed), Err(EditError::Crossed { lower: 5, upper: 5 }));
     assert_eq!(Staged::default().edit(&crossed), Err(EditError::NothingRead));
     assert!(!staged.is_dirty());
+}
+
+/// Issue 21.10: what a drive's turns bound is refused as it is typed, and marked where a scale or a profile leads beyond:
+/// ±512 turns of an HDA30 are 33554432 steps of 65536 a turn, and 204800 of 400.
+#[test]
+fn limits_beyond_the_turns_of_the_drive_are_refused() {
+    let mut staged = staged();
+    staged.know([(ONE, Family::Short)].into());
+    let out = |staged: &mut Staged, edit: Edit| match staged.edit(&edit) {
+        Err(EditError::OutOfRange(error)) => (error.number.get(), error.value, error.range),
+        other => panic!("{other:?}"),
+    };
+    let within = |most: i64| Range::Within(-most, most);
+    assert_eq!(out(&mut staged, Edit::Set(number(158), -33_554_433)), (158, -33_554_433, within(33_554_432)));
+    let limits = Edit::Limits { drive: ONE, lower: 0, upper: 40_000_000 };
+    assert_eq!(out(&mut staged, limits), (160, 40_000_000, within(33_554_432)));
+    assert_eq!(out(&mut staged, Edit::Set(number(170), 1 << 30)), (170, 1 << 30, within(67_108_864)));
+    assert_eq!(staged.edit(&Edit::Set(number(158), -33_554_432)), Ok(true));
+    let hundredths = PositionScale::new(400, 256).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    assert_eq!((staged.value(number(158)), staged.marks(|_| None)), (Some(-204_800), vec![]));
+    assert_eq!(out(&mut staged, Edit::Set(number(160), 204_801)), (160, 204_801, within(204_800)));
+    assert!(staged.undo() && staged.undo() && !staged.is_dirty());
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
+    let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
+    profile.know([(ONE, Family::Short)].into());
+    let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
+    assert_eq!((error.number.get(), error.range), (158, within(204_800)));
 }
 
 #[test]

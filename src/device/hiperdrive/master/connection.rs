@@ -6,7 +6,7 @@
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use super::{Master, Repeats};
+use super::{Master, ONCE, Repeats};
 use crate::device::hiperdrive::Error;
 use crate::device::hiperdrive::error::{Asked, Refusal};
 use crate::protocol::ethernet_ip::{
@@ -142,7 +142,7 @@ impl Master<'_> {
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
         // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
-        let asked = self.request_with(Asked::Open, &open.request(), &[ours], Repeats::Never);
+        let asked = self.request_with(Asked::Open, &open.request(), &[ours], ONCE);
         let opened = asked.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
             Err(cause) => Err(Error::Damaged { asked: Asked::Open, tries: 1, cause: cause.into() }),

@@ -6,7 +6,9 @@ use crate::device::hiperdrive::Error;
 use crate::device::hiperdrive::error::{Asked, Refusal};
 use crate::device::hiperdrive::identify::topology;
 use crate::protocol::ethernet_ip::{GeneralStatus, Request};
-use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, ParameterRow, Range};
+use crate::protocol::hiperdrive::{
+    DriveNumber, OutOfRange, ParameterNumber, ParameterRow, PositionScale, Range, Travel, Value, Variant,
+};
 
 impl Master<'_> {
     /// Why a parameter was refused, as far as can be asked.
@@ -44,7 +46,7 @@ impl Master<'_> {
         };
         let request = Request::get(number.class(), 1, number.attribute());
         match self.request(Asked::Parameter(number), &request, Repeats::Always) {
-            Ok(reply) => Ok(!reply.data.is_empty() && reply.data.iter().all(|byte| *byte == 0)),
+            Ok(reply) => Ok(number.row().is_some_and(|row| row.kind.parse(&reply.data) == Ok(Value::Number(0)))),
             Err(Error::Refused { .. }) => Ok(false),
             Err(error) => Err(error),
         }
@@ -70,22 +72,44 @@ impl Master<'_> {
         }
     }
 
-    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4).
+    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4), and no
+    /// limit is more turns from 0 than the drive has (5).
     fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
+        let travel = match number.drive().filter(|_| row.reach.is_some()) {
+            Some(drive) => self.travel(drive)?,
+            None => Travel::UNKNOWN,
+        };
+        let allowed = row.allowed(travel);
         let Some(drive) = number.drive().filter(|_| matches!(row.number, 158 | 160 | 198)) else {
-            return Ok(row.allowed());
+            return Ok(allowed);
         };
         let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
             Some(number) => self.read_number(number).map(Some),
             None => Ok(None),
         };
         let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
-        let (least, most) = row.kind.limits().unwrap_or_default();
-        let [Some(lower), Some(upper), Some(position)] = values else { return Ok(row.allowed()) };
+        let Some(Range::Within(least, most)) = allowed else { return Ok(allowed) };
+        let [Some(lower), Some(upper), Some(position)] = values else { return Ok(allowed) };
         Ok(Some(match row.number {
-            158 => Range::Within(least, position.min(upper - 1)),
-            160 => Range::Within(position.max(lower + 1), most),
-            _ => Range::Within(lower, upper),
+            158 => Range::Within(least, position.min(upper - 1).min(most)),
+            160 => Range::Within(position.max(lower + 1).max(least), most),
+            _ => Range::Within(lower.max(least), upper.min(most)),
         }))
+    }
+
+    /// How far a drive turns, as far as it says.
+    fn travel(&mut self, drive: DriveNumber) -> Result<Travel, Error> {
+        let mut word = |base| {
+            let Some(number) = ParameterNumber::of_drive(base, drive) else { return Ok(None) };
+            match self.read_number(number) {
+                Ok(value) => Ok(u16::try_from(value).ok()),
+                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) => Err(error),
+            }
+        };
+        let (variant, numerator, denominator) = (word(120)?, word(154)?, word(156)?);
+        let family = variant.and_then(|number| Variant::new(number).row()).map(|row| row.family);
+        let scale = numerator.zip(denominator).and_then(|(n, d)| PositionScale::new(n, d).ok());
+        Ok(Travel { family, scale })
     }
 }

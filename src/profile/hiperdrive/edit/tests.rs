@@ -1,9 +1,9 @@
 //! Orders of writing, refusals, warnings: against the rules of the manual, worked out by hand.
 
 use super::*;
-use crate::profile::hiperdrive::test_profiles::{drive, image, image_of, number};
+use crate::profile::hiperdrive::test_profiles::{drive, identity, image, image_of, number};
 use crate::profile::hiperdrive::{Warning, warnings};
-use crate::protocol::hiperdrive::Range;
+use crate::protocol::hiperdrive::{Range, Variant};
 
 /// What a plan writes, one after the other; a service by its code.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
@@ -17,6 +17,20 @@ fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
 
 fn at(place: u8, position: i32) -> Positions {
     [(drive(place), position)].into()
+}
+
+/// A hub with drives HDA30A at its places 1 and 3.
+fn state(image: &Image, positions: &Positions) -> DeviceState {
+    let identity = identity("100", &[(1, "4711"), (3, "4712")]);
+    DeviceState { identity, image: image.clone(), positions: positions.clone() }
+}
+
+fn plan_edits(device: &Image, wanted: &Image, positions: &Positions) -> Result<HiperdrivePlan, PlanError> {
+    super::plan_edits(&state(device, positions), wanted)
+}
+
+fn plan_set_position(device: &Image, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
+    super::plan_set_position(&state(device, &Positions::new()), drive, position)
 }
 
 fn plan(wanted: &[(u16, i64)], position: i32) -> Result<HiperdrivePlan, PlanError> {
@@ -169,7 +183,57 @@ fn what_cannot_be_written_is_told_by_its_reason() {
     let PlanError::OutOfRange(error) = refused(166, 351) else { panic!() };
     assert_eq!((error.value, error.range), (351, Range::Within(5, 350)));
     let PlanError::OutOfRange(error) = refused(158, 1 << 31) else { panic!() };
-    assert_eq!(error.range, Range::Within(i32::MIN.into(), i32::MAX.into()));
+    // 512 turns of 65536 steps.
+    assert_eq!(error.range, Range::Within(-33_554_432, 33_554_432));
+}
+
+/// Issue 21.10: ±512 turns of an HDA30 in steps of the scale as it will be: 65536 a turn are 33554432, 400 are 204800. A step of
+/// the drive's own keys is no longer than its way of 1024 turns.
+#[test]
+fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
+    let jogs = |image: Image| image.with(&image_of(&[(170, 4096), (176, -4096)]));
+    let scaled = image(&[1, 3]).with(&image_of(&[(154, 400), (156, 256), (158, -1000), (160, 1000)]));
+    let factory = image(&[1, 3]);
+    type Case<'c> = (&'c Image, &'c [(u16, i64)], Option<(u16, i64)>);
+    let cases: [Case<'_>; 12] = [
+        (&factory, &[(158, -33_554_432), (160, 33_554_432)], None),
+        (&factory, &[(158, -33_554_433)], Some((158, 33_554_432))),
+        (&factory, &[(360, 33_554_433)], Some((360, 33_554_432))),
+        (&scaled, &[(158, -204_800), (160, 204_800)], None),
+        (&scaled, &[(158, -204_801)], Some((158, 204_800))),
+        (&scaled, &[(160, 204_801)], Some((160, 204_800))),
+        // With the scale of the same plan, either way.
+        (&factory, &[(154, 400), (156, 256), (160, 204_801)], Some((160, 204_800))),
+        (&scaled, &[(154, 256), (156, 1), (158, -33_554_432), (160, 33_554_432)], None),
+        (&factory, &[(170, 67_108_864), (176, -67_108_864)], None),
+        (&factory, &[(170, 67_108_865)], Some((170, 67_108_864))),
+        (&scaled, &[(176, -409_601)], Some((176, 409_600))),
+        // What is not written is not looked at: its numbers move with the scale, of which the plan warns.
+        (&factory, &[(154, 400), (156, 256)], None),
+    ];
+    for (device, wanted, refused) in cases {
+        let planned = plan_edits(&jogs(device.clone()), &image_of(wanted), &at(1, 0));
+        match (planned, refused) {
+            (Ok(_), None) => {}
+            (Err(PlanError::OutOfRange(error)), Some((own, most))) => {
+                assert_eq!((error.number, error.range), (number(own), Range::Within(-most, most)), "{wanted:?}");
+            }
+            (planned, _) => panic!("{wanted:?}: {planned:?}"),
+        }
+    }
+    // Of another variant nothing is known but the bits; HDA70 has 16000 turns.
+    for (variant, most) in [(Variant::OTHER, i64::from(i32::MAX)), (Variant::new(13), 1_048_576_000)] {
+        let mut state = state(&factory, &at(1, 0));
+        state.identity.drives[0].variant = Some(variant);
+        assert!(super::plan_edits(&state, &image_of(&[(160, most)])).is_ok(), "{variant:?}");
+        let error = super::plan_edits(&state, &image_of(&[(160, most + 1)])).unwrap_err();
+        let PlanError::OutOfRange(error) = error else { panic!("{error}") };
+        assert!(matches!(error.range, Range::Within(_, high) if high == most), "{variant:?}");
+    }
+    // Limits that lie beyond the turns since the scale was changed let no position be set there either.
+    let moved = image(&[1]).with(&image_of(&[(154, 400), (156, 256)]));
+    let PlanError::OutOfRange(error) = plan_set_position(&moved, drive(1), 300_000).unwrap_err() else { panic!() };
+    assert_eq!((error.number, error.range), (number(198), Range::Within(-204_800, 204_800)));
 }
 
 #[test]

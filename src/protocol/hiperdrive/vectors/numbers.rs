@@ -143,7 +143,7 @@ fn what_a_parameter_may_be() {
         (186, &[1, 100, 255], &[0, 101, 254, 256]),
         (188, &[0, 253], &[254]),
         (190, &[9600, 19_200, 38_400], &[0, 9601, 115_200]),
-        (47, &[-4, 1], &[-5, 2]),
+        (47, &[-4, -1, 1], &[-5, 0, 2]),
         (197, &[0], &[1]),
         (158, &[i64::from(i32::MIN), i64::from(i32::MAX)], &[i64::from(i32::MIN) - 1, i64::from(i32::MAX) + 1]),
         (13, &[], &[0]),
@@ -151,13 +151,16 @@ fn what_a_parameter_may_be() {
         let parameter = number(own);
         let row = parameter.row().unwrap();
         for value in good {
-            assert_eq!(row.check(parameter, *value), Ok(*value), "{own}");
+            assert_eq!(row.check(parameter, *value, Travel::UNKNOWN), Ok(*value), "{own}");
         }
         for value in bad {
-            assert!(row.check(parameter, *value).is_err(), "{own}: {value}");
+            assert!(row.check(parameter, *value, Travel::UNKNOWN).is_err(), "{own}: {value}");
         }
     }
-    let said = |own, value| number(own).row().unwrap().check(number(own), value).unwrap_err().to_string();
+    let said = |own, value| {
+        let refused = number(own).row().unwrap().check(number(own), value, Travel::UNKNOWN);
+        refused.unwrap_err().to_string()
+    };
     assert_eq!(said(266, 400), "parameter 266 (maximum speed) cannot be 400: it may be 5 to 350");
     assert_eq!(said(186, 0), "parameter 186 (RS-485 time-out) cannot be 0: it may be 1 to 100 or 255");
     assert_eq!(said(190, 1), "parameter 190 (RS-485 baud rate) cannot be 1: it may be 9600, 19200, 38400");
@@ -190,6 +193,16 @@ fn values_have_the_length_of_their_kind() {
         assert_eq!(Kind::Text.parse(&data), Ok(name.clone()));
     }
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
+}
+
+/// Manual 6.2, 126 to 129: a string, to be divided by 10 where an "A" stands before it.
+#[test]
+fn nominal_data_may_be_tenths() {
+    for (text, number) in
+        [("24", Some(24.0)), ("A25", Some(2.5)), ("A", None), ("", None), ("B25", None), ("A-5", None)]
+    {
+        assert_eq!(nominal(text), number, "{text}");
+    }
 }
 
 /// Reference 5: the table, and the manual's examples.

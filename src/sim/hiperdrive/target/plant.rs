@@ -100,8 +100,9 @@ impl Plant {
             return None;
         }
         let reply = self.answer(from, frame)?;
+        let leaves = self.station.answers_at().map_or(self.now, |at| at.max(self.now));
         let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
-        Some((self.now + REPLY + self.faults.delay(), bytes))
+        Some((leaves + REPLY + self.faults.delay(), bytes))
     }
 
     /// Whether the TCP connection stays open behind this frame.

@@ -56,6 +56,26 @@ fn limits_hold_the_position() {
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
+/// Issue 21.10: ±512 turns of an HDA30, ±16000 of an HDA70, in steps as scaled; a step of its keys is no longer than its way.
+#[test]
+fn no_limit_is_taken_beyond_the_turns_of_the_drive() {
+    let mut bench = Bench::single();
+    for (own, good, bad) in [
+        (158, -33_554_432, -33_554_433),
+        (160, 33_554_432, 33_554_433),
+        (170, 67_108_864, 67_108_865),
+        (176, -67_108_864, -67_108_865),
+    ] {
+        assert_eq!((bench.write(own, good), bench.write(own, bad)), (Ok(()), Err(Refused::Value)), "{own}");
+        assert_eq!((bench.read(own), bench.error()), (value(good), ErrorCode::INVALID_VALUE), "{own}");
+    }
+    assert_eq!((bench.write(154, 400), bench.write(156, 256)), (Ok(()), Ok(())));
+    assert_eq!((bench.write(160, 204_801), bench.write(160, 204_800)), (Err(Refused::Value), Ok(())));
+    assert_eq!((bench.write(158, -204_801), bench.write(158, -204_800)), (Err(Refused::Value), Ok(())));
+    let mut hub = Bench::hub();
+    assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(Refused::Value), Ok(())));
+}
+
 /// Reference 5: the nearest multiple of 64, within the limits, and only while it stands.
 #[test]
 fn the_position_is_set() {

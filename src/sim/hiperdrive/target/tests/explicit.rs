@@ -46,8 +46,33 @@ fn the_published_requests() {
     host.asks("10 03 20 65 24 01 30 98 01", "90 00 0C 00");
     host.wait(200);
     host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
-    host.asks("10 03 20 64 24 01 30 2F FC FF", "90 00 00 00");
     host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
+}
+
+/// Issue 21.8: what resets drives is answered when it is done, as the manual has it; what is asked meanwhile is not held up.
+#[test]
+fn a_reset_is_answered_when_it_is_done() {
+    for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
+        let mut host = Host::new(query);
+        let reset = frame(0x6F, host.session, &unconnected(&bytes("10 03 20 64 24 01 30 2F FC FF")));
+        assert!(host.bytes(&reset).is_empty(), "{query}");
+        host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
+        // The request was taken 10 ms ago, and its reply takes 1 ms.
+        host.wait(ms - 10);
+        assert!(host.target.poll(host.now).is_empty(), "{query}");
+        host.wait(1);
+        let reply = host.target.poll(host.now);
+        assert_eq!(hex(&reply[reply.len() - 4..]), "90 00 00 00", "{query}");
+        host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
+    }
+    // So is what resets one drive: 152 from 0 to 1, and 199.
+    let mut host = Host::new("requested=0");
+    for (set, is_slow) in [("98 01", true), ("98 01", false), ("C7 00", true)] {
+        let set = frame(0x6F, host.session, &unconnected(&bytes(&format!("10 03 20 65 24 01 30 {set}"))));
+        assert_eq!(host.bytes(&set).is_empty(), is_slow, "{set:?}");
+        host.wait(300);
+        assert_eq!(host.target.poll(host.now).is_empty(), !is_slow, "{set:?}");
+    }
 }
 
 #[test]

@@ -45,7 +45,7 @@ fn the_supply_is_lost_in_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
     host.asks(SAVE, "90 00 00 00");
     host.wait(200);
-    for set in ["10 03 20 65 24 01 30 98 00", "10 03 20 65 24 01 30 BA 0A"] {
+    for set in ["10 03 20 65 24 01 30 98 00", "10 03 20 65 24 01 30 BA 0A 00"] {
         host.asks(set, "90 00 00 00");
     }
     assert_eq!(host.open(OPEN), OPENED);
@@ -62,7 +62,7 @@ fn the_supply_is_lost_in_a_save() {
     assert_eq!(get(&mut host).map(|(status, _)| status), Some(0x64));
     host.register();
     host.asks("0E 03 20 65 24 01 30 98", "8E 00 00 00 00");
-    host.asks("0E 03 20 65 24 01 30 BA", "8E 00 00 00 14");
+    host.asks("0E 03 20 65 24 01 30 BA", "8E 00 00 00 14 00");
     host.asks(SAVE, "90 00 00 00");
     host.wait(200);
     host.asks(GET_107, "8E 00 00 00 00 00 00 00");
