@@ -340,7 +340,10 @@ impl Moves {
 
     /// Why a drive may not move.
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
-        self.permit(drive).map(|permit| permit.locks).unwrap_or_default()
+        let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
+        // Without control nothing moves, and the limits are read with it.
+        locks.retain(|lock| *lock != Lock::Outdated || self.view.open);
+        locks
     }
 
     /// A jog is held.

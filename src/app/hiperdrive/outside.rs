@@ -48,10 +48,16 @@ impl Unit {
         self.may(drive, Wish::Jog { direction, effort: Effort::JOG, outward })
     }
 
+    /// This way leads further out from outside the limits, and is not freed.
+    pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
+        let outward = self.outside(drive).map(|own| own.side.outward());
+        outward == Some(direction) && !self.moves.is_freed(drive, direction)
+    }
+
     /// The direction that leads further out and can be freed for one press; `None` inside the limits, and once it is freed.
     pub fn can_free(&self, drive: DriveNumber) -> Option<Direction> {
         let direction = self.outside(drive)?.side.outward();
-        (self.may_move(drive).is_ok() && !self.moves.is_freed(drive, direction)).then_some(direction)
+        (self.may_move(drive).is_ok() && self.is_blocked(drive, direction)).then_some(direction)
     }
 
     /// A person frees the way further out, for one press.

@@ -13,8 +13,6 @@ use crate::ui::widgets::{HoldButton, hold_button};
 
 /// Height of the buttons that are held.
 const PAD: f32 = 72.0;
-/// Height of what is said below them.
-const BELOW: f32 = 120.0;
 
 /// The card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
@@ -25,13 +23,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         let effort = effort_ui(ui, skin, unit, own, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
         pads_ui(ui, skin, unit, allowed.is_ok(), actions);
-        // Always as high: nothing moves away under a finger that holds a drive.
-        ui.scope(|ui| {
-            ui.set_min_height(BELOW);
-            if !outside::block_ui(ui, skin, unit, &mut view.outside, actions) {
-                paragraph(ui, skin.caption(skin.say("hd_jog.words")));
-            }
-        });
+        paragraph(ui, skin.caption(skin.say("hd_jog.words")));
         why_not(ui, skin, &allowed);
         ui.add_space(skin.space.between);
         ui.separator();
@@ -53,6 +45,8 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         });
         problem(ui, skin, view.step_problem.as_ref());
         paragraph(ui, skin.caption(skin.say("hd_step.words")));
+        // At the end: nothing that can be clicked moves away when it comes.
+        outside::block_ui(ui, skin, unit, &mut view.outside, actions);
     });
 }
 
@@ -63,8 +57,9 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
         {
-            let (caption, label) = (skin.say("hd_jog.hold"), skin.say(label));
-            let enabled = enabled && unit.may_jog(unit.drive(), direction).is_ok();
+            let blocked = unit.is_blocked(unit.drive(), direction);
+            let caption = skin.say(if blocked { "hd_outside.pad" } else { "hd_jog.hold" });
+            let (enabled, label) = (enabled && !blocked, skin.say(label));
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::JogPress { direction, repeated: false };
             pad_ui(ui, skin, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);

@@ -25,12 +25,14 @@ pub(in crate::ui) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
 }
 
 /// What is outside, what is blocked, and what can be done. Nothing where the drive is inside, or at the end of its range.
-pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) -> bool {
+pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
         *draft = Draft::default();
-        return false;
+        return;
     };
+    ui.add_space(skin.space.between);
+    ui.separator();
     let strong = RichText::new(skin.words(&words)).font(skin.strong(skin.sizes.body)).color(skin.palette.bad);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::WARNING).color(skin.palette.bad));
@@ -58,5 +60,4 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
             change.map(|change| actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))))).err();
     }
     problem(ui, skin, draft.problem.as_ref());
-    true
 }
