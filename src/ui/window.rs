@@ -252,6 +252,10 @@ impl Window {
         self.hear_close(ctx);
         // What draws hears of it in this very picture.
         self.close_heard = true;
+        // The pads of a minimised window are in no picture.
+        if self.studio.is_under_way() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
+            self.studio.act(Action::LetGo);
+        }
         if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
             return;
         }
