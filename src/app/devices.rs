@@ -1,5 +1,6 @@
 //! The devices on the desk, of whatever kind: what the studio asks of each of them.
 
+mod of_kind;
 mod shown;
 mod wish;
 
@@ -421,50 +422,5 @@ impl AnyDevice {
                 own.take_backup(path, result, services);
             }
         }, ())
-    }
-
-    /// As a HIPERFACE encoder.
-    pub fn hiperface(&self) -> Option<&hiperface::Encoder> {
-        if let AnyDevice::Hiperface(own) = self { Some(own) } else { None }
-    }
-
-    pub(super) fn hiperface_mut(&mut self) -> Option<&mut hiperface::Encoder> {
-        if let AnyDevice::Hiperface(own) = self { Some(own) } else { None }
-    }
-
-    /// As a BiSS encoder.
-    pub fn biss(&self) -> Option<&biss::Encoder> {
-        if let AnyDevice::Biss(own) = self { Some(own) } else { None }
-    }
-
-    pub(super) fn biss_mut(&mut self) -> Option<&mut biss::Encoder> {
-        if let AnyDevice::Biss(own) = self { Some(own) } else { None }
-    }
-
-    /// As an SSI encoder.
-    pub fn ssi(&self) -> Option<&ssi::Encoder> {
-        if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
-    }
-
-    pub(super) fn ssi_mut(&mut self) -> Option<&mut ssi::Encoder> {
-        if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
-    }
-
-    /// As an INTERBUS encoder.
-    pub fn interbus(&self) -> Option<&interbus::Encoder> {
-        if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
-    }
-
-    pub(super) fn interbus_mut(&mut self) -> Option<&mut interbus::Encoder> {
-        if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
-    }
-
-    /// As HIPERDRIVE drives behind an adapter or a hub.
-    pub fn hiperdrive(&self) -> Option<&hiperdrive::Unit> {
-        if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
-    }
-
-    pub(super) fn hiperdrive_mut(&mut self) -> Option<&mut hiperdrive::Unit> {
-        if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
     }
 }

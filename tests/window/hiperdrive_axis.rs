@@ -48,13 +48,13 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     assert_eq!(axis(&desk).step(), Step::Confirm);
     control(&mut desk);
     assert!(axis(&desk).may_move(&seen(&desk)).is_err());
-    let before = position(&desk);
+    let before = position(&mut desk);
     act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));
     for _ in 0..50 {
         act(&mut desk, Hiperdrive::Drive(Motor::JogHold));
         desk.settle();
     }
-    assert_eq!(position(&desk), before);
+    assert_eq!(position(&mut desk), before);
 }
 
 /// What a person saw when they pressed is what counts, also where the window learns with the press that it is old.

@@ -1,6 +1,6 @@
 //! The drive's states, and what moves it: by hand, to a position, at a speed.
 
-use egui::{RichText, Ui, vec2};
+use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
 use super::{figures, jog, outside};
 use crate::app::explain::hiperdrive as explain;
@@ -54,13 +54,17 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         states(ui, skin, unit, actions);
         ui.add_space(skin.space.groups);
     }
-    two_columns(
-        ui,
-        skin,
-        (view, &mut *actions),
-        |ui, (view, actions)| jog::card_ui(ui, skin, unit, view, actions),
-        |ui, (view, actions)| moves(ui, skin, unit, view, actions),
-    );
+    // By a name of its own: what comes and goes above takes the keyboard from no entry.
+    let id = Id::unique(("motion", unit.session.id, unit.drive()));
+    ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
+        two_columns(
+            ui,
+            skin,
+            (view, &mut *actions),
+            |ui, (view, actions)| jog::card_ui(ui, skin, unit, view, actions),
+            |ui, (view, actions)| moves(ui, skin, unit, view, actions),
+        );
+    });
     ui.add_space(skin.space.groups);
     if low {
         states(ui, skin, unit, actions);
@@ -72,9 +76,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 /// Why nothing moves, and what to do.
 fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
-    // Without control nothing is read again and again, and nothing is to be waited for.
-    let counts = |lock: &Lock| *lock != Lock::Outdated || unit.moves.is_open();
-    for lock in unit.moves.locks(drive).into_iter().filter(counts) {
+    for lock in unit.moves.locks(drive) {
         skin.sunken().show(ui, |ui| {
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
@@ -178,13 +180,12 @@ fn moves(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut V
 /// To a position; whether the drive may be moved with the effort that is typed.
 fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
-    if let Some(actual) = unit.actual(drive) {
-        let now = skin.words(&unit.place(drive, actual.position));
-        row(ui, skin, &skin.say("hd_move.now"), skin.mono(now));
-    }
-    if let Some(limits) = unit.limits(drive) {
-        row(ui, skin, &skin.say("hd_move.range"), skin.mono(skin.words(&unit.places(drive, limits))));
-    }
+    // Both rows stay where nothing is known for a moment: nothing below them moves, and no entry loses the keyboard.
+    let unknown = || "–".to_owned();
+    let now = unit.actual(drive).map(|actual| skin.words(&unit.place(drive, actual.position)));
+    row(ui, skin, &skin.say("hd_move.now"), skin.mono(now.unwrap_or_else(unknown)));
+    let range = unit.limits(drive).map(|limits| skin.words(&unit.places(drive, limits)));
+    row(ui, skin, &skin.say("hd_move.range"), skin.mono(range.unwrap_or_else(unknown)));
     length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(

@@ -132,7 +132,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: while a drive moves, some group is due in every turn of 80 ms.
+    /// Issue 21.13: while a drive moves, some group is due in every turn of 60 ms.
     #[test]
     fn something_is_asked_in_every_turn_of_a_motion() {
         let mut read = [at(0); GROUPS];
@@ -142,9 +142,9 @@ mod tests {
                 read[group] = at(now);
                 last = now;
             }
-            assert!(now - last <= 80, "{now}: nothing since {last}");
+            assert!(now - last <= 80, "{now}: nothing since {last}, looked at every 20 ms");
         }
-        assert_eq!(TURN_IN_MOTION, Duration::from_millis(80));
+        assert_eq!(TURN_IN_MOTION, Duration::from_millis(60));
     }
 
     #[test]

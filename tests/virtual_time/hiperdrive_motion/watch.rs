@@ -56,8 +56,8 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
         if is_past {
             past = Some(past.map_or(0, |count: u32| count + 1));
         }
-        if sent.control.is_standing() && past.is_some() {
-            return (past.unwrap(), position);
+        if let (Some(past), true) = (past, sent.control.is_standing()) {
+            return (past, position);
         }
     }
     panic!("it is never stopped: {:?}", bench.man.phase());

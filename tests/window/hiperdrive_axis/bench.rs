@@ -117,7 +117,13 @@ pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
     run(desk, Run::Edit(Box::new(entries)));
 }
 
-pub(super) fn position(desk: &Desk) -> i32 {
+/// Where the axis is, once packets say so.
+#[track_caller]
+pub(super) fn position(desk: &mut Desk) -> i32 {
+    let drive = unit(desk).drive();
+    desk.until("the position is known", move |studio| {
+        studio.hiperdrive().is_some_and(|own| own.seen(drive).position.is_some())
+    });
     seen(desk).position.unwrap()
 }
 
@@ -251,11 +257,11 @@ pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
     next(&mut desk, Step::Lower);
     jog(&mut desk, Direction::Counterclockwise, 10);
     run(&mut desk, Run::TakePlace);
-    let lower = position(&desk);
+    let lower = position(&mut desk);
     next(&mut desk, Step::Upper);
     jog(&mut desk, Direction::Clockwise, 40);
     run(&mut desk, Run::TakePlace);
-    let upper = position(&desk);
+    let upper = position(&mut desk);
     step_with_writes(&mut desk, 160, rough);
     assert_eq!([158, 160].map(|own| number(&desk, own)), [i64::from(lower), i64::from(upper)]);
     next(&mut desk, Step::Test);
