@@ -202,7 +202,7 @@ pub enum Done {
     /// The settings were kept.
     SettingsKept(Result<SettingsWritten, FileError>),
     /// The settings were read while drives are in hand; `None` where there are none to read.
-    SettingsSeen(Option<Box<Settings>>),
+    SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     /// About the draft of a session.
     Draft(SessionId, DraftDone),
     /// Backups and writes of a device were listed.

@@ -31,11 +31,13 @@ impl Brakes {
 
     /// Drives of a session that begins.
     pub(super) fn add(&self, motion: Motion, stopper: Stopper) {
-        if self.has_begun() {
-            motion.leave();
-        }
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
+        // Under the lock that `begin` takes as well: a session is left by the one or by the other.
+        if self.has_begun() {
+            motion.leave();
+            stopper.stop();
+        }
         sessions.push((motion, stopper));
     }
 

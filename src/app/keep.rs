@@ -23,6 +23,9 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// What was told of the settings where they cannot be kept.
 const NOT_KEPT: &str = "session.settings_not_kept";
 
+/// Behind a reading that failed, the next one waits so long.
+const AGAIN: Duration = Duration::from_secs(1);
+
 /// What is on disk, and whether a write is on its way.
 #[derive(Debug)]
 pub(super) struct Keeper {
@@ -39,6 +42,8 @@ pub(super) struct Keeper {
     looking: Option<Zoned>,
     /// When it was read last.
     looked: Option<Zoned>,
+    /// When they could not be read last.
+    unseen: Option<Zoned>,
 }
 
 /// What came of reading the settings.
@@ -91,6 +96,7 @@ impl Keeper {
             told: false,
             looking: None,
             looked: None,
+            unseen: None,
         };
         match receiver.recv_timeout(PATIENCE) {
             Ok(read) => keeper.take(read, &mut settings, services),
@@ -177,13 +183,21 @@ impl Keeper {
 
     /// Reads the settings as another window may have written them. Whether that begins now.
     pub(super) fn look(&mut self, services: &Services) -> bool {
-        if self.looking.is_some() {
+        let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
+        if self.looking.is_some() || self.unseen.as_ref().is_some_and(has_failed) {
             return false;
         }
         self.looking = Some(services.now());
         let path = services.world.store.settings_path();
-        services.tasks.run("settings", move || Action::Done(Done::SettingsSeen(found(&path).map(Box::new))));
+        services
+            .tasks
+            .run("settings", move || Action::Done(Done::SettingsSeen(found(&path).map(|found| found.map(Box::new)))));
         true
+    }
+
+    /// They could not be read, which counts as not having looked: locks may stand in them.
+    pub(super) fn could_not_look(&mut self) {
+        self.unseen = self.looking.take();
     }
 
     /// They were read. While a write is on its way, which tells later what it has found, they come back.
@@ -248,9 +262,13 @@ fn understood(text: Result<String, FileError>) -> Result<Option<(Settings, bool)
     }
 }
 
-fn found(path: &Path) -> Option<Settings> {
-    // What cannot be read is told where it is written.
-    understood(read_text(path)).ok()?.map(|(settings, _)| settings)
+/// What stands in the settings; `None` where no window can have written any.
+fn found(path: &Path) -> Result<Option<Settings>, FileError> {
+    use FileProblem::{IsFolder, NoFolder, NotAFile, NotFolder};
+    match understood(read_text(path)) {
+        Err(FileError { problem: NoFolder | NotFolder | IsFolder | NotAFile, .. }) => Ok(None),
+        read => Ok(read?.map(|(settings, _)| settings)),
+    }
 }
 
 fn aside_of(path: &Path) -> PathBuf {

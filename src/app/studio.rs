@@ -383,7 +383,8 @@ impl Studio {
             }
             Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => self.keeper.kept(result, &mut self.settings, &mut self.services),
-            Done::SettingsSeen(found) => self.saw_settings(found.map(|found| *found)),
+            Done::SettingsSeen(Ok(found)) => self.saw_settings(found.map(|found| *found)),
+            Done::SettingsSeen(Err(error)) => self.could_not_see_settings(&error),
             Done::Draft(id, done) => self.draft_done(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {

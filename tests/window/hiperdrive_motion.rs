@@ -326,3 +326,18 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     desk.act(Action::ShowTab(Tab::Hiperdrive));
     assert!(unit(&desk).may_jog(ONE, up).is_err());
 }
+
+/// Issue 21.11: settings that cannot be read may hold a lock: nothing moves before they are read.
+#[test]
+fn settings_that_cannot_be_read_lock_what_is_in_hand() {
+    let mut desk = in_control("sim:");
+    let path = desk.outside.store().settings_path();
+    let _ = std::fs::remove_file(&path);
+    // A link to itself can be read by nobody.
+    std::os::unix::fs::symlink(&path, &path).unwrap();
+    desk.until("nothing may move", |studio| {
+        studio.hiperdrive().unwrap().may_move(ONE).is_err_and(|why| why.id() == "hd_lock.settings")
+    });
+    std::fs::remove_file(&path).unwrap();
+    desk.until("it may move again", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+}

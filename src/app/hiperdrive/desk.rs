@@ -9,6 +9,7 @@ use crate::app::services::Services;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
 use crate::app::{AnyDevice, Settings};
+use crate::store::FileError;
 
 /// How often the settings are read while drives are in hand.
 const PACE: Duration = Duration::from_secs(1);
@@ -112,6 +113,13 @@ impl Studio {
         self.remember_drives();
         let reading = |unit: &&mut Unit| unit.marks == Marks::Reading;
         self.hiperdrives_in_hand().filter(reading).for_each(|unit| unit.marks = Marks::Read);
+    }
+
+    /// The settings could not be read: no drive in hand moves before they are.
+    pub(in crate::app) fn could_not_see_settings(&mut self, error: &FileError) {
+        tracing::warn!("{error}");
+        self.keeper.could_not_look();
+        self.hiperdrives_in_hand().for_each(|unit| unit.marks = Marks::Unread);
     }
 
     fn hiperdrives_in_hand(&mut self) -> impl Iterator<Item = &mut Unit> {

@@ -110,6 +110,9 @@ impl Moves {
         self.limits.clear();
         self.limits_changed.clear();
         (self.jogs, self.jobs) = (BTreeMap::new(), BTreeMap::new());
+        for drive in std::mem::take(&mut self.experts) {
+            self.set_expert(drive, false);
+        }
     }
 
     /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.

@@ -257,6 +257,9 @@ impl DeadMan {
             Wish::Run { direction, end, .. } => Motive::Run { direction, end },
         };
         permit.check(wish, motive.target())?;
+        if permit.doubted {
+            return Err(Refusal::Locked(Lock::Outdated));
+        }
         permit.check_place(wish, actual)?;
         if status.has(StatusBit::Fault) {
             return Err(Refusal::Fault);

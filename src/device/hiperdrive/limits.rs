@@ -145,7 +145,8 @@ impl DriveLimits {
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
-        Permit { limits: self.limits(), locks, endless: self.is_factory && expert, degree: self.degree() }
+        let endless = self.is_factory && expert;
+        Permit { limits: self.limits(), locks, endless, doubted: self.doubted, degree: self.degree() }
     }
 
     /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
@@ -201,8 +202,13 @@ mod tests {
     fn parameters_lock_and_permit() {
         let whole = Some((-33_488_896, 33_488_896));
         // A degree of 65536 steps a turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
-        let permit =
-            |limits, locks: &[Lock], endless, degree| Permit { limits, locks: locks.to_vec(), endless, degree };
+        let permit = |limits, locks: &[Lock], endless, degree| Permit {
+            limits,
+            locks: locks.to_vec(),
+            endless,
+            doubted: false,
+            degree,
+        };
         type Case<'c> = (&'c str, &'c [(u16, Option<i64>)], Permit);
         let cases: [Case<'_>; 8] = [
             ("factory", &[], permit(whole, &[], true, 183)),
@@ -233,7 +239,7 @@ mod tests {
             assert_eq!(limits.is_valid(at(ms)), locks.is_empty(), "{ms}");
         }
         limits.doubt();
-        assert!(!limits.is_valid(at(1000)), "nothing begins");
+        assert!(!limits.is_valid(at(1000)) && limits.permit(at(1000), false).doubted, "nothing begins");
         assert_eq!((limits.permit(at(1000), false).locks, limits.times()), (vec![], None), "what moves goes on");
         limits.forget();
         assert_eq!(limits.permit(at(1000), false).locks, [Lock::Unread]);

@@ -55,7 +55,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         ui.add_space(skin.space.groups);
     }
     // By a name of its own: what comes and goes above takes the keyboard from no entry.
-    let id = Id::unique(("motion", unit.session.id, unit.drive()));
+    let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         two_columns(
             ui,

@@ -53,8 +53,9 @@ impl SessionWatch {
     /// A frame came.
     pub(super) fn answer(&mut self, now: Moment) {
         self.broken = false;
-        if let Some(asked) = self.asked.take() {
-            self.slowest = now.since(asked).max(self.slowest * 7 / 8);
+        // A parameter that takes seconds says nothing of the others.
+        if let Some(took) = self.asked.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
+            self.slowest = took.max(self.slowest * 7 / 8);
         }
     }
 
@@ -234,7 +235,7 @@ mod tests {
         watch.ask(at(1000));
         // Nobody looks at the line: 250 ms more.
         assert!(!watch.is_silent(at(1850)) && watch.is_silent(at(1851)));
-        watch.answer(at(6000));
+        watch.answer(at(1900));
         watch.ask(at(7000));
         assert!(!watch.is_silent(at(8250)) && watch.is_silent(at(8251)), "never more than a second");
         for step in 0..40 {
@@ -243,5 +244,12 @@ mod tests {
         }
         watch.look(at(12_090 + 131));
         assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
+        // A presence test takes eight seconds on a hub, and says nothing of what comes behind it.
+        let mut watch = SessionWatch::default();
+        watch.ask(at(0));
+        watch.answer(at(8000));
+        watch.ask(at(9000));
+        watch.look(at(9131));
+        assert!(watch.is_silent(at(9131)));
     }
 }

@@ -98,6 +98,8 @@ pub struct Permit {
     pub locks: Vec<Lock>,
     /// It may run past its limits.
     pub endless: bool,
+    /// The parameters are to be read again before a motion begins; what is under way goes on.
+    pub doubted: bool,
     /// Steps of one degree as scaled, at least 1: how exactly a drive repeats a position (manual, technical data).
     pub degree: u32,
 }
@@ -341,14 +343,14 @@ const fn percent(percent: u8) -> Percent {
 impl Default for Permit {
     /// Nothing: as long as a drive's parameters were not read.
     fn default() -> Self {
-        Permit { limits: None, locks: vec![Lock::Unread], endless: false, degree: 1 }
+        Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
     /// Motion within these limits, with nothing against it, under the factory's scale of 65536 steps a turn.
     pub const fn within(low: i32, high: i32) -> Self {
-        Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, degree: 183 }
+        Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
     /// Whether a motion may begin, or go on. `target` is where it leads, for what leads somewhere.

@@ -24,6 +24,7 @@ impl DeadMan {
     /// A pause or its end is an act that carries the job on, where it is the very next one: between others a stop may have been
     /// said while nobody looked.
     fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
+        let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
         let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
         let job = matches!(act.motion, Some(motion) if matches!(motion.motive, Motive::Job { .. }));
@@ -33,11 +34,11 @@ impl DeadMan {
         match (self.stage, intent.wish) {
             (Stage::Go { acknowledged, .. }, Wish::Pause) => {
                 (act.number, act.said) = (intent.number, intent.wish);
-                self.stage = Stage::Paused { acknowledged };
+                self.stage = Stage::Paused { since: mark, acknowledged };
             }
-            (Stage::Paused { acknowledged }, Wish::Resume) if permit.locks.is_empty() => {
+            (Stage::Paused { acknowledged, .. }, Wish::Resume) if permit.locks.is_empty() => {
                 (act.number, act.said) = (intent.number, intent.wish);
-                self.stage = Stage::Go { since: self.mark(now), acknowledged, stands: None };
+                self.stage = Stage::Go { since: mark, acknowledged, stands: None };
             }
             _ => {}
         }
@@ -69,7 +70,7 @@ impl DeadMan {
         if moves && !status.has(StatusBit::OperationEnabled) {
             return Some(Ended::Left(state));
         }
-        if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged }, false) = (self.stage, self.runs())
+        if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) = (self.stage, self.runs())
             && status.has(StatusBit::SetpointAcknowledged) == acknowledged
         {
             // The drive has begun anew: the word on the wire would start the job again.
@@ -77,7 +78,7 @@ impl DeadMan {
         }
         let motion = act.motion?;
         match permit.check(motion.wish, motion.motive.target()) {
-            Ok(()) => self.watch_motion(actual, permit),
+            Ok(()) => self.watch_motion(now, actual, permit),
             Err(Refusal::Locked(lock)) => Some(Ended::Locked(lock)),
             Err(refusal) => Some(Ended::Refused(refusal)),
         }

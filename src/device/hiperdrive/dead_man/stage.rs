@@ -33,7 +33,7 @@ pub(super) enum Stage {
         stands: Option<Mark>,
     },
     /// A job waits.
-    Paused { acknowledged: bool },
+    Paused { since: Mark, acknowledged: bool },
     /// The drive is to stand.
     Stop {
         rung: Rung,
@@ -247,7 +247,7 @@ fn moving(stage: &Stage, motive: Motive, actual: Actual) -> ControlWord {
         (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, Motive::Job { .. }) => {
             toggled(acknowledged, true)
         }
-        (Stage::Paused { acknowledged }, Motive::Job { .. }) => toggled(acknowledged, true).paused(),
+        (Stage::Paused { acknowledged, .. }, Motive::Job { .. }) => toggled(acknowledged, true).paused(),
         _ => ControlWord::READY,
     }
 }

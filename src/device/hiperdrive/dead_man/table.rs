@@ -132,6 +132,10 @@ impl Bench {
                 self.status |= 0x8000;
             }
             "the other way than it should by more than 1°" => self.position = -400,
+            "moves on by more than 1°" => {
+                self.cycles(60);
+                self.position = 400;
+            }
             "stands without having arrived" => {
                 self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
                 // A start is given a second, a drive that stands half of one.
@@ -154,7 +158,7 @@ fn table() -> Vec<Vec<&'static str>> {
 fn motions_end_as_the_architecture_says() {
     let rows = table();
     let (head, events) = rows.split_first().unwrap();
-    assert_eq!((head.len(), events.len()), (8, 11), "all phases and all events");
+    assert_eq!((head.len(), events.len()), (8, 12), "all phases and all events");
     for row in events {
         for (phase, expected) in head.iter().zip(row).skip(1) {
             let mut bench = Bench::in_phase(phase);

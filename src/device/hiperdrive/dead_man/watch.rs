@@ -11,8 +11,9 @@
 //! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
 //! ±1° (manual, technical data; reference 5).
 
-use super::{DeadMan, Ended, Motion, Motive, Permit, Refusal, Stage, Wish};
-use crate::protocol::hiperdrive::{Actual, Direction, RunEnd, StatusBit};
+use super::{DeadMan, Ended, Motion, Motive, Permit, Refusal, SHORT, Stage, Wish};
+use crate::protocol::hiperdrive::{Actual, Direction, RunEnd, State, StatusBit};
+use crate::units::Moment;
 
 /// A side of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,10 @@ pub(super) struct Watch {
     outside: Option<Side>,
     /// The least distance so far: of a job to its target, of a run to where it leads.
     best: i64,
+    /// Where a job that waits stood once it had braked.
+    waits_at: Option<i32>,
+    /// A person has freed the way further out, from outside, for this press.
+    freed: bool,
     /// A run began at the end of the range to which it leads: there may be nowhere to go.
     pub(super) at_end: bool,
 }
@@ -86,11 +91,6 @@ impl Motion {
             Motive::Run { direction: Direction::Counterclockwise, .. } => position,
         }
     }
-
-    /// A person has freed the way further out for this press.
-    const fn is_freed(&self) -> bool {
-        matches!(self.wish, Wish::Jog { outward: true, .. })
-    }
 }
 
 impl Watch {
@@ -105,7 +105,8 @@ impl Watch {
             }),
             _ => false,
         };
-        Watch { outside, best, at_end }
+        let freed = matches!(motion.wish, Wish::Jog { outward: true, .. }) && outside.is_some();
+        Watch { outside, best, waits_at: None, freed, at_end }
     }
 
     /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
@@ -120,8 +121,19 @@ impl Watch {
         let arrives = is_job && self.best <= ACCURACY * degree;
         let allowed = if arrives { ACCURACY * degree } else { degree };
         // Who frees the way out watches the axis: a drive that counts the other way comes in by it.
-        let leaves = distance > self.best.saturating_add(allowed) && !motion.is_freed();
+        let leaves = distance > self.best.saturating_add(allowed) && !self.freed;
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
+    }
+
+    /// Whether a job that waits moves on: by more than a degree from where it stood once it had braked.
+    fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
+        if !has_braked {
+            self.waits_at = None;
+            return None;
+        }
+        let at = i64::from(*self.waits_at.get_or_insert(actual.position));
+        let moves = i64::from(actual.position).abs_diff(at) > u64::from(permit.degree);
+        moves.then_some(Ended::Left(State::Moving))
     }
 
     fn look_at_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
@@ -167,17 +179,18 @@ impl Permit {
 
 impl DeadMan {
     /// Holds what the drive says now against the limits and the target of its motion.
-    pub(super) fn watch_motion(&mut self, actual: Actual, permit: &Permit) -> Option<Ended> {
+    pub(super) fn watch_motion(&mut self, now: Moment, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let mark = self.mark(now);
         let act = self.act.as_mut()?;
         let motion = act.motion.as_ref()?;
-        if !self.stage.moves() {
-            // Before it begins, and while a job waits.
+        if !self.stage.has_motion() {
+            // Before it begins.
             act.watch = None;
-            return match self.stage {
-                Stage::Paused { .. } => None,
-                _ => permit.check_place(motion.wish, actual).err().map(Ended::Refused),
-            };
+            return permit.check_place(motion.wish, actual).err().map(Ended::Refused);
         }
-        act.watch.get_or_insert_with(|| Watch::begin(motion, actual, permit)).look(motion, actual, permit)
+        let watch = act.watch.get_or_insert_with(|| Watch::begin(motion, actual, permit));
+        let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.is_past(since, SHORT));
+        let waits = watch.wait(has_braked, actual, permit);
+        watch.look(motion, actual, permit).or(waits)
     }
 }

@@ -84,7 +84,12 @@ impl Master<'_> {
             return Ok(allowed);
         };
         let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
-            Some(number) => self.read_number(number).map(Some),
+            Some(number) => match self.read_number(number) {
+                Ok(value) => Ok(Some(value)),
+                // Why the other one was refused counts.
+                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) => Err(error),
+            },
             None => Ok(None),
         };
         let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
