@@ -182,8 +182,13 @@ fn port() -> (Box<dyn Datagrams>, Target, Arc<RealClock>) {
 fn ours() -> (Box<dyn Way>, Target) {
     let (packets, target, clock) = port();
     let motion = Motion::new(clock.clone());
-    let rules =
-        Rules { requested: Some(1), scale: Some((256, 1)), limits: Some((-33_000_000, 33_000_000)), timeout: Some(20) };
+    let rules = Rules {
+        requested: Some(1),
+        scale: Some((256, 1)),
+        limits: Some((-33_000_000, 33_000_000)),
+        timeout: Some(20),
+        reference: Some(0),
+    };
     // Nothing reads them again here: as if they had been read at the end.
     let read = clock.now() + Duration::from_secs(3600);
     motion.publish_limits(DriveNumber::FIRST, DriveLimits::of(rules, (Topology::Adapter, Variant::new(7)), read));

@@ -72,6 +72,19 @@ fn limits_that_somebody_else_sets_while_control_is_held_are_read_and_hold() {
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
 }
 
+/// Issue 21.6: another reference gives every position another place, so that what rests on the old one has to fall.
+#[test]
+fn a_reference_that_another_master_sets_while_control_is_held_is_read() {
+    let mut desk = in_control("sim:");
+    set(&desk, 198, 6400);
+    desk.until("it is read", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.number(ONE, 198) == Some(6400) && own.session.is_ready() && own.may_move(ONE).is_ok()
+    });
+    drive(&mut desk, Motor::Move { target: 6400 });
+    assert_eq!(desk.told(Severity::Warning), Vec::<String>::new());
+}
+
 #[test]
 fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_are_seen() {
     let mut desk = in_control("sim:");

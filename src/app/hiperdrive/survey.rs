@@ -79,14 +79,17 @@ impl Unit {
         }
     }
 
-    /// The drive has other limits or another scale than the table of parameters shows.
+    /// The drive has other limits, another scale or another reference than the table of parameters shows.
     fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
             let shown = self.staged.base();
             let scale = shown.and_then(|image| image.of_drive(drive, 154).zip(image.of_drive(drive, 156)));
             Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
-        })
+        }) || held
+            .and_then(|own| own.rules().reference)
+            .zip(self.number(drive, 198))
+            .is_some_and(|(own, shown)| own != shown)
     }
 
     /// Why what is known of a drive's parameters is no ground to move it on; `None` where it is.

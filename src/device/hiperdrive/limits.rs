@@ -128,7 +128,7 @@ impl DriveLimits {
 
     /// Why nothing may move, the weightiest reason first.
     pub fn locks(&self) -> Vec<Lock> {
-        let Rules { requested, scale, limits, timeout } = self.rules;
+        let Rules { requested, scale, limits, timeout, .. } = self.rules;
         let unread = requested.is_none() || scale.is_none() || limits.is_none() || timeout.is_none();
         [
             (Lock::Unread, unread),

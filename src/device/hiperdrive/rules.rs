@@ -15,6 +15,8 @@ pub struct Rules {
     pub limits: Option<(i64, i64)>,
     /// Parameter 186.
     pub timeout: Option<i64>,
+    /// Parameter 198: another reference gives every position another place.
+    pub reference: Option<i64>,
 }
 
 impl Rules {
@@ -25,6 +27,7 @@ impl Rules {
             scale: read(154).zip(read(156)),
             limits: read(158).zip(read(160)),
             timeout: read(186),
+            reference: read(198),
         }
     }
 }
@@ -35,7 +38,7 @@ impl Rules {
 /// The way.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
     let mut values = Vec::new();
-    for base in [152, 154, 156, 158, 160, 186] {
+    for base in [152, 154, 156, 158, 160, 186, 198] {
         match master.read_number(of(base, drive)?) {
             Ok(value) => values.push((base, value)),
             Err(error) if error.is_unsaid() => {}
@@ -62,6 +65,6 @@ pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, grou
         0 => Rules { requested: read(152)?, ..known },
         1 => Rules { timeout: read(186)?, ..known },
         2 => Rules { scale: read(154)?.zip(read(156)?), ..known },
-        _ => Rules { limits: read(158)?.zip(read(160)?), ..known },
+        _ => Rules { limits: read(158)?.zip(read(160)?), reference: read(198)?, ..known },
     })
 }
