@@ -20,7 +20,7 @@ pub enum Warning {
     AfterReset(Item),
     /// The time-out is off (186 = 255): nothing moves from here.
     NoTimeout(DriveNumber),
-    /// The drive is not requested any more (152 = 0): nothing moves it from the bus.
+    /// The drive is no longer requested (152 = 0): nothing moves it from the bus.
     NotRequested(DriveNumber),
     /// The address switch decides, and not what is to be set.
     SwitchDecides(AddressSwitch),
