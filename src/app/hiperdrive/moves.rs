@@ -335,7 +335,7 @@ impl Moves {
 
     /// The limits of a drive are to be read before it moves.
     pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
-        self.limits.entry(drive).or_default().doubt();
+        self.limits.entry(drive).or_default().doubt(self.looked);
         if let Some(motion) = &self.motion {
             motion.doubt_limits(drive);
         }
@@ -344,8 +344,8 @@ impl Moves {
     /// Why a drive may not move.
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
         let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
-        // Without control nothing moves, and the limits are read with it.
-        locks.retain(|lock| *lock != Lock::Outdated || self.view.open);
+        // Without control nothing moves, the limits are read with it, and a slow answer ends nothing.
+        locks.retain(|lock| !matches!(lock, Lock::Outdated | Lock::NoAnswer) || self.view.open);
         locks
     }
 

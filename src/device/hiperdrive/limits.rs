@@ -20,8 +20,8 @@ pub struct DriveLimits {
     unconfirmed: bool,
     /// When each group of parameters was read; `None`: not since they may have changed.
     read: Option<[Moment; GROUPS]>,
-    /// All of them are to be read again before the next motion begins.
-    doubted: bool,
+    /// Since then all of them are to be read again before the next motion begins.
+    doubted: Option<Moment>,
 }
 
 /// The limits as a person saw them, with the scale that gives them their meaning.
@@ -46,13 +46,14 @@ impl DriveLimits {
         limits
     }
 
-    /// Takes over what was read; `times` says when each group of parameters was. Where the scale has changed, the limits lie
-    /// elsewhere: they have to be confirmed.
+    /// Takes over what was read; `times` says when the reading of each group of parameters began. Where the scale has changed,
+    /// the limits lie elsewhere: they have to be confirmed. What was read before a doubt does not settle it.
     pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.are_factory(topology, variant);
         self.rules = rules;
-        (self.read, self.doubted) = (Some(times), false);
+        self.read = Some(times);
+        self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
     /// The parameters as they were read last.
@@ -62,13 +63,13 @@ impl DriveLimits {
 
     /// When each group of parameters was read; `None` where all of them are to be read at once.
     pub fn times(&self) -> Option<[Moment; GROUPS]> {
-        self.read.filter(|_| !self.doubted)
+        self.read.filter(|_| self.doubted.is_none())
     }
 
     /// The parameters have to be read before the next motion begins: somebody else may have changed them. A motion that is
     /// under way goes on for as long as the last reading is valid.
-    pub const fn doubt(&mut self) {
-        self.doubted = true;
+    pub const fn doubt(&mut self, now: Moment) {
+        self.doubted = Some(now);
     }
 
     /// Nothing is known of the parameters any more. Limits that have to be confirmed stay so.
@@ -114,7 +115,7 @@ impl DriveLimits {
 
     /// A motion may begin by what was read: within the last seconds, and not doubted since.
     pub fn is_valid(&self, now: Moment) -> bool {
-        !self.doubted && self.is_fresh(now)
+        self.doubted.is_none() && self.is_fresh(now)
     }
 
     fn is_fresh(&self, now: Moment) -> bool {
@@ -146,7 +147,7 @@ impl DriveLimits {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
         let endless = self.is_factory && expert;
-        Permit { limits: self.limits(), locks, endless, doubted: self.doubted, degree: self.degree() }
+        Permit { limits: self.limits(), locks, endless, doubted: self.doubted.is_some(), degree: self.degree() }
     }
 
     /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
@@ -238,9 +239,14 @@ mod tests {
             assert_eq!(limits.permit(at(ms), false).locks, locks, "{ms}");
             assert_eq!(limits.is_valid(at(ms)), locks.is_empty(), "{ms}");
         }
-        limits.doubt();
+        limits.doubt(at(1000));
         assert!(!limits.is_valid(at(1000)) && limits.permit(at(1000), false).doubted, "nothing begins");
         assert_eq!((limits.permit(at(1000), false).locks, limits.times()), (vec![], None), "what moves goes on");
+        // A group whose reading was under way when the doubt came.
+        limits.take(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
+        assert_eq!((limits.times(), limits.is_valid(at(1100))), (None, false));
+        limits.take(rules(&[]), HDA30A, [at(1200); GROUPS]);
+        assert_eq!((limits.times(), limits.is_valid(at(1200))), (Some([at(1200); GROUPS]), true));
         limits.forget();
         assert_eq!(limits.permit(at(1000), false).locks, [Lock::Unread]);
         assert_eq!(limits.limits(), None);

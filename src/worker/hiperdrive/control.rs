@@ -181,8 +181,11 @@ impl Hiperdrive {
         for drive in &identity.drives {
             // As they are before the plan: a scale that it changes is told from this one.
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
-            self.control.limit(identity, drive.number, rules, [desk.clock.now(); GROUPS]);
-            self.control.forget(drive.number);
+            let now = desk.clock.now();
+            self.control.motion.with_limits(drive.number, |limits| {
+                limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);
+                limits.forget();
+            });
         }
         let ended = carry_through(self, desk, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);

@@ -163,7 +163,8 @@ impl Motion {
 
     /// The limits of a drive are to be read before its next motion: another master may have changed them.
     pub fn doubt_limits(&self, drive: DriveNumber) {
-        self.with_limits(drive, DriveLimits::doubt);
+        let now = self.0.clock.now();
+        self.with_limits(drive, |limits| limits.doubt(now));
     }
 
     /// The drive of which something was wanted last.
@@ -213,12 +214,7 @@ impl Motion {
     pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
-        let silent = cell.session.is_silent(now);
-        make(&cell.intent, &|drive| {
-            let mut permit = cell.permitted(drive, now);
-            permit.locks.extend(silent.then_some(Lock::NoAnswer));
-            permit
-        })
+        make(&cell.intent, &|drive| cell.permitted(drive, now))
     }
 
     /// Notes a request or an answer of the explicit messages.
@@ -310,7 +306,10 @@ impl Motion {
 impl Cell {
     fn permitted(&self, drive: DriveNumber, now: Moment) -> Permit {
         let limits = self.limits.get(&drive);
-        limits.map_or_else(Permit::default, |limits| limits.permit(now, self.experts.contains(&drive)))
+        let permit = limits.map(|limits| limits.permit(now, self.experts.contains(&drive)));
+        let mut permit = permit.unwrap_or_default();
+        permit.locks.extend(self.session.is_silent(now).then_some(Lock::NoAnswer));
+        permit
     }
 }
 

@@ -202,7 +202,11 @@ mod tests {
         reply.extend([1, 0, 0, 0]);
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
-        let locked = || motion.with_wanted(|_, permit| permit(DriveNumber::FIRST).locks.contains(&Lock::NoAnswer));
+        let locked = || {
+            let locks = motion.with_wanted(|_, permit| permit(DriveNumber::FIRST).locks);
+            assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
+            locks.contains(&Lock::NoAnswer)
+        };
         let later = |ms| clock.sleep_until(clock.now() + Duration::from_millis(ms));
         let receive = |bytes: &[u8]| {
             let mut wire = WatchedWire::new(Box::new(Line(bytes.to_vec())), clock.clone(), motion.clone());
