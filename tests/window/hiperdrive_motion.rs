@@ -302,8 +302,8 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     desk.studio.poll();
     assert!(stands(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
-        drive(&mut desk, Motor::FreeOutward);
-        assert!(unit(&desk).may_jog(ONE, up).is_ok() && unit(&desk).can_free(ONE).is_none());
+        drive(&mut desk, Motor::FreeOutward(up));
+        assert!(unit(&desk).may_jog(ONE, up).is_ok() && !unit(&desk).can_free(ONE, up));
         drive(&mut desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
         drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
         hold_until(&mut desk, "it moves out", moves);
@@ -318,13 +318,48 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
         assert!(unit(&desk).may_jog(ONE, up).is_err(), "freed for one press");
     }
     // What is freed is forgotten with a stop, and with another page of the window.
-    drive(&mut desk, Motor::FreeOutward);
+    drive(&mut desk, Motor::FreeOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).may_jog(ONE, up).is_err());
-    drive(&mut desk, Motor::FreeOutward);
+    drive(&mut desk, Motor::FreeOutward(up));
     desk.act(Action::ShowTab(Tab::Ssi));
     desk.act(Action::ShowTab(Tab::Hiperdrive));
     assert!(unit(&desk).may_jog(ONE, up).is_err());
+}
+
+/// Issue 21.4: by status bit 15 alone, with the position well inside, the way in is not known: nothing moves, and each pad can
+/// be freed for one press.
+#[test]
+fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
+    let mut desk = in_control("sim:?defect=says-outside");
+    desk.until("what it says is known", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        own.outside(ONE).is_some() && own.session.is_ready() && own.may_move(ONE).is_ok()
+    });
+    let (up, down) = (Direction::Clockwise, Direction::Counterclockwise);
+    assert_eq!(unit(&desk).outside_words(ONE).unwrap().id(), "hd_outside.unclear");
+    for (way, other) in [(up, down), (down, up)] {
+        for own in [up, down] {
+            assert_eq!(unit(&desk).may_jog(ONE, own).unwrap_err().id(), "hd_refused.unclear", "{own:?}");
+            assert!(unit(&desk).is_blocked(ONE, own), "{own:?}");
+        }
+        drive(&mut desk, Motor::FreeOutward(way));
+        assert!(unit(&desk).may_jog(ONE, way).is_ok() && unit(&desk).may_jog(ONE, other).is_err());
+        drive(&mut desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+        drive(&mut desk, Motor::JogPress { direction: way, repeated: false });
+        hold_until(&mut desk, "it moves", moves);
+        let sent = unit(&desk).moves.sent(ONE).unwrap();
+        assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
+        drive(&mut desk, Motor::JogRelease);
+        desk.until("it stands", |studio| {
+            let own = studio.hiperdrive().unwrap();
+            own.state(ONE) != Some(State::Moving) && !own.moves.is_under_way()
+        });
+    }
+    desk.studio.poll();
+    drive(&mut desk, Motor::Move { target: 65_536 });
+    assert!(desk.told(Severity::Warning).contains(&"hd_refused.unclear"), "{:?}", desk.told(Severity::Warning));
+    assert!(stands(&desk));
 }
 
 /// Issue 21.11: settings that cannot be read may hold a lock: nothing moves before they are read.

@@ -93,7 +93,7 @@ impl Unit {
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
             Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
-            Motor::FreeOutward => return self.free_outward(drive, services),
+            Motor::FreeOutward(direction) => return self.free_outward(drive, direction, services),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;

@@ -82,8 +82,8 @@ pub enum Motor {
         /// The key repeats by itself: nothing begins by that.
         repeated: bool,
     },
-    /// From outside the limits the next jog may lead further out.
-    FreeOutward,
+    /// From outside the limits the next jog this way may lead further out.
+    FreeOutward(Direction),
     /// It is still held: said with every picture.
     JogHold,
     /// It was let go.

@@ -4,15 +4,15 @@
 use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
-use crate::device::hiperdrive::dead_man::{Effort, Side, Wish, outside};
+use crate::device::hiperdrive::dead_man::{Effort, Outside, Permit, Wish};
 use crate::protocol::hiperdrive::{Direction, DriveNumber, nearest_reference};
 use crate::worker::hiperdrive::Change;
 
-/// Where a drive is outside its limits.
+/// A drive outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outside {
-    /// On which side.
-    pub side: Side,
+pub struct OutsideSeen {
+    /// Where it is.
+    pub outside: Outside,
     /// In steps as scaled.
     pub position: i32,
     /// Parameters 158 and 160.
@@ -24,18 +24,23 @@ pub struct Outside {
 impl Unit {
     /// Where a drive is outside its limits, by its position or by status bit 15; `None` inside, and where one of both is not
     /// known.
-    pub fn outside(&self, drive: DriveNumber) -> Option<Outside> {
+    pub fn outside(&self, drive: DriveNumber) -> Option<OutsideSeen> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
-        let side = outside(actual, limits)?;
         let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
-        let is_far = side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree);
-        Some(Outside { side, position: actual.position, limits, is_far })
+        let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
+        let outside = permit.outside(actual)?;
+        let is_far = match outside {
+            Outside::At(side) => side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
+            Outside::Unclear => true,
+        };
+        Some(OutsideSeen { outside, position: actual.position, limits, is_far })
     }
 
     /// A drive outside its limits, in words; `None` inside, and at the end of its range.
     pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
-        let text = Text::new("hd_outside.words").with_text("position", self.place(drive, own.position));
+        let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
+        let text = Text::new(id).with_text("position", self.place(drive, own.position));
         Some(text.with_text("range", self.places(drive, own.limits)))
     }
 
@@ -48,27 +53,24 @@ impl Unit {
         self.may(drive, Wish::Jog { direction, effort: Effort::JOG, outward })
     }
 
-    /// This way leads further out from outside the limits, and is not freed.
+    /// This way may lead further out from outside the limits, and is not freed.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
-        let outward = self.outside(drive).map(|own| own.side.outward());
-        outward == Some(direction) && !self.moves.is_freed(drive, direction)
+        let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
+        is_outward && !self.moves.is_freed(drive, direction)
     }
 
-    /// The direction that leads further out and can be freed for one press; `None` inside the limits, and once it is freed.
-    pub fn can_free(&self, drive: DriveNumber) -> Option<Direction> {
-        let direction = self.outside(drive)?.side.outward();
-        (self.may_move(drive).is_ok() && self.is_blocked(drive, direction)).then_some(direction)
+    /// This way is blocked, and can be freed for one press.
+    pub fn can_free(&self, drive: DriveNumber, direction: Direction) -> bool {
+        self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
-    /// A person frees the way further out, for one press.
-    pub(super) fn free_outward(&mut self, drive: DriveNumber, services: &mut Services) {
-        match self.can_free(drive) {
-            Some(direction) => self.moves.free(drive, direction),
-            None => {
-                let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
-                self.tell_of(drive, Severity::Warning, vec![why], services);
-            }
+    /// A person frees a way that is blocked, for one press.
+    pub(super) fn free_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
+        if self.can_free(drive, direction) {
+            return self.moves.free(drive, direction);
         }
+        let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
+        self.tell_of(drive, Severity::Warning, vec![why], services);
     }
 
     /// The change that gives the place where a drive stands this position, in steps as scaled, and saves it.

@@ -25,7 +25,7 @@ mod watch;
 use std::time::Duration;
 
 pub use act::{Effort, Ended, Goal, Intent, Lock, Motive, Permit, Phase, Refusal, Rung, Wish};
-pub use watch::{Side, outside};
+pub use watch::{Outside, Side};
 
 use crate::protocol::hiperdrive::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
 use crate::units::Moment;

@@ -24,6 +24,8 @@ pub enum Defect {
     RunsOn,
     /// It turns the other way.
     Reversed,
+    /// It says by status bit 15 that it is outside its limits, wherever it is.
+    SaysOutside,
 }
 
 impl Default for Load {
@@ -56,7 +58,7 @@ impl Wanted {
     pub(super) fn with(self, defect: Option<Defect>, place: f64) -> Wanted {
         let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
         match (self, defect) {
-            (wanted, None) | (wanted @ Wanted::Rest, _) => wanted,
+            (wanted, None | Some(Defect::SaysOutside)) | (wanted @ Wanted::Rest, _) => wanted,
             (Wanted::Place { at, speed }, Some(_)) => Wanted::Speed(turned((at - place).signum() * speed)),
             (Wanted::Speed(speed), Some(_)) => Wanted::Speed(turned(speed)),
         }

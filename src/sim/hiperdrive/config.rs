@@ -76,7 +76,7 @@ impl Config {
     /// | `speed` | parameter 166: greatest speed in tenths of rpm, 5…350 |
     /// | `load` | percent of the nominal torque that the spindle takes, 0…200: above 100 no drive can move it |
     /// | `blocked` | `on`: the spindle is held where it stands |
-    /// | `defect` | `runs-on`: the drives stop neither at a target nor at a limit; `reversed`: they turn the other way |
+    /// | `defect` | `runs-on`: the drives stop neither at a target nor at a limit; `reversed`: they turn the other way; `says-outside`: status bit 15 is always set |
     /// | `temperature` | degrees Celsius around the drives: from 80 on they fail |
     /// | `s3` | switch S3, 0…9; away from 0 nothing moves from the bus |
     /// | `switch` | address switch, 0…99 |
@@ -141,8 +141,12 @@ impl Config {
             "load" => self.load = setting.within(0..=200, "percent of the nominal torque from 0 to 200")?,
             "blocked" => self.blocked = setting.switch()?,
             "defect" => {
-                let defects = [("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed)];
-                self.defect = Some(setting.one_of(&defects, "runs-on or reversed")?);
+                let defects = [
+                    ("runs-on", Defect::RunsOn),
+                    ("reversed", Defect::Reversed),
+                    ("says-outside", Defect::SaysOutside),
+                ];
+                self.defect = Some(setting.one_of(&defects, "runs-on, reversed or says-outside")?);
             }
             "temperature" => self.temperature = setting.decimal(-40.0..=120.0, "degrees Celsius from -40 to 120")?,
             _ => return Ok(false),

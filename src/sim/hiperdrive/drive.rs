@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::axis::{Axis, Came, Load, TICK, TURN, Wanted};
+use super::axis::{Axis, Came, Defect, Load, TICK, TURN, Wanted};
 use super::memory::Memory;
 use crate::protocol::hiperdrive::{
     Actual, Begins, ControlBit, ControlWord, ErrorCode, Family, OutData, PositionScale, SpeedScale, State, StatusBit,
@@ -166,6 +166,7 @@ impl Drive {
         };
         let (low, high) = self.limits();
         let position = self.position();
+        let says_outside = self.load.defect == Some(Defect::SaysOutside);
         [
             (StatusBit::Ready, level >= 1),
             (StatusBit::Operational, level >= 2),
@@ -177,7 +178,7 @@ impl Drive {
             (StatusBit::SetpointAcknowledged, self.acknowledged),
             (StatusBit::StandingStill, self.stands()),
             (StatusBit::OverCurrent, self.over_current),
-            (StatusBit::PositionLimit, position < low || position > high),
+            (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
         .into_iter()
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with(bit, set))

@@ -6,6 +6,7 @@ use super::motion::{View, effort_ui, length_ui, why_not};
 use super::outside;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::app::{Action, HoldEvent, SessionId};
+use crate::device::hiperdrive::dead_man::Outside;
 use crate::protocol::hiperdrive::{Direction, DriveNumber};
 use crate::ui::Skin;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};
@@ -58,7 +59,11 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
             [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
         {
             let blocked = unit.is_blocked(unit.drive(), direction);
-            let caption = skin.say(if blocked { "hd_outside.pad" } else { "hd_jog.hold" });
+            let caption = skin.say(match unit.outside(unit.drive()).map(|own| own.outside) {
+                Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
+                _ if blocked => "hd_outside.pad",
+                _ => "hd_jog.hold",
+            });
             let (enabled, label) = (enabled && !blocked, skin.say(label));
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::JogPress { direction, repeated: false };

@@ -5,6 +5,7 @@ use egui::{RichText, Ui};
 use super::motion::length_ui;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
 use crate::app::{Action, Text};
+use crate::device::hiperdrive::dead_man::{Outside, Side};
 use crate::protocol::hiperdrive::Direction;
 use crate::ui::controls::{allowed_button, paragraph, problem};
 use crate::ui::{Skin, icons};
@@ -38,18 +39,30 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
         ui.label(RichText::new(icons::WARNING).color(skin.palette.bad));
         paragraph(ui, strong);
     });
-    let outward = outside.side.outward();
-    let (blocked, free, freed) = match outward {
-        Direction::Clockwise => ("hd_outside.blocked_up", "hd_outside.free_up", "hd_outside.freed_up"),
-        Direction::Counterclockwise => ("hd_outside.blocked_down", "hd_outside.free_down", "hd_outside.freed_down"),
-    };
-    if unit.moves.is_freed(drive, outward) {
-        paragraph(ui, skin.caption(skin.say(freed)));
-    } else {
-        paragraph(ui, skin.caption(skin.say(blocked)));
-        let allowed = unit.may_move(drive);
-        if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
-            actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward)));
+    let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
+    let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
+    match ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way)) {
+        Some(Direction::Clockwise) => paragraph(ui, skin.caption(skin.say("hd_outside.freed_up"))),
+        Some(Direction::Counterclockwise) => paragraph(ui, skin.caption(skin.say("hd_outside.freed_down"))),
+        None => {
+            let blocked = match outside.outside {
+                Outside::Unclear => "hd_outside.blocked_both",
+                Outside::At(Side::Above) => "hd_outside.blocked_up",
+                Outside::At(Side::Below) => "hd_outside.blocked_down",
+            };
+            paragraph(ui, skin.caption(skin.say(blocked)));
+            let allowed = unit.may_move(drive);
+            ui.horizontal_wrapped(|ui| {
+                for way in ways {
+                    let free = match way {
+                        Direction::Clockwise => "hd_outside.free_up",
+                        Direction::Counterclockwise => "hd_outside.free_down",
+                    };
+                    if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
+                        actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+                    }
+                }
+            });
         }
     }
     length_ui(ui, skin, unit, "hd_outside.place", &mut draft.place, actions);

@@ -57,7 +57,10 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         11 | 12 => bench.permit.locks.clear(),
         13 => bench.late = dice.usize(..4),
         14 => bench.load(Load { defect: Some(Defect::RunsOn), ..Load::default() }),
-        15 => bench.load(Load { defect: Some(Defect::Reversed), ..Load::default() }),
+        15 => {
+            let defect = Some([Defect::Reversed, Defect::SaysOutside][dice.usize(..2)]);
+            bench.load(Load { defect, ..Load::default() });
+        }
         16 => {
             let steps = f64::from(dice.i32(-TURN..TURN));
             bench.station.drive(DriveNumber::FIRST).unwrap().turn_by_hand(now, steps);

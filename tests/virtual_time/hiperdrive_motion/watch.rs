@@ -149,6 +149,45 @@ fn from_outside_only_the_way_in_is_free() {
     }
 }
 
+/// Issue 21.4: a drive that says by status bit 15 that it is outside, while its position is well inside, does not tell which
+/// way leads in: nothing moves but what was freed for one press.
+#[test]
+fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
+    let ways = [Direction::Clockwise, Direction::Counterclockwise];
+    let jogs = ways.map(|way| jog(way, FULL, false));
+    let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
+    for wish in jogs.into_iter().chain(runs).chain([to(0), to(TURN / 2), Wish::Step { by: 100, effort: FULL }]) {
+        let mut bench = bench(Some(Defect::SaysOutside));
+        bench.act(wish);
+        let (low, high) = LIMITS;
+        let expected = Ended::Refused(Refusal::Unclear { position: 0, low, high });
+        assert_eq!(bench.until_over(), expected, "{wish:?}");
+        bench.run(300);
+        assert_eq!((bench.position(), bench.moves()), (0, false), "{wish:?}");
+    }
+    for way in ways {
+        let mut bench = bench(Some(Defect::SaysOutside));
+        bench.act(jog(way, FULL, true));
+        bench.run(1500);
+        assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
+        assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
+        // Beyond the limits by its position it is stopped, as any other.
+        bench.permit = Permit::within(-bench.position().abs(), bench.position().abs());
+        bench.run(30);
+        assert!(matches!(bench.man.ended(), Some((_, Ended::Beyond { .. }))), "{:?}", bench.man.ended());
+    }
+    // Within a degree of a limit it is clear.
+    for (limits, free) in [((-TURN, 182), Direction::Counterclockwise), ((-182, TURN), Direction::Clockwise)] {
+        for way in ways {
+            let mut bench = bench(Some(Defect::SaysOutside));
+            bench.permit = Permit::within(limits.0, limits.1);
+            bench.act(jog(way, Effort::JOG, false));
+            bench.run(1000);
+            assert_eq!(matches!(bench.man.phase(), Phase::Moving(_)), way == free, "{limits:?} {way:?}");
+        }
+    }
+}
+
 /// Issue 21.4: the way out that was freed for one press is slow and weak, whatever is asked for, and for that press alone.
 #[test]
 fn the_way_out_can_be_freed_for_one_press() {

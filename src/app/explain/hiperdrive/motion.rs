@@ -32,6 +32,10 @@ pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
+        Refusal::Unclear { position, low, high } => Text::new("hd_refused.unclear")
+            .with_text("position", place(position))
+            .with_text("low", place(low))
+            .with_text("high", place(high)),
         Refusal::Endless => Text::new("hd_refused.endless"),
         Refusal::Fault => Text::new("hd_refused.fault"),
         Refusal::SwitchOnLock => Text::new("hd_refused.lock"),

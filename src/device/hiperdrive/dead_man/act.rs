@@ -241,6 +241,15 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
+    /// By status bit 15 it is outside its limits, though its position is inside: which way leads in is not known.
+    Unclear {
+        /// In steps as scaled.
+        position: i32,
+        /// Parameter 158.
+        low: i32,
+        /// Parameter 160.
+        high: i32,
+    },
     /// Past the limits it may not run.
     Endless,
     /// It has failed: that is to be acknowledged first.

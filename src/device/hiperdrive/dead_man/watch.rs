@@ -6,6 +6,7 @@
 //! | endless run | an expert's run without an end is held against its direction alone: there is no limit that it obeys |
 //! | unread limits | nothing moves, and what moves is stopped: the permit says so |
 //! | already outside | the way back in is free; further out only where that was freed for this press |
+//! | outside by status bit 15 alone, more than a degree inside | nothing moves but what was freed for this press: the way in is not known |
 //! | overrun while braking | a stop that is under way goes on; its reason stays |
 //!
 //! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
@@ -24,11 +25,20 @@ pub enum Side {
     Above,
 }
 
+/// Where a drive is beyond its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// On this side.
+    At(Side),
+    /// The drive says so by status bit 15, and its position is more than a degree inside both limits.
+    Unclear,
+}
+
 /// How a motion has gone so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// It began outside the limits, on this side, and has not been inside since.
-    outside: Option<Side>,
+    /// It began outside the limits, here, and has not been inside since.
+    outside: Option<Outside>,
     /// The least distance so far: of a job to its target, of a run to where it leads.
     best: i64,
     /// Where a job that waits stood once it had braked.
@@ -42,15 +52,31 @@ pub(super) struct Watch {
 /// Degrees of accuracy: ±2.5° (manual, technical data; reference 5), as whole degrees.
 const ACCURACY: i64 = 3;
 
-/// Where a drive is beyond its limits: by its position, or by status bit 15 alone, on the nearer side then.
-pub fn outside(actual: Actual, (low, high): (i32, i32)) -> Option<Side> {
-    let nearer = || {
-        let above =
-            Side::Above.beyond(actual.position, (low, high)) >= Side::Below.beyond(actual.position, (low, high));
-        if above { Side::Above } else { Side::Below }
-    };
-    let by_status = || actual.status.has(StatusBit::PositionLimit).then(nearer);
-    side(actual.position, (low, high)).or_else(by_status)
+impl Outside {
+    /// This direction may lead further out.
+    pub fn is_outward(self, direction: Direction) -> bool {
+        match self {
+            Outside::At(side) => side.outward() == direction,
+            Outside::Unclear => true,
+        }
+    }
+}
+
+impl Permit {
+    /// Where a drive is beyond its limits: by its position, or else by status bit 15, at a limit that is within a degree then.
+    /// `None` inside, and where no limits are known.
+    pub fn outside(&self, actual: Actual) -> Option<Outside> {
+        let (limits, degree) = (self.limits?, i64::from(self.degree));
+        let by_status = || {
+            let (side, beyond) = [Side::Below, Side::Above]
+                .map(|side| (side, side.beyond(actual.position, limits)))
+                .into_iter()
+                .max_by_key(|(_, beyond)| *beyond)?;
+            Some(if beyond >= -degree { Outside::At(side) } else { Outside::Unclear })
+        };
+        let beyond = side(actual.position, limits).map(Outside::At);
+        beyond.or_else(|| actual.status.has(StatusBit::PositionLimit).then(by_status)?)
+    }
 }
 
 fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
@@ -97,7 +123,7 @@ impl Watch {
     /// At the beginning of a motion.
     pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
-        let outside = limits.and_then(|limits| outside(actual, limits));
+        let outside = limits.and_then(|_| permit.outside(actual));
         let best = motion.distance(actual);
         let at_end = match (motion.motive, limits) {
             (Motive::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
@@ -141,12 +167,15 @@ impl Watch {
         let runs = matches!(motion.motive, Motive::Run { .. });
         let beyond = Some(Ended::Beyond { position: actual.position });
         let Some(began) = self.outside else {
-            let steps = outside(actual, limits)?.beyond(actual.position, limits);
-            return if runs && steps.abs() <= degree { Some(Ended::RangeEnd) } else { beyond };
+            let is_end = match permit.outside(actual)? {
+                Outside::At(side) => side.beyond(actual.position, limits).abs() <= degree,
+                Outside::Unclear => false,
+            };
+            return if runs && is_end { Some(Ended::RangeEnd) } else { beyond };
         };
         match side(actual.position, limits) {
             // Through the whole range, and out at the other side.
-            Some(side) if side != began => return beyond,
+            Some(side) if Outside::At(side) != began => return beyond,
             // Status bit 15 may be late.
             None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
             _ => {}
@@ -160,19 +189,21 @@ impl Permit {
     /// freed for this press.
     ///
     /// # Errors
-    /// [`Refusal::Outward`].
+    /// [`Refusal::Outward`], [`Refusal::Unclear`].
     pub fn check_place(&self, wish: Wish, actual: Actual) -> Result<(), Refusal> {
-        let (direction, freed) = match wish {
-            Wish::Jog { direction, outward, .. } => (direction, outward),
-            Wish::Run { direction, end: RunEnd::RangeEnd, .. } => (direction, false),
+        let direction = match wish {
+            Wish::Jog { outward: true, .. } | Wish::Run { end: RunEnd::Endless, .. } => return Ok(()),
+            Wish::Jog { direction, .. } | Wish::Run { direction, .. } => Some(direction),
+            Wish::Move { .. } | Wish::Step { .. } => None,
             _ => return Ok(()),
         };
-        let Some(limits) = self.limits else { return Ok(()) };
-        match outside(actual, limits) {
-            Some(side) if side.outward() == direction && !freed => {
-                Err(Refusal::Outward { position: actual.position, low: limits.0, high: limits.1 })
-            }
-            _ => Ok(()),
+        let (Some((low, high)), Some(outside), position) = (self.limits, self.outside(actual), actual.position) else {
+            return Ok(());
+        };
+        match outside {
+            Outside::Unclear => Err(Refusal::Unclear { position, low, high }),
+            Outside::At(side) if direction == Some(side.outward()) => Err(Refusal::Outward { position, low, high }),
+            Outside::At(_) => Ok(()),
         }
     }
 }
