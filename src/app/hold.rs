@@ -96,6 +96,7 @@ pub struct HoldState {
     /// A hold has begun since the last picture.
     began: bool,
     stop: bool,
+    next_picture: Option<f64>,
 }
 
 impl HoldState {
@@ -126,7 +127,7 @@ impl HoldState {
                 self.keys.forget();
                 self.let_go();
             }
-            HoldInput::Down { key, plain } => self.key_down(now, key, plain, scene),
+            HoldInput::Down { key, plain } => self.key_down(key, plain, scene),
             HoldInput::Up(key) => {
                 if scene.window {
                     self.keys.release(key, now);
@@ -153,8 +154,9 @@ impl HoldState {
         }
     }
 
-    /// The picture ends, with the pointer down or not, and on the button or not. What became of the hold.
-    pub fn end(&mut self, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
+    /// The picture of this time ends, with the pointer down or not, and on the button or not. What became of the hold.
+    pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
+        self.next_picture = self.keys.end_picture(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
             self.let_go_of_pointer();
@@ -170,6 +172,11 @@ impl HoldState {
             (true, false) => Some(HoldEvent::Release),
             (false, false) => None,
         }
+    }
+
+    /// In how many seconds a picture is needed at the latest, so that a key that went up counts as up.
+    pub const fn next_picture(&self) -> Option<f64> {
+        self.next_picture
     }
 
     /// It is held.
@@ -189,8 +196,8 @@ impl HoldState {
         has_keyboard && !armed && self.holder.is_none()
     }
 
-    fn key_down(&mut self, now: f64, key: PressKey, plain: bool, scene: HoldScene) {
-        let fresh = self.keys.press(key, now);
+    fn key_down(&mut self, key: PressKey, plain: bool, scene: HoldScene) {
+        let fresh = self.keys.press(key);
         match self.holder {
             Some(Holder::Key(own)) if own == key && plain => {}
             Some(_) => self.let_go(),
@@ -236,6 +243,7 @@ mod tests {
     struct Pad {
         state: HoldState,
         now: f64,
+        apart: f64,
         scene: HoldScene,
         pointer: bool,
         follows: bool,
@@ -243,7 +251,7 @@ mod tests {
 
     impl Pad {
         fn new() -> Self {
-            Pad { state: HoldState::default(), now: 0.0, scene: SCENE, pointer: false, follows: true }
+            Pad { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
         }
 
         /// With the keyboard, and after Space and Enter were seen up.
@@ -251,12 +259,19 @@ mod tests {
             let mut pad = Pad::new();
             assert_eq!(pad.picture(&[]), None);
             assert_eq!(pad.picture(&[DOWN, HoldInput::Down { key: Enter, plain: true }]), None);
-            assert_eq!(pad.picture(&[UP, HoldInput::Up(Enter)]), None);
+            assert_eq!(pad.lift(&[UP, HoldInput::Up(Enter)]), None);
             pad
         }
 
+        /// A picture in which keys go up, and one that sees them up.
+        fn lift(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
+            let event = self.picture(inputs);
+            assert_eq!(self.picture(&[]), None);
+            event
+        }
+
         fn picture(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
-            self.now += 0.2;
+            self.now += self.apart;
             self.state.begin(self.scene, self.follows);
             for input in inputs {
                 self.pointer = match input {
@@ -266,7 +281,7 @@ mod tests {
                 };
                 self.state.take(self.now, *input);
             }
-            self.state.end(self.pointer, true)
+            self.state.end(self.now, self.pointer, true)
         }
     }
 
@@ -286,7 +301,7 @@ mod tests {
             assert_eq!(pad.picture(&[DOWN]), None, "it is still held");
         }
         assert!(pad.state.waits_for_release());
-        assert_eq!(pad.picture(&[UP]), None);
+        assert_eq!(pad.lift(&[UP]), None);
         assert!(!pad.state.waits_for_release());
         assert_eq!(pad.picture(&[DOWN]), Some(Press));
         // All of it between two pictures.
@@ -328,7 +343,7 @@ mod tests {
                 pad.follows = true;
                 assert!(!pad.state.is_held(), "{what}, {held}");
                 assert_eq!(pad.picture(&[DOWN]), None, "{what}, {held}");
-                assert_eq!(pad.picture(&[UP]), None, "{what}, {held}");
+                assert_eq!(pad.lift(&[UP]), None, "{what}, {held}");
                 assert_eq!(pad.picture(&[DOWN]), Some(Press), "{what}, {held}");
             }
         }
@@ -408,12 +423,44 @@ mod tests {
             assert_eq!(pad.picture(&[DOWN]), Some(Stop), "{armed}");
             pad.scene.moving = false;
             assert_eq!(pad.picture(&[DOWN]), None, "{armed}: still held");
-            assert_eq!(pad.picture(&[UP]), None);
+            assert_eq!(pad.lift(&[UP]), None);
             assert_eq!(pad.picture(&[DOWN]), Some(Press));
         }
         let mut pad = Pad::armed();
         (pad.scene.moving, pad.scene.keyboard) = (true, false);
         assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
+    }
+
+    /// Issue 21.2: a key that repeats itself by a release and a press at once, which come in two pictures of any distance.
+    #[test]
+    fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
+        for apart in [0.016, 0.05, 0.08, 0.25] {
+            let mut pad = Pad::armed();
+            pad.apart = apart;
+            assert_eq!(pad.picture(&[DOWN]), Some(Press), "{apart}");
+            assert_eq!(pad.picture(&[UP]), Some(Release), "{apart}");
+            for _ in 0..30 {
+                assert_eq!(pad.picture(&[DOWN]), None, "{apart}");
+                assert_eq!(pad.picture(&[UP]), None, "{apart}");
+            }
+        }
+    }
+
+    /// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.
+    #[test]
+    fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
+        let mut pad = Pad::armed();
+        assert_eq!(pad.picture(&[DOWN]), Some(Press));
+        assert_eq!(pad.state.next_picture(), None, "while it is held");
+        assert_eq!(pad.picture(&[UP]), Some(Release));
+        let released = pad.now;
+        while let Some(next) = pad.state.next_picture() {
+            pad.apart = next;
+            assert_eq!(pad.picture(&[]), None);
+            assert!(pad.now < released + 0.0501);
+        }
+        pad.apart = released + 0.1 - pad.now;
+        assert_eq!(pad.picture(&[DOWN]), Some(Press));
     }
 
     #[test]

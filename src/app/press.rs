@@ -2,8 +2,9 @@
 //!
 //! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard, so that the
 //! next repetition of a key that is still held looks like a first press; and what it calls a release at that moment is made
-//! up. A release that came while the window had the keyboard does prove something: the key was up. Pure: what came is handed
-//! in, in the order in which it came, with the time in seconds.
+//! up. A release that came while the window had the keyboard does prove something, once a later picture has seen the key
+//! still up: a release and a press that were made at once may come in two pictures, however far these lie apart. Pure: what
+//! came is handed in, in the order in which it came, with the time of its picture in seconds.
 
 /// A key that presses a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,8 +26,9 @@ enum Seen {
     #[default]
     Nothing,
     Down,
-    /// From this time on.
-    Up(f64),
+    /// Its release came in the picture of this time; since then it was not seen up for long enough.
+    Released(f64),
+    Up,
 }
 
 /// What is known of the keys that press buttons.
@@ -38,22 +40,21 @@ pub struct FreshKeys {
 
 impl FreshKeys {
     /// Keys that are up: where no keyboard was taken away yet.
-    pub const UP: FreshKeys = FreshKeys { space: Seen::Up(f64::NEG_INFINITY), enter: Seen::Up(f64::NEG_INFINITY) };
+    pub const UP: FreshKeys = FreshKeys { space: Seen::Up, enter: Seen::Up };
 
     /// Forgets what was seen: the keyboard went, came, or means something else from now on.
     pub fn forget(&mut self) {
         *self = FreshKeys::default();
     }
 
-    /// A key goes down. Whether that is a fresh press: it was seen up before.
-    pub fn press(&mut self, key: PressKey, now: f64) -> bool {
-        let before = std::mem::replace(self.of(key), Seen::Down);
-        matches!(before, Seen::Up(since) if now - since >= LEAST)
+    /// A key goes down. Whether that is a fresh press: a picture before this one saw it up for long enough.
+    pub fn press(&mut self, key: PressKey) -> bool {
+        std::mem::replace(self.of(key), Seen::Down) == Seen::Up
     }
 
     /// A key goes up, while the window has the keyboard.
     pub fn release(&mut self, key: PressKey, now: f64) {
-        *self.of(key) = Seen::Up(now);
+        *self.of(key) = Seen::Released(now);
     }
 
     /// Another key goes down. Only the key that was pressed last repeats itself: one of which nothing is known does not.
@@ -61,14 +62,32 @@ impl FreshKeys {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
             if *own == Seen::Nothing {
-                *own = Seen::Up(now);
+                *own = Seen::Released(now);
             }
         }
     }
 
-    /// The key was seen up: its next press is fresh.
+    /// Ends a picture. Returns in how many seconds the next one is needed at the latest: a person who presses a key again
+    /// after its release causes no picture in between.
+    #[must_use]
+    pub fn end_picture(&mut self, now: f64) -> Option<f64> {
+        let mut next: Option<f64> = None;
+        for key in [PressKey::Space, PressKey::Enter] {
+            let own = self.of(key);
+            let Seen::Released(since) = *own else { continue };
+            let rest = since + LEAST - now;
+            if rest > 0.0 {
+                next = Some(next.map_or(rest, |next| next.min(rest)));
+            } else {
+                *own = Seen::Up;
+            }
+        }
+        next
+    }
+
+    /// The key was seen up: its next press is fresh, unless it follows at once.
     pub fn is_armed(&self, key: PressKey) -> bool {
-        matches!(self.get(key), Seen::Up(_))
+        matches!(self.get(key), Seen::Released(_) | Seen::Up)
     }
 
     /// The key was seen down, and not up since.
@@ -96,46 +115,87 @@ mod tests {
     use super::PressKey::{Enter, Space};
     use super::*;
 
+    /// So many pictures with nothing in them.
+    fn pictures(keys: &mut FreshKeys, from: f64, apart: f64, count: u32) {
+        for number in 0..count {
+            let _ = keys.end_picture(from + apart * f64::from(number));
+        }
+    }
+
     /// Issue 21.2: what a toolkit calls a first press is none where the key was not seen up.
     #[test]
     fn a_press_is_fresh_only_after_a_release_was_seen() {
         let mut keys = FreshKeys::default();
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
-            assert!(!keys.press(Space, f64::from(at) * 0.04), "a key that is held repeats itself");
+            assert!(!keys.press(Space), "a key that is held repeats itself");
+            assert_eq!(keys.end_picture(f64::from(at) * 0.04), None);
         }
         keys.release(Space, 2.0);
         assert!(keys.is_armed(Space) && !keys.is_armed(Enter));
-        assert!(keys.press(Space, 3.0) && keys.is_down(Space));
-        assert!(!keys.press(Space, 3.5), "held");
-        assert!(!keys.press(Enter, 4.0), "each key for itself");
+        pictures(&mut keys, 2.0, 0.1, 5);
+        assert!(keys.press(Space) && keys.is_down(Space));
+        pictures(&mut keys, 3.0, 0.1, 5);
+        assert!(!keys.press(Space), "held");
+        assert!(!keys.press(Enter), "each key for itself");
         keys.release(Space, 5.0);
+        pictures(&mut keys, 5.0, 0.1, 5);
         keys.forget();
-        assert!(!keys.press(Space, 6.0), "the keyboard was elsewhere meanwhile");
+        pictures(&mut keys, 5.5, 0.1, 5);
+        assert!(!keys.press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// Issue 21.2: a repetition by release and press is a repetition.
+    /// Issue 21.2: a repetition by release and press is a repetition, in one picture or in two, however far apart these are.
     #[test]
     fn a_release_and_a_press_at_once_are_a_repetition() {
-        let mut keys = FreshKeys::UP;
-        assert!(keys.press(Enter, 0.0));
-        for at in 1..30 {
-            let at = f64::from(at) * 0.04;
-            keys.release(Enter, at);
-            assert!(!keys.press(Enter, at), "{at}");
-            keys.release(Enter, at);
-            assert!(!keys.press(Enter, at + 0.01), "{at}, a picture later");
+        for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
+            let mut keys = FreshKeys::UP;
+            assert!(keys.press(Enter));
+            let _ = keys.end_picture(0.0);
+            for number in 1..30 {
+                let now = f64::from(number) * 3.0 * apart;
+                keys.release(Enter, now);
+                assert!(!keys.press(Enter), "{apart}: in one picture");
+                let _ = keys.end_picture(now);
+                keys.release(Enter, now + apart);
+                let _ = keys.end_picture(now + apart);
+                assert!(!keys.press(Enter), "{apart}: a picture later");
+                let _ = keys.end_picture(now + 2.0 * apart);
+            }
         }
-        keys.release(Enter, 2.0);
-        assert!(keys.press(Enter, 2.06), "as fast as a finger can");
+    }
+
+    /// Issue 21.2: a person's press counts although nothing else came after the release, because a picture was asked for.
+    #[test]
+    fn a_press_of_a_person_is_fresh_by_the_picture_that_was_asked_for() {
+        for apart in [0.001, 0.016, 0.05, 1.0] {
+            let mut keys = FreshKeys::UP;
+            assert!(keys.press(Enter));
+            assert_eq!(keys.end_picture(0.0), None, "it is down, and nothing is to be waited for");
+            keys.release(Enter, 1.0);
+            let (mut now, mut pictures) = (1.0, 0);
+            while let Some(next) = keys.end_picture(now) {
+                assert!(next > 0.0 && next < 0.0501, "{next}");
+                // By what is asked for, or by something else before it.
+                now += next.min(apart);
+                pictures += 1;
+            }
+            assert!(pictures >= 1 && now < 1.0501, "{pictures} pictures until {now}");
+            assert!(keys.press(Enter), "100 ms after the release");
+        }
     }
 
     #[test]
     fn another_key_ends_the_repetitions_of_one_of_which_nothing_is_known() {
         let mut keys = FreshKeys::default();
         keys.press_other(1.0);
-        assert!(keys.press(Enter, 1.1));
+        assert!(!keys.press(Enter), "at once");
+        keys.forget();
+        keys.press_other(1.0);
+        pictures(&mut keys, 1.0, 0.05, 2);
+        assert!(keys.press(Enter));
         keys.press_other(1.2);
-        assert!(!keys.press(Enter, 1.3), "it is known to be down");
+        pictures(&mut keys, 1.2, 0.05, 2);
+        assert!(!keys.press(Enter), "it is known to be down");
     }
 }

@@ -46,7 +46,7 @@ impl Keys {
                 let own = press_key(*key);
                 let repeats = own.is_some_and(|own| fresh.is_down(own));
                 let counts = match own {
-                    Some(own) => fresh.press(own, now),
+                    Some(own) => fresh.press(own),
                     None => {
                         if !asks {
                             fresh.press_other(now);
@@ -62,6 +62,9 @@ impl Keys {
             _ => true,
         };
         ctx.input_mut(|input| input.events.retain(&mut passes));
+        if let Some(seconds) = self.fresh.end_picture(now) {
+            ctx.request_repaint_after_secs(seconds as f32);
+        }
         if stops {
             stopping::means_motion(ctx, true, now);
         }

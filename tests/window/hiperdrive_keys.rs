@@ -139,6 +139,34 @@ fn a_key_that_repeats_itself_presses_no_button() {
     assert!(!is_under_way(screen.studio()), "held since then");
 }
 
+/// Issue 21.2: where a key repeats itself by a release and a press at once, the two may come in pictures that lie far apart.
+#[test]
+fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
+    let split = |screen: &mut Screen, key| {
+        for _ in 0..8 {
+            picture(screen, [event(key, false)]);
+            picture(screen, [event(key, true)]);
+            assert!(!is_under_way(screen.studio()));
+        }
+    };
+    let mut screen = on_pad();
+    down(&mut screen, Key::Space);
+    assert!(is_held(&screen));
+    split(&mut screen, Key::Space);
+    until_it_stands(&screen);
+    up(&mut screen, Key::Space);
+    // A click begins this one.
+    focus(&mut screen, "hd_run.forth");
+    down(&mut screen, Key::Enter);
+    assert!(is_under_way(screen.studio()));
+    motion(&screen).stop();
+    screen.until("it has ended", |studio| !is_under_way(studio));
+    split(&mut screen, Key::Enter);
+    up(&mut screen, Key::Enter);
+    down(&mut screen, Key::Enter);
+    assert!(is_under_way(screen.studio()), "a fresh act");
+}
+
 /// Issue 21.2: Space stops wherever the keyboard is, and presses nothing on the way.
 #[test]
 fn space_stops_what_moves_wherever_the_keyboard_is() {

@@ -125,7 +125,10 @@ pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2
         let at = input.pointer.interact_pos();
         (input.pointer.any_down(), pressed_here && at.is_some_and(|at| place.contains(at)))
     });
-    let event = state.end(down, inside);
+    let event = state.end(now, down, inside);
+    if let Some(seconds) = state.next_picture() {
+        ui.ctx().request_repaint_after_secs(seconds as f32);
+    }
     if event == Some(HoldEvent::Stop) {
         stopping::means_motion(ui.ctx(), true, now);
     }

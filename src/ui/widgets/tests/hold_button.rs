@@ -1,6 +1,6 @@
 //! A button that counts while it is held, and the diagram of a drive's states.
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -151,6 +151,52 @@ fn a_key_holds_it_and_its_repetitions_are_nothing() {
     step(&mut harness, [key(false, false)]);
     wait(&mut harness);
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
+}
+
+/// A picture so many seconds after the one before.
+fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) -> Vec<HoldEvent> {
+    let before = harness.ctx.input(|input| input.time);
+    harness.input_mut().time = Some(before + apart);
+    let events = step(harness, event);
+    harness.input_mut().time = None;
+    events
+}
+
+/// Issue 21.2: a key that repeats itself by a release and a press at once, which come in two pictures of any distance.
+#[test]
+fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
+    for apart in [0.016, 0.05, 0.08, 0.25] {
+        let mut harness = armed();
+        assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [Press], "{apart}");
+        assert_eq!(step_after(&mut harness, apart, Some(key(false, false))), [Release], "{apart}");
+        for _ in 0..20 {
+            assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [], "{apart}");
+            assert_eq!(step_after(&mut harness, apart, Some(key(false, false))), [], "{apart}");
+        }
+    }
+}
+
+/// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.
+#[test]
+fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
+    let mut harness = armed();
+    let next =
+        |harness: &Harness<'_, Jog>| harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_secs_f64();
+    for _ in 0..5 {
+        assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
+        assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
+        let mut waited = 0.0;
+        // The harness's own clock is not asked: a picture comes when it was asked for.
+        while next(&harness) < 1.0 && waited < 0.09 {
+            let apart = next(&harness).max(0.001);
+            waited += apart;
+            assert_eq!(step_after(&mut harness, apart, None), []);
+        }
+        assert!((0.05..0.09).contains(&waited), "{waited}");
+        assert_eq!(step_after(&mut harness, 0.1 - waited, Some(key(true, false))), [Press]);
+        assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
+        wait(&mut harness);
+    }
 }
 
 /// Issue 21.2: as the window system delivers it where Space is held over a change of the window. What egui calls a first press
