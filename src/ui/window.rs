@@ -301,8 +301,9 @@ impl Window {
         let covered = self.is_covered() || self.views.help;
         surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
         if covered || !ctx.input(|input| input.focused) {
-            // Nobody sees what is held, or the key that holds it will not be heard when it is lifted.
-            actions.push(Action::LetGo);
+            // Nobody sees what is held, or the key that holds it will not be heard when it is lifted. This picture shows
+            // it already: an action would ask for another one each time.
+            self.studio.act(Action::LetGo);
         }
         if self.is_covered() {
             return;

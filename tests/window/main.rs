@@ -12,6 +12,7 @@ mod closing;
 mod commutation;
 mod connecting;
 mod drafts;
+mod drawing;
 mod each_kind;
 mod hiperdrive;
 mod hiperdrive_axis;

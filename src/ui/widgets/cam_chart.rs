@@ -104,8 +104,11 @@ impl CamChart<'_> {
                 None => CamEvent::Selected(cam),
             });
         }
-        ui.data_mut(|data| data.insert_temp(base, Drag { to, ..drag }));
-        ui.request_repaint();
+        let now = Drag { to, ..drag };
+        if ui.data_mut(|data| data.get_temp(base)) != Some(now) {
+            ui.data_mut(|data| data.insert_temp(base, now));
+            ui.request_repaint();
+        }
         to.map(|to| CamEvent::Preview(cam, to))
     }
 

@@ -1,0 +1,155 @@
+//! How often the window is drawn while nothing changes (issue 22.32): by the clock of the pictures alone, each at the time
+//! for which the one before it has asked.
+
+use std::sync::atomic::Ordering;
+
+use egui::ViewportId;
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::{Action, FileQuestion, Studio, Tab};
+
+use crate::hiperdrive_stop::in_hand;
+use crate::screen::Screen;
+use crate::support::Outside;
+
+const SIZE: [f32; 2] = [1280.0, 900.0];
+/// In seconds of the pictures.
+const WATCHED: f64 = 10.0;
+/// The least time from one picture to the next that is asked for at once, in seconds.
+const AT_ONCE: f64 = 1.0 / 60.0;
+/// A cursor in a text entry is drawn and hidden twice a second at most.
+const BLINKS: usize = 2 * WATCHED as usize + 2;
+/// Live values are drawn every 50 ms.
+const LIVE: usize = (WATCHED / 0.05) as usize + 2;
+
+/// What stands over the window, or where the keyboard is.
+type Situation = (&'static str, fn(&mut Screen));
+
+const SITUATIONS: [Situation; 8] = [
+    ("in front", |_| {}),
+    ("not in front", |screen| screen.harness.input_mut().focused = false),
+    ("help", |screen| screen.click("shell.help")),
+    ("about", |screen| screen.click("shell.about")),
+    ("connecting", |screen| screen.click("shell.connect")),
+    ("a path is typed", |screen| screen.act(Action::TypePath(FileQuestion::Open))),
+    ("a question", |screen| {
+        screen.act(Action::Close);
+        assert!(screen.studio().question.is_some());
+    }),
+    ("a review", |screen| {
+        let id = screen.studio().shown().unwrap().id();
+        screen.act(Action::Hiperface(id, Hiperface::Review));
+        screen.until("the review is open", |studio| studio.shown().unwrap().is_reviewing());
+    }),
+];
+
+/// How many pictures the window asks for.
+fn pictures(screen: &mut Screen) -> usize {
+    let (mut passed, mut count) = (0.0, 0);
+    loop {
+        let next = screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_secs_f64();
+        passed += next.max(AT_ONCE);
+        if passed > WATCHED {
+            screen.harness.input_mut().time = None;
+            return count;
+        }
+        let now = screen.harness.ctx.input(|input| input.time);
+        screen.harness.input_mut().time = Some(now + next.max(AT_ONCE));
+        screen.harness.step();
+        count += 1;
+    }
+}
+
+/// An encoder that is read and edited: there is something to review, and to lose.
+fn edited() -> Screen {
+    let mut screen = Screen::begun(SIZE);
+    screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
+    screen
+}
+
+/// Everything that ends by itself has ended: notices, the movements of what opens, what threads bring.
+fn settle(screen: &mut Screen) {
+    for _ in 0..2 {
+        screen.until("nothing runs", |studio| !studio.works());
+        pictures(screen);
+    }
+}
+
+/// Issue 22.32: letting go of the keys asked for the next picture in each one, wherever keys are not for what is held.
+#[test]
+fn nothing_is_drawn_while_nothing_changes() {
+    for (what, begin) in SITUATIONS {
+        let mut screen = edited();
+        begin(&mut screen);
+        settle(&mut screen);
+        let wakes = screen.outside.wakes.load(Ordering::SeqCst);
+        let count = pictures(&mut screen);
+        let most = if ["connecting", "a path is typed"].contains(&what) { BLINKS } else { 0 };
+        assert!(count <= most, "{what}: {count} pictures in {WATCHED} s");
+        // Nor does a picture cause the next one by way of a thread.
+        for _ in 0..50 {
+            screen.harness.step();
+        }
+        assert_eq!(screen.outside.wakes.load(Ordering::SeqCst), wakes, "{what}");
+    }
+}
+
+/// Issue 22.32: without a device, on each tab.
+#[test]
+fn a_window_without_a_device_is_drawn_when_something_changes() {
+    let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
+    for tab in [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus, Tab::Hiperdrive, Tab::Signals] {
+        screen.act(Action::ShowTab(tab));
+        for focused in [true, false] {
+            screen.harness.input_mut().focused = focused;
+            for page in encoder_studio::ui::pages(tab) {
+                if screen.has_button(page) {
+                    screen.click(page);
+                }
+                settle(&mut screen);
+                assert_eq!(pictures(&mut screen), 0, "{tab:?}, {page}, {focused}");
+            }
+        }
+    }
+}
+
+/// Issue 22.32: of each device that is read and not polled.
+#[test]
+fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
+    type Ready = fn(&Studio) -> bool;
+    let kinds: [(Tab, &str, Ready); 3] = [
+        (Tab::Biss, "sim:?bridge=on", |studio| studio.biss().is_some_and(|own| own.survey.is_some())),
+        (Tab::Interbus, "sim:?steps=3600&revolutions=1&cams=demo", |studio| {
+            studio.interbus().is_some_and(|own| own.programs_read() == 8)
+        }),
+        (Tab::Hiperdrive, "sim:", |studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some())),
+    ];
+    for (tab, link, is_read) in kinds {
+        let mut screen = Screen::opened_in(tab, link, SIZE);
+        screen.until("it is read", |studio| is_read(studio) && !studio.works());
+        if screen.studio().is_live() {
+            screen.key(egui::Key::Escape);
+            screen.until("it is not polled", |studio| !studio.is_live());
+        }
+        for focused in [true, false] {
+            screen.harness.input_mut().focused = focused;
+            for page in encoder_studio::ui::pages(tab) {
+                screen.click(page);
+                settle(&mut screen);
+                assert_eq!(pictures(&mut screen), 0, "{tab:?}, {page}, {focused}");
+            }
+        }
+    }
+}
+
+/// Issue 22.32: what is live is drawn as often as live values are, whatever stands over it.
+#[test]
+fn live_values_are_drawn_no_more_often_in_a_window_that_is_not_in_front() {
+    let mut screen = in_hand();
+    for (what, begin) in [SITUATIONS[0], SITUATIONS[1], SITUATIONS[2]] {
+        begin(&mut screen);
+        screen.steps();
+        let count = pictures(&mut screen);
+        assert!(count <= LIVE, "{what}: {count} pictures in {WATCHED} s");
+        screen.harness.input_mut().focused = true;
+    }
+}
