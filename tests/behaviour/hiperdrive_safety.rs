@@ -2,6 +2,7 @@
 //! is a process of its own, and who looks at it has a connection of its own. Limits are those of safety, with a second on
 //! top for a machine that is busy.
 
+mod watched;
 mod wires;
 
 use std::process::Child;
@@ -88,9 +89,9 @@ struct Host {
 }
 
 impl Host {
-    fn in_control(drive: &Drive, place: &str) -> Self {
+    fn in_control(bench: &Bench, place: &str) -> Self {
         let url = format!("enip:{place}?{RPI}").parse().unwrap();
-        let session = open(&url, Store::at(&drive.bench.path("host"))).unwrap();
+        let session = open(&url, Store::at(&bench.path("host"))).unwrap();
         let motion = session.motion();
         let mut host = Host { worker: Worker::spawn(session, Arc::new(|| ())).unwrap(), motion };
         host.run(HiperdriveJob::Take);
@@ -142,7 +143,7 @@ impl Host {
 #[test]
 fn a_frozen_window() {
     let mut drive = Drive::start();
-    let host = Host::in_control(&drive, &drive.simulated.place.clone());
+    let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
     // Nobody says anything any more.
     drive.stands_within(FROZEN + WATCHDOG);
@@ -162,13 +163,13 @@ fn a_frozen_window() {
 #[test]
 fn an_end_without_a_word() {
     let mut drive = Drive::start();
-    let host = Host::in_control(&drive, &drive.simulated.place.clone());
+    let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
     assert!(host.worker.close(Duration::from_secs(5)));
     drive.stands_within(Duration::ZERO);
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault: it was told");
     // Nobody has it: the next one may take it.
-    let next = Host::in_control(&drive, &drive.simulated.place.clone());
+    let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     assert!(next.motion.is_open());
 }
 
@@ -176,7 +177,7 @@ fn an_end_without_a_word() {
 fn a_wire_for_parameters_that_is_cut() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
-    let host = Host::in_control(&drive, &wires.place());
+    let host = Host::in_control(&drive.bench, &wires.place());
     host.jogs(&mut drive);
     wires.cut_stream();
     // An idle session looks every half second.
@@ -198,7 +199,7 @@ fn wires_for_packets_that_are_cut() {
     {
         let mut drive = Drive::start();
         let wires = Wires::to(&drive.simulated.place);
-        let host = Host::in_control(&drive, &wires.place());
+        let host = Host::in_control(&drive.bench, &wires.place());
         host.jogs(&mut drive);
         ways.iter().for_each(|way| wires.cut(*way));
         drive.stands_within(WATCHDOG);
@@ -225,7 +226,7 @@ fn wires_for_packets_that_are_cut() {
 fn a_flood() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
-    let host = Host::in_control(&drive, &wires.place());
+    let host = Host::in_control(&drive.bench, &wires.place());
     host.jogs(&mut drive);
     let flood = wires.flood();
     host.holds(Duration::from_millis(300));

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -120,6 +120,12 @@ impl Bench {
         Some(foreign)
     }
 
+    /// The same, whose drives take time to move, are told at run time what to do wrong, and keep a record of each packet.
+    pub(crate) fn moving_target(&self, arguments: &[&str]) -> Option<Foreign> {
+        let record = self.file("record");
+        self.foreign("moving_target.py", &[&["--record", &record], arguments].concat())
+    }
+
     fn on_terminal(&self, script: &str, scheme: &str, arguments: &[&str]) -> Option<Foreign> {
         let number = self.encoders.load(Ordering::SeqCst);
         let link = self.file(&format!("enc{number}"));
@@ -136,9 +142,10 @@ impl Bench {
         command.args(["--stdin-eof", "--log", log.to_str().unwrap()]).args(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let mut ready = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut ready).unwrap();
+        let mut said = BufReader::new(child.stdout.take().unwrap());
+        said.read_line(&mut ready).unwrap();
         let place = ready.trim_end().strip_prefix("ready ").map(str::to_owned);
-        let foreign = Foreign { child, url: String::new(), place: place.clone().unwrap_or_default(), log };
+        let foreign = Foreign { child, said, url: String::new(), place: place.clone().unwrap_or_default(), log };
         if place.is_some() {
             return Some(foreign);
         }
@@ -233,6 +240,7 @@ impl Ran {
 /// A foreign encoder that runs.
 pub(crate) struct Foreign {
     child: Child,
+    said: BufReader<ChildStdout>,
     /// For `--link`.
     pub(crate) url: String,
     /// The symbolic link to its terminal, or its address.
@@ -258,6 +266,14 @@ impl Foreign {
     pub(crate) fn writes(&self) -> Vec<String> {
         let reads = ["42", "44", "46", "4A", "4C", "4E", "50", "52", "56"];
         self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
+    }
+
+    /// Commands it, where it takes commands.
+    pub(crate) fn command(&mut self, line: &str) {
+        writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
+        let mut done = String::new();
+        self.said.read_line(&mut done).unwrap();
+        assert!(done.starts_with("done"), "{line}: {done}");
     }
 
     /// Pulls the plug.

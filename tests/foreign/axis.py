@@ -29,7 +29,7 @@ class Axis:
         self.run, self.is_endless = 0, False
         self.job, self.is_paused, self.was_job = None, False, False
         self.is_standing = True
-        self.is_reversed = self.is_unlimited = self.is_overrunning = False
+        self.is_reversed = self.is_unlimited = self.is_overrunning = self.is_pauseless = False
         self.began = float(position)
 
     def level(self):
@@ -83,7 +83,7 @@ class Axis:
         if not word & NO_STOP:
             self.job = None
             return None
-        self.is_paused = self.job is not None and not word & NO_PAUSE
+        self.is_paused = self.job is not None and not word & NO_PAUSE and not self.is_pauseless
         toggle = bool(word & START)
         if word & NO_PAUSE and toggle != self.is_acknowledged and able:
             if not self.lower <= target <= self.upper:

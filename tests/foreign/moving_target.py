@@ -4,16 +4,17 @@
 enip_target.py with the axes of axis.py: they accelerate, turn, brake, have limits and faults. What they are to do wrong is
 told at run time, a command a line on stdin; each is answered by a line `done NANOSECONDS` on stdout.
 
-    place N            drive 1 is there                        limits LOWER UPPER
+    place N            the drive is there                      limits LOWER UPPER
     reverse on|off     it turns the wrong way                  unlimited on|off   it ignores its limits
-    overrun on|off     it does not stop at a target
+    overrun on|off     it does not stop at a target            pauseless on|off   it does not obey a pause
+    drive N            what follows is about this drive, not about the first one
     fault CODE         it fails now, with a hexadecimal code
     tcp answer|silent|garbage|reset|fin                        what becomes of explicit messages
     udp answer|silent|garbage                                  what becomes of cyclic data to the master
     pause MS           no cyclic data for so long, then again  delay MS           each cyclic packet comes so much later
 
-The record (--record FILE) has a line a packet, `P TIME SEQUENCE WORD STATUS POSITION MOTION`, where MOTION is 1 if the control
-word commands motion (`Axis.commands`), and a line an event, `E TIME NAME`: START and STAND of the drive, FAULT, OPEN, CLOSE,
+The record (--record FILE) has a line a packet, `P TIME SEQUENCE WORD STATUS POSITION MOTION DRIVE`, where MOTION is 1 if the
+control word commands motion (`Axis.commands`), and a line an event, `E TIME NAME`: START and STAND of the drive, FAULT, OPEN, CLOSE,
 LOST of the connection, and BEYOND, PAST or WRONG with the first packet that tells the master of a position beyond a limit, behind
 the target, or against the commanded direction. Times are nanoseconds of CLOCK_MONOTONIC; those of packets are the kernel's.
 """
@@ -88,7 +89,7 @@ class Station(enip_target.Station):
         axis = self.axes[drive]
         moves = axis.commands(word)
         if self.record:
-            line = f"P {when} {sequence} {word:04X} {axis.status():04X} {round(axis.position)} {int(moves)}"
+            line = f"P {when} {sequence} {word:04X} {axis.status():04X} {round(axis.position)} {int(moves)} {drive}"
             self.record.write(line + "\n")
         self.note_word(drive, word)
         base = 100 * (drive - 1)
@@ -191,6 +192,7 @@ class Server:
         self.target = Target(options, self.udp, self.port)
         self.buffers, self.peers, self.explicit = {}, {}, "answer"
         self.typed = b""
+        self.drive = self.target.station.plugged[0]
 
     def serve(self):
         print("ready", f"127.0.0.1:{self.port}", flush=True)
@@ -238,18 +240,23 @@ class Server:
         return True
 
     def obey(self, name, *words):
-        axis, target = self.target.station.axes[self.target.station.plugged[0]], self.target
+        axis, target = self.target.station.axes[self.drive], self.target
         self.target.station.turn()
-        if name == "place":
+        if name == "drive":
+            self.drive = int(words[0])
+        elif name == "place":
             axis.place(int(words[0]))
         elif name == "limits":
-            target.station.values.update({158: int(words[0]), 160: int(words[1])})
+            base = 100 * (self.drive - 1)
+            target.station.values.update({158 + base: int(words[0]), 160 + base: int(words[1])})
         elif name == "reverse":
             axis.is_reversed = words[0] == "on"
         elif name == "unlimited":
             axis.is_unlimited = words[0] == "on"
         elif name == "overrun":
             axis.is_overrunning = words[0] == "on"
+        elif name == "pauseless":
+            axis.is_pauseless = words[0] == "on"
         elif name == "fault":
             target.station.tell(axis.fail(int(words[0], 16)))
         elif name == "udp":

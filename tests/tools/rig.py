@@ -55,7 +55,7 @@ class Drive:
         for line in lines:
             kind, at, *rest = line.split()
             if kind == "P":
-                sequence, word, status, position, moves = rest
+                sequence, word, status, position, moves, _ = rest
                 packet = Packet(int(at), int(sequence), int(word, 16), int(status, 16), int(position), moves == "1")
                 self.packets.append(packet)
             else:

@@ -1,0 +1,168 @@
+//! Drives of a hub that do not do what they are told, over the wire: they ignore their limits, a target or a pause, or turn the
+//! wrong way. The device is in Python, and its record tells what it was commanded; the drive beside it is never moved.
+
+use std::fs;
+use std::path::PathBuf;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use encoder_studio::device::hiperdrive::dead_man::{Ended, Phase, Wish};
+use encoder_studio::protocol::hiperdrive::{DriveNumber, State};
+
+use super::super::support::{Bench, Foreign};
+use super::{FAST, Host, JOG};
+
+/// A turn, and 1° rounded up.
+const TURN: i32 = 65_536;
+const DEGREE: i32 = 183;
+/// Packets that are under way while the first report that shows it is.
+const UNDER_WAY: usize = 2;
+
+fn third() -> DriveNumber {
+    DriveNumber::new(3).unwrap()
+}
+
+/// What the device was sent for a drive.
+#[derive(Debug)]
+struct Packet {
+    position: i32,
+    moves: bool,
+    drive: u8,
+}
+
+/// A hub whose third drive has a defect, and a host that moves it.
+struct Hub {
+    host: Host,
+    foreign: Foreign,
+    record: PathBuf,
+}
+
+impl Hub {
+    fn with(bench: &Bench, commands: &[&str]) -> Option<Self> {
+        let mut foreign = bench.moving_target(&["--topology=hub4", "--drives=1,3"])?;
+        for command in [&["drive 3"], commands].concat() {
+            foreign.command(command);
+        }
+        let host = Host::in_control(bench, &foreign.place);
+        Some(Hub { host, foreign, record: bench.path("record") })
+    }
+
+    fn phase(&self) -> Phase {
+        self.host.motion.view().drives.iter().find(|own| own.number == third()).unwrap().phase
+    }
+
+    /// Until an act is over: how it ended.
+    #[track_caller]
+    fn until_over(&self, act: u64) -> Ended {
+        let until = Instant::now() + Duration::from_secs(20);
+        loop {
+            self.host.motion.refresh();
+            let view = self.host.motion.view();
+            match view.drives.iter().find(|own| own.number == third()).unwrap().ended {
+                Some((number, ended)) if number >= act => return ended,
+                _ => assert!(Instant::now() < until, "it never ends: {view:?}"),
+            }
+            sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// The record, once the drive stands.
+    fn record(&mut self) -> (Vec<Packet>, usize) {
+        let until = Instant::now() + Duration::from_secs(20);
+        while self.host.motion.view().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
+            assert!(Instant::now() < until, "it never stands");
+            sleep(Duration::from_millis(5));
+        }
+        let text = fs::read_to_string(&self.record).unwrap();
+        self.foreign.kill();
+        let (mut packets, mut told) = (Vec::new(), None);
+        for line in text.lines() {
+            let words: Vec<&str> = line.split(' ').collect();
+            match words[..] {
+                ["P", _, _, _, _, position, moves, drive] => packets.push(Packet {
+                    position: position.parse().unwrap(),
+                    moves: moves == "1",
+                    drive: drive.parse().unwrap(),
+                }),
+                ["E", _, "BEYOND" | "PAST" | "WRONG"] => told = told.or(Some(packets.len())),
+                _ => {}
+            }
+        }
+        assert!(packets.iter().all(|packet| packet.drive == 3 || !packet.moves), "the drive beside it was commanded");
+        packets.retain(|packet| packet.drive == 3);
+        // Both drives have a line a packet.
+        (packets, told.expect("it did what it was told") / 2)
+    }
+}
+
+fn moving(packets: &[Packet]) -> Vec<&Packet> {
+    packets.iter().filter(|packet| packet.moves).collect()
+}
+
+/// Issue 21.4: the drive of a hub that ignores its limits is commanded no further than the report that shows it.
+#[test]
+fn a_drive_of_a_hub_that_ignores_its_limits() {
+    let bench = Bench::new();
+    let Some(mut hub) = Hub::with(&bench, &["limits -65536 65536", "unlimited on"]) else { return };
+    let act = hub.host.motion.intend(third(), JOG);
+    let ended = hub.until_over(act);
+    assert!(matches!(ended, Ended::Beyond { position } if position > TURN) || ended == Ended::RangeEnd, "{ended:?}");
+    let (packets, told) = hub.record();
+    assert!(!moving(&packets[..told]).is_empty(), "it was moved");
+    let after = moving(&packets[told..]);
+    assert!(after.len() <= UNDER_WAY, "{after:?}");
+}
+
+/// Issues 21.4 and 21.5: it turns the wrong way.
+#[test]
+fn a_drive_of_a_hub_that_turns_the_wrong_way() {
+    for wish in [JOG, Wish::Move { target: 3 * TURN, effort: FAST }] {
+        let bench = Bench::new();
+        let Some(mut hub) = Hub::with(&bench, &["reverse on"]) else { return };
+        let act = hub.host.motion.intend(third(), wish);
+        let ended = hub.until_over(act);
+        assert!(matches!(ended, Ended::WrongWay { position } if position < -DEGREE), "{wish:?}: {ended:?}");
+        let (packets, _) = hub.record();
+        let wrong: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position < -DEGREE).collect();
+        assert!(wrong.len() <= UNDER_WAY + 1, "{wish:?}: {wrong:?}");
+    }
+}
+
+/// Issue 21.5: it does not stop at its target.
+#[test]
+fn a_drive_of_a_hub_that_passes_its_target() {
+    let bench = Bench::new();
+    let Some(mut hub) = Hub::with(&bench, &["overrun on"]) else { return };
+    let act = hub.host.motion.intend(third(), Wish::Move { target: TURN, effort: FAST });
+    let ended = hub.until_over(act);
+    assert!(matches!(ended, Ended::WrongWay { position } if position > TURN), "{ended:?}");
+    let (packets, _) = hub.record();
+    // Its accuracy is ±2.5°: three whole degrees are allowed where it arrives.
+    let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
+    assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
+}
+
+/// Issue 21.4: it does not obey a pause: it is stopped once it has moved on for longer than it takes to brake.
+#[test]
+fn a_drive_of_a_hub_that_ignores_a_pause() {
+    let bench = Bench::new();
+    let Some(mut hub) = Hub::with(&bench, &["pauseless on"]) else { return };
+    hub.host.motion.intend(third(), Wish::Move { target: 20 * TURN, effort: FAST });
+    let until = Instant::now() + Duration::from_secs(20);
+    while !matches!(hub.phase(), Phase::Moving(_)) {
+        assert!(Instant::now() < until, "it does not move: {:?}", hub.phase());
+        hub.host.motion.refresh();
+        sleep(Duration::from_millis(5));
+    }
+    let act = hub.host.motion.intend(third(), Wish::Pause);
+    let ended = hub.until_over(act - 1);
+    assert_eq!(ended, Ended::Left(State::Moving));
+    hub.host.holds(Duration::from_millis(500));
+    let text = fs::read_to_string(&hub.record).unwrap();
+    hub.foreign.kill();
+    let last = text.lines().rev().find(|line| line.starts_with("P ") && line.ends_with(" 3")).unwrap();
+    let words: Vec<&str> = last.split(' ').collect();
+    // Bit 4 is 0: stop.
+    assert_eq!(u16::from_str_radix(words[3], 16).unwrap() & 0x0010, 0, "{last}");
+    assert!(text.contains(" STAND"), "{last}");
+}
