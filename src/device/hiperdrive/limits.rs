@@ -152,9 +152,7 @@ impl DriveLimits {
 
     /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
     pub fn degree(&self) -> u32 {
-        let degree = self.scale().map_or(1.0, |scale| scale.steps_per_turn() / 360.0);
-        // A cast of a float saturates.
-        degree.ceil().max(1.0) as u32
+        self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
     }
 }
 

@@ -109,6 +109,12 @@ impl PositionScale {
         256.0 * f64::from(self.numerator) / f64::from(self.denominator)
     }
 
+    /// Steps of so many degrees, rounded up, at least 1.
+    pub fn steps_of_degrees(self, degrees: f64) -> u32 {
+        // A cast of a float saturates.
+        (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
+    }
+
     /// Steps of so many turns, rounded towards 0; `None` where they do not fit into 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
         i32::try_from(self.whole_steps(turns)).ok()

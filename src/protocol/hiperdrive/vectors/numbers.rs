@@ -214,6 +214,13 @@ fn steps_turns_and_spindles() {
         assert_eq!(scale.steps_per_turn(), f64::from(steps));
         assert_eq!(scale.turns(-steps), -1.0);
     }
+    // A degree of 65536 steps a turn is 182.04 of them, of 400 it is 1.11; 5 degrees of those are 5.6.
+    for (numerator, denominator, degrees, steps) in
+        [(256, 1, 1.0, 183), (400, 256, 1.0, 2), (400, 256, 5.0, 6), (20, 256, 1.0, 1), (65_535, 1, 1e12, u32::MAX)]
+    {
+        let scale = PositionScale::new(numerator, denominator).unwrap();
+        assert_eq!(scale.steps_of_degrees(degrees), steps);
+    }
     let scale = |pitch, step| PositionScale::for_spindle(millimetres(pitch), millimetres(step));
     let factors = |scale: PositionScale| (scale.numerator(), scale.denominator());
     // Pitch 4 mm, 1 mm and 2 mm; steps of 1/100, 1/100 and 1/10 mm.
