@@ -18,6 +18,7 @@ mod gate;
 mod places;
 mod report;
 mod seen;
+mod standstill;
 mod supply;
 pub mod words;
 
@@ -34,6 +35,7 @@ pub use supply::{Power, Restart};
 use super::ruler::Ruler;
 use crate::protocol::hiperdrive::{DriveNumber, PositionScale};
 use chain::{Basis, Chain, Origin};
+use standstill::Standstill;
 
 /// A step of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -131,6 +133,11 @@ pub struct Axis {
     reference: Option<(i32, Origin)>,
     /// One that is written, and to be read.
     sets: Option<i32>,
+    standstill: Standstill,
+    /// How often the position jumped at a standstill.
+    jumps: u32,
+    /// Steps by which the position changed while it was not read, since the reference.
+    unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
     /// The test move under way: where it leads, and the act that began it.
     going: Option<(Place, i32, u64)>,
@@ -199,6 +206,9 @@ impl Axis {
             travel: Travel::default(),
             reference: None,
             sets: None,
+            standstill: Standstill::default(),
+            jumps: 0,
+            unexplained: None,
             outcomes: [None; 3],
             going: None,
             saved: false,
@@ -309,6 +319,10 @@ impl Axis {
         self.power.is_some_and(Power::is_survived)
     }
 
+    fn origin(&self, seen: &Seen) -> Origin {
+        Origin::of(seen, self.jumps)
+    }
+
     /// The facts of now on which results rest.
     fn basis(&self, seen: &Seen) -> Basis {
         Basis {
@@ -316,7 +330,7 @@ impl Axis {
             scale: seen.scale,
             pitch: seen.pitch,
             confirmed: self.is_confirmed(seen),
-            origin: Origin::of(seen),
+            origin: self.origin(seen),
             limits: seen.limits,
             lower: self.entries.lower(seen.ruler()).ok(),
         }

@@ -65,6 +65,7 @@ impl Unit {
             moves: self.is_moving() || self.moves.is_under_way(),
             held: self.moves.held(drive),
             actual,
+            actual_at: self.actual_at(drive),
             position,
             values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
             unsaved: self.unsaved_of(drive),

@@ -29,6 +29,7 @@ use crate::protocol::hiperdrive::{
     Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
 use crate::sim::hiperdrive::Target;
+use crate::units::Moment;
 use crate::worker::hiperdrive::Hiperdrive;
 
 /// An adapter or a hub with its drives, or a profile of one.
@@ -248,6 +249,14 @@ impl Unit {
         // What was read at the beginning says nothing any more once the device is gone.
         let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual(drive).or_else(read).or_else(surveyed)
+    }
+
+    /// When a drive said that, on the clock of its session; `None` where only everything was read at once.
+    pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
+        match self.moves.drive(drive) {
+            Some(own) => own.heard_at,
+            None => self.readings.get(&drive).map(|reading| reading.at),
+        }
     }
 
     fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {

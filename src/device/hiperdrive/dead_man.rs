@@ -84,7 +84,7 @@ const START: Duration = Duration::from_secs(1);
 /// Without a word from the drive for so long, nothing moves: beyond three of the longest intervals.
 const DEAF: Duration = Duration::from_millis(350);
 /// What a report may be late behind what it reports, between a hub and its drives (`U`).
-const SETTLE: Duration = Duration::from_millis(100);
+pub const SETTLE: Duration = Duration::from_millis(100);
 /// It stands without having arrived.
 const SHORT: Duration = Duration::from_millis(500);
 
@@ -135,6 +135,11 @@ impl DeadMan {
     /// What the drive said last; zero before it has said anything.
     pub fn actual(&self) -> Actual {
         self.heard.map(|(_, actual)| actual).unwrap_or_default()
+    }
+
+    /// When it said that; `None` before it has said anything.
+    pub fn heard_at(&self) -> Option<Moment> {
+        self.heard.map(|(at, _)| at)
     }
 
     /// What it was sent last.

@@ -71,6 +71,8 @@ pub struct DriveView {
     pub number: DriveNumber,
     /// What it said last.
     pub actual: Actual,
+    /// When it said that; `None` before it has said anything.
+    pub heard_at: Option<Moment>,
     /// What it was sent last.
     pub sent: Setpoint,
     /// What is done with it.
@@ -233,6 +235,7 @@ impl Motion {
         let of = |man: &DeadMan| DriveView {
             number: man.drive(),
             actual: man.actual(),
+            heard_at: man.heard_at(),
             sent: man.sent(),
             phase: man.phase(),
             act: man.act(),

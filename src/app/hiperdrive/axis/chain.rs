@@ -1,14 +1,17 @@
 //! What the set-up has made sure of, step by step. Each result keeps the facts of the drive that it rests on. Where one of
 //! them is another by now, whoever changed it, the result falls, and with it all that come after it.
 
+use super::differences::REFERENCE;
 use super::{Seen, Step};
 use crate::protocol::hiperdrive::{Length, PositionScale};
 
-/// What the numbers of places count from: the position that was set last (198), and how often one was set from here.
+/// What the numbers of places count from: the position that was set last (198), how often one was set from here, and how often
+/// the position jumped at a standstill, by which alone a reference that was set again at the same number shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
     times: u32,
+    jumps: u32,
 }
 
 /// The facts on which results rest, at a moment.
@@ -38,8 +41,8 @@ struct Made {
 pub(super) struct Chain(Vec<Made>);
 
 impl Origin {
-    pub(super) fn of(seen: &Seen) -> Self {
-        Origin { set: seen.values.get(&198).copied(), times: seen.times_set }
+    pub(super) fn of(seen: &Seen, jumps: u32) -> Self {
+        Origin { set: seen.values.get(&REFERENCE).copied(), times: seen.times_set, jumps }
     }
 }
 

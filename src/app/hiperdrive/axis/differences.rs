@@ -13,8 +13,9 @@ pub struct Difference {
     pub now: i64,
 }
 
-/// The position that was set: writing it gives the place where the axis stands another number.
-const REFERENCE: u16 = 198;
+/// The position that was set. Writing it gives the place where the axis stands that number (manual, 198): at any other place
+/// than the one where it was set, the value of before would make a wrong zero.
+pub(super) const REFERENCE: u16 = 198;
 
 impl Seen {
     /// What is known to be other than saved, by number.
@@ -25,6 +26,11 @@ impl Seen {
         };
         self.unsaved.iter().filter_map(difference).collect()
     }
+}
+
+/// The position that is set is known to be another than the saved one.
+pub(super) fn is_place_other(seen: &Seen) -> bool {
+    seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
 /// What is to be written so that all is as it was; the reference is set at its place by a person.

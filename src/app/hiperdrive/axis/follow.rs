@@ -1,8 +1,8 @@
 //! How the run goes on: what a person presses, what was written, what the drive says.
 
-use super::chain::Origin;
 use super::entries::{Entries, typed};
-use super::supply::{Power, degrees};
+use super::standstill::Shift;
+use super::supply::Power;
 use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Place, Seen, Step, Travel};
 
 impl Axis {
@@ -46,6 +46,10 @@ impl Axis {
         self.settle(seen);
         if self.fallen().is_some() {
             return;
+        }
+        if self.step == Step::Reference {
+            // The person has set it, or said that it is right.
+            self.unexplained = None;
         }
         let next = self.step.beside(1);
         if self.chain.make(self.step, self.basis(seen), skipped)
@@ -157,7 +161,10 @@ impl Axis {
             Some(Ask::Try(values)) if begun => {
                 self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| Change::Parameter(number, value)));
-                (self.partly, self.saved) = (true, false);
+                // The mark is never saved: without it everything else is as it was saved.
+                if self.step != Step::PowerCycle {
+                    (self.partly, self.saved) = (true, false);
+                }
             }
             Some(Ask::SetPosition(position)) if begun => {
                 self.changes.push(Change::Position(position));
@@ -172,6 +179,10 @@ impl Axis {
     pub(in crate::app) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;
+        match self.power {
+            Some(_) => self.standstill.forget(),
+            None => self.standstill.interrupt(),
+        }
         self.power = self.power.map(Power::gone);
     }
 
@@ -193,7 +204,7 @@ impl Axis {
             && act == ended_act
             && let (Some(position), Some(scale)) = (seen.position, seen.scale)
         {
-            let allowed = degrees(scale.steps_per_turn(), 1.0);
+            let allowed = scale.steps_of_degrees(1.0).into();
             let outcome = Outcome { target, position, ended, allowed };
             if let Some(place) = self.outcomes.get_mut(place as usize) {
                 *place = Some(outcome);
@@ -208,12 +219,19 @@ impl Axis {
         if !seen.is_settled() || self.asked.is_some() {
             return;
         }
+        match self.standstill.note(seen, self.origin(seen)) {
+            Some(Shift::Jump) => self.jumps += 1,
+            Some(Shift::Unexplained(way)) if self.chain.holds(Step::Reference) => {
+                self.unexplained = Some(self.unexplained.unwrap_or_default() + way);
+            }
+            _ => {}
+        }
         if let Some(step) = self.chain.fall(&self.basis(seen)) {
             self.undo_from(step, false);
         }
         let is_set = |position: &i32| seen.values.get(&198) == Some(&i64::from(*position));
         if let Some(position) = self.sets.filter(is_set) {
-            (self.sets, self.reference) = (None, Some((position, Origin::of(seen))));
+            (self.sets, self.reference) = (None, Some((position, self.origin(seen))));
         }
     }
 
@@ -226,7 +244,7 @@ impl Axis {
             self.travel = Travel::default();
         }
         if step <= Step::Reference {
-            self.reference = None;
+            (self.reference, self.unexplained) = (None, None);
         }
         if step <= Step::Lower && !taught {
             (self.entries.lower, self.entries.upper) = (String::new(), String::new());

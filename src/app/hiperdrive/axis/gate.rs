@@ -1,6 +1,5 @@
 //! What can be pressed in the set-up of an axis, what that asks for, and what is missing before the next step.
 
-use super::chain::Origin;
 use super::supply::{MARK, Power, Restart, is_marked, mark};
 use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
 use crate::app::{Text, explain};
@@ -32,7 +31,11 @@ impl Axis {
             Button::Recall => {
                 stands()?;
                 let back = differences::to_write_back(seen);
-                if back.is_empty() { Err(Text::new("hd_axis.nothing_back")) } else { Ok(Ask::Restore(back)) }
+                match (back.is_empty(), differences::is_place_other(seen)) {
+                    (false, _) => Ok(Ask::Restore(back)),
+                    (true, false) => Err(Text::new("hd_axis.nothing_back")),
+                    (true, true) => Err(Text::new("hd_axis.place_left")),
+                }
             }
             _ if self.over.is_some() => Err(Text::new("hd_axis.over")),
             Button::Acknowledge if !seen.controlled => Err(Text::new("hd_axis.no_control")),
@@ -92,7 +95,9 @@ impl Axis {
             }
             Step::Save => Ok(Ask::Save),
             Step::PowerCycle => match (self.power, is_marked(seen), mark()) {
-                (Some(Power::On(_)), Some(false), Some(mark)) => Ok(Ask::Try(vec![(MARK, mark)])),
+                (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
+                    Ok(Ask::Try(vec![(MARK, mark)]))
+                }
                 _ => Err(Text::new("hd_axis.already")),
             },
             Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(Text::new("hd_axis.already")),
@@ -195,7 +200,7 @@ impl Axis {
                 lacks(self.travel.down > 0, "hd_axis.needs_down")
             }
             Step::Reference => {
-                let is_set = self.reference.is_some_and(|(_, origin)| origin == Origin::of(seen));
+                let is_set = self.reference.is_some_and(|(_, origin)| origin == self.origin(seen));
                 lacks(is_set || self.chain.holds(Step::Reference), "hd_axis.needs_reference")
             }
             Step::Lower => self.entries.lower(seen.ruler()).map(|_| ()),

@@ -49,7 +49,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
     {
         page.line(INDENT, &found);
     }
-    if step == Step::Test {
+    if step == Step::Test && Place::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
         page.line(INDENT, &words::effort("hd_axis.report_effort"));
         for place in Place::ALL {
             let Some(outcome) = axis.outcome(place) else { continue };
@@ -66,7 +66,7 @@ pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
         (true, None) => lines.push(Text::new("hd_axis.nothing_written")),
         (true, Some(returned)) => lines.push(returned),
         (false, returned) => {
-            lines.push(words::changes(axis, axis.as_seen(now)));
+            lines.push(words::changes(axis));
             lines.extend(returned);
             lines.push(Text::new(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
         }
@@ -75,6 +75,8 @@ pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
         lines.push(Text::new("hd_axis.partly"));
     }
     lines.extend(words::differences(now));
+    lines.extend(words::place_left(axis, now));
+    lines.extend(words::unexplained(axis, axis.as_seen(now)));
     lines
 }
 

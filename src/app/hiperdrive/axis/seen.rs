@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::app::hiperdrive::ruler::Ruler;
 use crate::device::hiperdrive::dead_man::{Ended, Lock};
 use crate::protocol::hiperdrive::{Actual, Direction, ErrorCode, Family, Length, PositionScale, State};
+use crate::units::Moment;
 
 /// What is known of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,6 +26,8 @@ pub struct Seen {
     pub held: Option<(u64, Direction)>,
     /// What the drive said last.
     pub actual: Option<Actual>,
+    /// When it said that, on the clock of the session; `None` where that is not known.
+    pub actual_at: Option<Moment>,
     /// Where it is. The first packets after taking control say nothing about that.
     pub position: Option<i32>,
     /// Parameters of the drive as they were read, by the numbers of drive 1.

@@ -8,6 +8,9 @@ use crate::protocol::hiperdrive::{Factory, PARAMETERS, PositionScale};
 /// from the factory (manual, 182: the wait before the hand drive; nothing moves by it).
 pub(super) const MARK: u16 = 182;
 
+/// Degrees by which a drive may readjust its position by itself, at power-up and behind a stop (manual, 8.3).
+pub(super) const READJUSTS: f64 = 5.0;
+
 /// What is known before the supply goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Before {
@@ -60,9 +63,15 @@ impl Power {
         Power::On(Before::default()).followed(seen)
     }
 
-    /// While it is on, the latest counts.
+    /// While it is on, the latest counts. As long as the mark is there, it was not off since the mark was set.
     pub(super) fn followed(self, seen: &Seen) -> Self {
         match self {
+            Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
+                if seen.is_settled() && is_marked(seen) == Some(true) =>
+            {
+                let before = Before { marked: true, ..before };
+                Power::Back { before, kept, moved, allowed, restart: Restart::Disproved }
+            }
             Power::On(_) if seen.is_settled() => Power::On(Before {
                 scale: seen.scale,
                 limits: seen.limits,
@@ -82,23 +91,25 @@ impl Power {
 
     /// Its parameters were read again. As long as nothing says that the supply was off, each reading may.
     pub(super) fn back(self, seen: &Seen, switched: bool) -> Self {
-        let before = match self {
+        let mut before = match self {
             Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
             own => return own,
         };
         let Some(scale) = seen.scale else { return self };
         let restart = match (switched, before.marked, is_marked(seen)) {
             (true, ..) => Restart::Switched,
-            (_, true, Some(true)) => Restart::Disproved,
+            // Also where the line was lost before the mark was known to be set.
+            (_, _, Some(true)) => Restart::Disproved,
             (_, true, Some(false)) => Restart::Read,
             _ => Restart::Unproven,
         };
+        before.marked |= restart == Restart::Disproved;
         let position = seen.actual.filter(|actual| actual.status.is_present()).map(|actual| actual.position);
         Power::Back {
             before,
             kept: before.scale == seen.scale && before.limits == seen.limits && seen.requested == Some(true),
             moved: position.zip(before.position).map(|(now, own)| i64::from(now) - i64::from(own)),
-            allowed: degrees(scale.steps_per_turn(), 5.0),
+            allowed: scale.steps_of_degrees(READJUSTS).into(),
             restart,
         }
     }
@@ -136,9 +147,4 @@ fn from_the_factory() -> Option<i64> {
         Factory::Number(value) => Some(value),
         Factory::None | Factory::Topology { .. } | Factory::Turns(_) | Factory::Automatic => None,
     }
-}
-
-/// Steps of so many degrees, at least one.
-pub(super) fn degrees(steps_per_turn: f64, degrees: f64) -> i64 {
-    (steps_per_turn * degrees / 360.0).ceil().max(1.0) as i64
 }

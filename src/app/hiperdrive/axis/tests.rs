@@ -1,6 +1,8 @@
 //! The run against what a drive might say, step by step, without a drive.
 
 mod facts;
+mod standstill;
+mod supply;
 
 use std::collections::BTreeMap;
 
@@ -320,7 +322,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     // The place has the position that it got.
     assert_eq!(axis.changes(), [Change::Position(128)]);
     let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
-    assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved"]);
+    assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
     let mut axis = run();
     axis.cancel(&seen, "");
     assert_eq!(told(&axis), ["hd_axis.nothing_written"]);

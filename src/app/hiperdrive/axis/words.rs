@@ -66,9 +66,11 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
     let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());
     match step {
-        Step::Request => match (seen.requested?, seen.actual.is_some_and(|own| own.status.is_present())) {
-            (true, true) => Some(Text::new("hd_axis.found_drive")),
-            (true, false) => Some(Text::new("hd_axis.found_no_drive")),
+        Step::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
+            (true, Some(true)) => Some(Text::new("hd_axis.found_drive")),
+            (true, Some(false)) => Some(Text::new("hd_axis.found_no_drive")),
+            // Nothing was heard of the drive: that says nothing of its cable.
+            (true, None) => None,
             (false, _) => Some(Text::new("hd_axis.found_unrequested")),
         },
         Step::Scale => {
@@ -185,7 +187,7 @@ pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
 /// What is known to be other than saved; `None`: nothing is.
 pub fn differences(seen: &Seen) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
-        let id = if own.number == 198 { "hd_axis.differs_place" } else { "hd_axis.differs" };
+        let id = if own.number == super::differences::REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
         Text::new(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
     };
     let all: Vec<Text> = seen.differences().into_iter().map(difference).collect();
@@ -203,6 +205,19 @@ pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
     Some(text.with("all", axis.returned.len()))
 }
 
+/// The position is left as it was set, although parameters were written back; `None`: that is not so.
+pub fn place_left(axis: &Axis, seen: &Seen) -> Option<Text> {
+    let is_set = axis.changes().iter().any(|own| matches!(own, Change::Position(_)));
+    let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
+    is_left.then(|| Text::new("hd_axis.place_left"))
+}
+
+/// The position changed while it was not read; `None`: not since the reference.
+pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
+    let way = axis.unexplained?;
+    Some(Text::new("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
+}
+
 /// What a place of the test is called.
 pub fn place(place: Place) -> Text {
     Text::new(match place {
@@ -213,18 +228,16 @@ pub fn place(place: Place) -> Text {
 }
 
 /// All that was changed, where something was.
-pub fn changes(axis: &Axis, seen: &Seen) -> Text {
-    let ruler = seen.ruler();
-    let changes = axis.changes().iter().map(|own| change(own, ruler));
-    Text::new("hd_axis.was_written").with_list("changes", changes)
+pub fn changes(axis: &Axis) -> Text {
+    Text::new("hd_axis.was_written").with_list("changes", axis.changes().iter().map(change))
 }
 
-fn change(own: &Change, ruler: Option<Ruler>) -> Text {
+/// As the number that was written: the scale may be another by now.
+fn change(own: &Change) -> Text {
+    let text = Text::new("hd_axis.changed");
     match own {
-        Change::Parameter(number, value) => Text::new("hd_axis.changed").with("number", number).with("value", value),
-        Change::Position(steps) => {
-            Text::new("hd_axis.changed_position").with_text("position", millimetres(ruler, (*steps).into()))
-        }
+        Change::Parameter(number, value) => text.with("number", number).with("value", value),
+        Change::Position(steps) => text.with("number", super::differences::REFERENCE).with("value", steps),
     }
 }
 

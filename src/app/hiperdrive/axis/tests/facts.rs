@@ -66,7 +66,8 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     let cases: [Case<'_>; 5] = [
         ("a limit", |seen| seen.limits = Some((-1000, 2001)), Step::Confirm),
         ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), Step::Reference),
-        ("the reference to the same number elsewhere", |seen| seen.times_set += 1, Step::Reference),
+        // By another master at another place: `standstill`.
+        ("the reference from this window, to the same number", |seen| seen.times_set += 1, Step::Reference),
         ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), Step::Scale),
         ("the request", |seen| seen.requested = Some(false), Step::Request),
     ];
@@ -210,6 +211,17 @@ fn what_is_other_than_saved_is_told_and_written_back() {
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("2 of 2 parameters are as they were"));
+    // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
+    let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
+    assert!(told.starts_with("The position (198) is not written back: 198 numbers the place where"), "{told}");
+    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
+    axis.cancel(&seen, "");
+    let device = Device { name: String::new(), variant: None, serial_number: String::new() };
+    let text = report(&axis, &seen, &device, Language::German).unwrap();
+    assert!(text.contains("Die Position (198) wird nicht zurückgeschrieben"), "{text}");
+    seen.values.insert(198, 0);
+    assert_eq!(words::place_left(&axis, &seen), None);
+    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
 /// Issue 21.6 (f): a pitch that nobody confirmed is no spindle: 65536 steps a turn stay steps until there is one.

@@ -1,0 +1,129 @@
+//! A reference that was set again at the same number: what a position that changes at a standstill tells, and what it does not.
+
+use std::time::Duration;
+
+use super::*;
+use crate::units::Moment;
+
+/// Bit 13, standing still, and without it (reference 3).
+const STANDS: u16 = 0x2A37;
+const MOVES: u16 = 0x0A37;
+
+/// A reading at that moment of the session.
+fn read(seen: &mut Seen, ms: u64, position: i32, word: u16) {
+    at(seen, position);
+    seen.actual = seen.actual.map(|own| Actual { status: StatusWord::new(word), ..own });
+    seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
+}
+
+/// In the test, read at 10 s: the axis stands at 2000, with 400 steps a turn.
+fn standing() -> (Axis, Seen) {
+    let (mut axis, mut seen) = until_test();
+    read(&mut seen, 10_000, 2000, STANDS);
+    axis.look(&seen);
+    (axis, seen)
+}
+
+/// Issue 21.6 (c): 198 keeps its number where the reference is set again elsewhere; a shaft turns at most 35 rpm (166), which
+/// are 210° a second, readjusts by up to 5°, and reports up to 0.1 s late.
+#[test]
+fn a_position_that_jumps_at_a_standstill_is_another_reference() {
+    let case = |ms: u64, position: i32, word: u16| {
+        let (mut axis, mut seen) = standing();
+        read(&mut seen, 10_000 + ms, position, word);
+        axis.look(&seen);
+        (axis.fallen(), words::unexplained(&axis, &seen).is_some())
+    };
+    let jump = (Some(Step::Reference), false);
+    for (label, ms, steps, expected) in [
+        // 0.12 s · 210° + 5° are 30.2°, which are 33.6 steps.
+        ("as far as it turns at once", 20, 34, (None, false)),
+        ("farther", 20, 35, jump),
+        // 1.1 s · 210° + 5° are 236°: 262.2 steps.
+        ("as far as it turns in a second", 1000, 263, (None, false)),
+        ("farther", 1000, -264, jump),
+        // 1.101 s · 210° + 5° are 236.21°: 262.5 steps.
+        ("unread for so long that it may have moved", 1001, -263, (None, true)),
+        ("farther", 1001, 264, jump),
+        ("5° are 5.6 steps: it has readjusted", 60_000, 6, (None, false)),
+        ("it has not", 60_000, 7, (None, true)),
+    ] {
+        assert_eq!(case(ms, 2000 + steps, STANDS), expected, "{label}: {steps} steps in {ms} ms");
+        assert_eq!(case(ms, 2000 + steps, MOVES), (None, false), "{label}: it moves");
+    }
+    let (mut axis, mut seen) = standing();
+    read(&mut seen, 10_020, 128, STANDS);
+    axis.look(&seen);
+    let why = words::fallen(axis.fallen().unwrap()).words(Language::English);
+    assert!(why.contains("jumped at a standstill"), "{why}");
+    assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
+}
+
+/// Issue 21.6 (c): what is known to change the position is no jump.
+#[test]
+fn a_position_that_is_changed_from_here_is_no_jump() {
+    type Case<'c> = (&'c str, fn(&mut Seen));
+    let cases: [Case<'_>; 3] = [
+        ("moved by a person, between two looks", |seen| seen.ended = Some((9, Ended::Arrived))),
+        ("it moves still", |seen| seen.moves = true),
+        ("nothing is concluded while it is busy", |seen| seen.busy = true),
+    ];
+    for (label, change) in cases {
+        let (mut axis, mut seen) = standing();
+        change(&mut seen);
+        read(&mut seen, 10_020, -900, STANDS);
+        axis.look(&seen);
+        assert_eq!((axis.fallen(), words::unexplained(&axis, &seen)), (None, None), "{label}");
+    }
+    // Set from here: the run is at the step behind it, and the new numbers are what it counts by.
+    let (mut axis, mut seen) = standing();
+    (0..3).for_each(|_| axis.back(&seen));
+    axis.edit(Entries { reference: "1".to_owned(), ..axis.entries().clone() });
+    press(&mut axis, &mut seen, Button::Do);
+    read(&mut seen, 10_020, 128, STANDS);
+    axis.look(&seen);
+    next(&mut axis, &seen, Step::Lower);
+    read(&mut seen, 10_040, 128, STANDS);
+    axis.look(&seen);
+    assert_eq!((axis.fallen(), axis.reference()), (None, Some(128)));
+}
+
+/// Issue 21.6 (c): over a connection that was lost nobody can tell a motion from a reference; that is said, also in the report,
+/// until a person has been at the reference again.
+#[test]
+fn a_position_that_changed_unseen_is_told_and_not_guessed() {
+    let again = |position: i32| {
+        let (mut axis, mut seen) = standing();
+        axis.lose();
+        // The clock of the next session begins anew.
+        read(&mut seen, 0, position, STANDS);
+        axis.look(&seen);
+        (axis, seen)
+    };
+    let (axis, seen) = again(2000 - 6);
+    assert_eq!((axis.fallen(), words::unexplained(&axis, &seen)), (None, None), "5° are 5.6 steps");
+    let (mut axis, mut seen) = again(2000 - 348);
+    assert_eq!(axis.fallen(), None, "it may have been moved");
+    let told = |axis: &Axis, seen: &Seen| words::unexplained(axis, seen).map(|text| text.words(Language::English));
+    assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
+    // Nobody has set or confirmed a reference yet: nothing counts by it.
+    let (mut early, mut fresh) = until_jog();
+    read(&mut fresh, 0, 0, STANDS);
+    early.look(&fresh);
+    early.lose();
+    read(&mut fresh, 0, 348, STANDS);
+    early.look(&fresh);
+    assert_eq!(told(&early, &fresh), None);
+    // At the reference, and from there on.
+    (0..3).for_each(|_| axis.back(&seen));
+    assert!(told(&axis, &seen).is_some());
+    next(&mut axis, &seen, Step::Lower);
+    assert_eq!(told(&axis, &seen), None);
+    axis.lose();
+    read(&mut seen, 0, 2000, STANDS);
+    axis.look(&seen);
+    axis.cancel(&seen, "2026-11-23 06:00");
+    let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
+    let text = report(&axis, &seen, &device, Language::English).unwrap();
+    assert!(text.contains("The position changed by 3.48 mm while"), "{text}");
+}

@@ -1,0 +1,50 @@
+//! The last step where its own write is refused or cut off.
+
+use super::*;
+
+/// Issue 21.6 (e): the mark is never saved, so that a write of it that fails leaves everything else as it was saved.
+#[test]
+fn a_mark_that_was_not_written_takes_nothing_back() {
+    for begun in [false, true] {
+        let (mut axis, seen) = until_power();
+        let ask = axis.ask(Button::Do, &seen).unwrap();
+        axis.begin(ask, &seen);
+        axis.not_written(begun);
+        assert_eq!((axis.is_saved(), axis.is_partly_written()), (true, false), "{begun}");
+        assert_eq!(axis.ask(Button::Do, &seen), Ok(Ask::Try(vec![(182, 1001)])), "{begun}: once more");
+    }
+}
+
+/// Issue 21.6 (e): the line is lost in the middle of the write of the mark. It has come, or it has not.
+#[test]
+fn a_mark_that_was_cut_off_is_read() {
+    let cut_off = |value: i64| {
+        let (mut axis, mut seen) = until_power();
+        let ask = axis.ask(Button::Do, &seen).unwrap();
+        axis.begin(ask, &seen);
+        axis.lose();
+        seen.values.insert(182, value);
+        axis.surveyed(&seen, false);
+        axis.look(&seen);
+        (axis, seen)
+    };
+    let off_and_on = |axis: &mut Axis, seen: &mut Seen| {
+        axis.lose();
+        seen.values.insert(182, 1000);
+        axis.surveyed(seen, false);
+        axis.look(seen);
+        let Some(Power::Back { restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
+        (restart, axis.survived(), axis.is_saved())
+    };
+    // It has come: the drive was not off, whatever a person says, and its restart can be read.
+    let (mut axis, mut seen) = cut_off(1001);
+    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), "hd_axis.already");
+    assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));
+    // It has not: the check can be prepared once more, without leaving the step.
+    let (mut axis, mut seen) = cut_off(1000);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(182, 1001)]));
+    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));
+}

@@ -1,0 +1,57 @@
+//! Another master sets the reference again, at another place, to the number that it has: no parameter changes by it.
+
+use encoder_studio::protocol::hiperdrive::ParameterNumber;
+use encoder_studio::sim::Faults;
+
+use super::*;
+
+/// A drive whose place was set to 128 steps and that stands 0.15 turns from there.
+fn elsewhere() -> Desk {
+    let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
+    jog(&mut desk, Direction::Clockwise, 60);
+    desk.settle();
+    assert!(position(&mut desk) > 180 && number(&desk, 198) == 128);
+    desk
+}
+
+fn set_by_another(desk: &Desk) {
+    let reference = ParameterNumber::of_drive(198, DriveNumber::FIRST).unwrap();
+    let target = unit(desk).target.clone().unwrap();
+    target.with(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
+}
+
+/// Issue 21.6 (c): the position jumps while the axis stands, and what counts by the reference falls with it.
+#[test]
+fn a_reference_set_again_at_another_place_is_noticed() {
+    let mut desk = elsewhere();
+    assert_eq!(axis(&desk).fallen(), None);
+    set_by_another(&desk);
+    desk.until("it is noticed", |studio| {
+        studio.hiperdrive().unwrap().axis().unwrap().fallen() == Some(Step::Reference)
+    });
+    assert_eq!(number(&desk, 198), 128, "the parameter says nothing of it");
+    assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
+}
+
+/// Issue 21.6 (c): while the line is gone it may have been moved as well: that is told, and nothing is concluded.
+#[test]
+fn a_reference_set_again_while_the_line_is_gone_is_told() {
+    let mut desk = elsewhere();
+    let target = unit(&desk).target.clone().unwrap();
+    target.set_faults(&"silent-after:0".parse().unwrap());
+    desk.until("it is silent", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        !own.seen(own.drive()).connected
+    });
+    set_by_another(&desk);
+    target.set_faults(&Faults::default());
+    desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
+    act(&mut desk, Hiperdrive::Read);
+    desk.until("it is told", |studio| {
+        let own = studio.hiperdrive().unwrap();
+        words::unexplained(own.axis().unwrap(), &own.seen(own.drive())).is_some()
+    });
+    assert_eq!(axis(&desk).fallen(), None);
+    let told = words::unexplained(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
+    assert!(told.starts_with("The position changed by -0.") && told.contains("does not tell whether"), "{told}");
+}
