@@ -112,6 +112,13 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
+/// The buttons at the end of a dialog, the first at the right, in a line as high as a button: centred in all the room that is left
+/// they would keep a dialog as high as it once was.
+pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
+}
+
 /// A button with an icon and a word.
 pub(super) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
-use super::controls::{enabled_button, modal, paragraph, primary, row, spinner};
+use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::{Skin, icons};
 use crate::app::review::{ChangeWords, Manner, OpWords, Sheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
@@ -60,7 +60,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
             let stopping = device.running().is_some_and(|running| running.stopping);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_the_right(ui, |ui| {
                 let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
                 if enabled_button(ui, !stopping, icons::X, &word).clicked() {
                     actions.push(Action::Stop);
@@ -113,7 +113,7 @@ fn buttons(
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
 ) {
     ui.add_space(skin.space.groups);
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+    at_the_right(ui, |ui| {
         primary(ui, actions);
         if enabled_button(ui, true, "", &skin.say(close)).clicked() {
             actions.push(Action::Review(device.id(), ReviewAction::Close));

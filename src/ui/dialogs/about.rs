@@ -2,7 +2,7 @@
 
 use egui::{ScrollArea, Ui};
 
-use crate::ui::controls::{button, modal, paragraph, row};
+use crate::ui::controls::{at_the_right, button, modal, paragraph, row};
 use crate::ui::{Skin, icons};
 
 /// Licences of what ships inside the program.
@@ -31,7 +31,7 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, skin: &Skin) -> bool {
             });
         });
         ui.add_space(skin.space.groups);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             done = button(ui, "", &skin.say("about.close")).clicked();
         });
     });

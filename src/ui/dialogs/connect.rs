@@ -18,8 +18,8 @@ use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::BAUDS;
 use crate::ui::controls::{
-    LABELS, allowed_button, button, choice, entry, fill, icon_button, modal, mono_entry, name, paragraph, primary,
-    problem, spinner, text_entry,
+    LABELS, allowed_button, at_the_right, button, choice, entry, fill, icon_button, modal, mono_entry, name, paragraph,
+    primary, problem, spinner, text_entry,
 };
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -76,7 +76,7 @@ pub(in crate::ui) fn connect_ui(
         let searching = dialog.search.as_ref().is_some_and(Search::is_running).then(|| Text::new("connect.searching"));
         let refused = searching.or(url.err());
         why_ui(ui, skin, refused.as_ref().or(dialog.problem.as_ref()));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             let word = skin.say("connect.connect");
             if primary(ui, skin, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
                 actions.push(Action::Connect(Connect::Connect));

@@ -5,7 +5,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::app::{Action, FileQuestion, Mailbox};
-use crate::ui::controls::{button, modal, primary, text_entry};
+use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
 use crate::ui::{Skin, icons};
 
 /// The path that is being typed.
@@ -123,7 +123,7 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         ui.label(skin.caption(skin.say("file.hint")));
         ui.add_space(skin.space.groups);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             let named = !view.path.trim().is_empty();
             if primary(ui, skin, named, icon, &skin.say(confirm)).clicked() || (enter && named) {
                 actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));

@@ -3,7 +3,7 @@
 use egui::RichText;
 
 use crate::app::{Action, Studio};
-use crate::ui::controls::{button, modal, name, paragraph};
+use crate::ui::controls::{at_the_right, button, modal, name, paragraph};
 use crate::ui::{Skin, icons};
 
 /// Draws the open question.
@@ -15,7 +15,7 @@ pub(in crate::ui) fn question_ui(ctx: &egui::Context, skin: &Skin, studio: &Stud
             paragraph(ui, skin.words(&question.text));
         });
         ui.add_space(skin.space.groups);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_the_right(ui, |ui| {
             let word = skin.words(&question.confirm);
             let response = ui.button(RichText::new(&word).color(skin.palette.bad));
             if name(response, true, &word).clicked() {

@@ -43,6 +43,8 @@ struct Shown<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a Seen,
+    /// The step has been looked at for long enough to be left.
+    settled: bool,
 }
 
 impl Shown<'_> {
@@ -59,6 +61,8 @@ impl Shown<'_> {
     }
 }
 
+/// Room for the number of a step, two digits at most.
+const NUMBERS: f32 = 18.0;
 /// Room for the button that leads on.
 const PRIMARY: f32 = 112.0;
 /// Below this width the list of steps does not stand beside the step.
@@ -72,7 +76,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         return;
     };
     let seen = unit.seen(unit.drive());
-    let shown = Shown { unit, axis, seen: &seen };
+    let age = view.age(axis.step(), ui.input(|input| input.time));
+    let shown = Shown { unit, axis, seen: &seen, settled: age >= SETTLES };
     let beside = ui.available_width() >= BESIDE;
     if let Some(end) = axis.end() {
         end_ui(ui, skin, &shown, end, actions);
@@ -90,7 +95,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         },
         |ui, (view, actions)| {
             if axis.end().is_none() {
-                step_ui(ui, skin, &shown, view, actions);
+                step_ui(ui, skin, &shown, (view, age), actions);
                 ui.add_space(skin.space.groups);
             }
             notes(ui, skin);
@@ -114,7 +119,12 @@ fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         });
         ui.add_space(skin.space.between);
         for (number, step) in (1..).zip(Step::ALL) {
-            ui.label(skin.label(format!("{number}  {}", skin.words(&words::title(step)))));
+            ui.horizontal(|ui| {
+                let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
+                let layout = egui::Layout::right_to_left(egui::Align::Center);
+                ui.allocate_ui_with_layout(size, layout, |ui| ui.label(skin.label(number.to_string())));
+                ui.label(skin.label(skin.words(&words::title(step))));
+            });
         }
     });
 }
@@ -139,7 +149,7 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
             title: skin.words(&words::title(step)),
             state,
             word: skin.words(&words::reached(reached)),
-            note: found.map(|text| skin.words(&text)).unwrap_or_default(),
+            note: found.map(|text| unbroken(skin.words(&text))).unwrap_or_default(),
             ..Line::default()
         }
     };
@@ -148,10 +158,9 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 }
 
 /// The step that counts.
-fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions: &mut Vec<Action>) {
+fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, (view, age): (&mut View, f64), actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
-    let age = view.age(step, ui.input(|input| input.time));
     if age == 0.0 {
         ui.scroll_to_cursor(Some(egui::Align::TOP));
     }
@@ -167,7 +176,7 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
         }
     };
     card_with(ui, skin, content::heading(step), aside, |ui| {
-        paragraph(ui, skin.words(&words::todo(step, seen)));
+        paragraph(ui, unbroken(skin.words(&words::todo(step, seen))));
         ui.add_space(skin.space.between);
         live(ui, skin, shown);
         ui.add_space(skin.space.between);
@@ -177,7 +186,7 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, view: &mut View, actions
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         ui.add_space(skin.space.groups);
-        foot(ui, skin, shown, age >= SETTLES, actions);
+        foot(ui, skin, shown, actions);
         ui.add_space(skin.space.between);
         messages(ui, skin, shown, &entries);
     });
@@ -193,6 +202,9 @@ fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
     if let Some(why) = &fallen {
         line(ui, skin, Severity::Error, why);
     }
+    if let Some(why) = words::unexplained(axis, seen) {
+        warning(ui, skin, &why);
+    }
     if let (Err(why), None) = (axis.may_go_on(seen), &fallen) {
         warning(ui, skin, &why);
     }
@@ -200,7 +212,7 @@ fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
     // The limits to be looked at stand large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
         ui.add_space(skin.space.inside);
-        row(ui, skin, &skin.say("hd_axis.now"), skin.words(&found));
+        row(ui, skin, &skin.say("hd_axis.now"), unbroken(skin.words(&found)));
     }
     if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning(ui, skin, &differences);
@@ -225,8 +237,8 @@ fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 }
 
 /// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
-fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mut Vec<Action>) {
-    let (axis, seen) = (shown.axis, shown.seen);
+fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let (axis, seen, settled) = (shown.axis, shown.seen, shown.settled);
     let step = axis.step();
     let allowed = axis.may_go_on(seen);
     ui.horizontal_wrapped(|ui| {
@@ -237,12 +249,6 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mu
         if button(ui, icons::X, &skin.say("hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
-        if step.may_be_skipped() {
-            let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-            if enabled_button(ui, settled && axis.may_skip(seen), "", &skin.say(id)).clicked() {
-                shown.push(actions, Run::Skip);
-            }
-        }
         let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right(ui, |ui| {
             if primary(ui, skin, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
@@ -250,6 +256,22 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, settled: bool, actions: &mu
             }
         });
     });
+}
+
+/// To the next step without this one, beside what the step does itself.
+fn skip(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let step = shown.axis.step();
+    if step.may_be_skipped() {
+        let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
+        if enabled_button(ui, shown.settled && shown.axis.may_skip(shown.seen), "", &skin.say(id)).clicked() {
+            shown.push(actions, Run::Skip);
+        }
+    }
+}
+
+/// A number and its unit stay on one line.
+fn unbroken(words: String) -> String {
+    words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
 /// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it. Behind
@@ -303,6 +325,7 @@ fn notes(ui: &mut Ui, skin: &Skin) {
         for id in [
             "hd_axis.note_stop",
             "hd_axis.note_controller",
+            "hd_axis.note_reference",
             "hd_axis.note_jog",
             "hd_axis.note_factory",
             "hd_axis.note_words",

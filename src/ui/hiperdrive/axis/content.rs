@@ -15,6 +15,8 @@ use crate::ui::{Skin, icons};
 /// Width of a number, and height of the buttons that are held.
 const NUMBER: f32 = 112.0;
 const PAD: f32 = 64.0;
+/// Room for the button of a test move.
+const GO: f32 = 184.0;
 
 /// The heading of a step.
 pub(super) const fn heading(step: Step) -> &'static str {
@@ -67,6 +69,7 @@ pub(super) fn content_ui(
             if step == Step::Request {
                 super::recall(ui, skin, shown, actions);
             }
+            super::skip(ui, skin, shown, actions);
         });
     }
 }
@@ -229,7 +232,12 @@ fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         entry(ui, skin, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
             let go = format!("{} {}", skin.say("hd_axis.go"), target.map(&mm).unwrap_or_default());
-            shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
+            // What comes of the three stands below each other.
+            let size = vec2(GO, ui.spacing().interact_size.y);
+            ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.set_min_width(GO);
+                shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
+            });
             if shown.axis.going() == Some(own) {
                 ui.label(skin.label(skin.say("hd_axis.goes")));
             } else if let Some(outcome) = shown.axis.outcome(own) {
@@ -257,5 +265,6 @@ fn power(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>)
             let word = skin.say("hd_axis.restarted");
             shown.button(ui, skin, Button::Restarted, (icons::POWER, &word), actions);
         }
+        super::skip(ui, skin, shown, actions);
     });
 }
