@@ -62,7 +62,7 @@ impl Shown<'_> {
 }
 
 /// Room for the number of a step, two digits at most.
-const NUMBERS: f32 = 18.0;
+const NUMBERS: f32 = 15.0;
 /// Room for the button that leads on.
 const PRIMARY: f32 = 112.0;
 /// Below this width the list of steps does not stand beside the step.
@@ -118,6 +118,8 @@ fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             }
         });
         ui.add_space(skin.space.between);
+        // Lines of text, not of buttons.
+        ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
         for (number, step) in (1..).zip(Step::ALL) {
             ui.horizontal(|ui| {
                 let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);

@@ -396,5 +396,5 @@ fn every_step_says_what_to_do_and_what_was_found() {
     assert_eq!(found(Step::Confirm), "The drive has -2044.00 mm … 2044.00 mm.", "those that were looked at");
     assert_eq!(found(Step::Upper), "The drive has -10.00 mm … 20.00 mm.");
     assert_eq!(found(Step::Jog), "Moved 5.00 mm up and 4.00 mm down. Clockwise counts up.");
-    assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm beside them.");
+    assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm off target.");
 }
