@@ -12,6 +12,7 @@ use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::axis::{Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, end_lines, words};
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Severity, Text};
+use crate::protocol::hiperdrive::ErrorCode;
 use crate::ui::controls::{
     allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
 };
@@ -78,23 +79,30 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     let seen = unit.seen(unit.drive());
     let age = view.age(axis.step(), ui.input(|input| input.time));
     let shown = Shown { unit, axis, seen: &seen, settled: age >= SETTLES };
-    let beside = ui.available_width() >= BESIDE;
     if let Some(end) = axis.end() {
         end_ui(ui, skin, &shown, end, actions);
         ui.add_space(skin.space.groups);
+    }
+    let goes_on = axis.end().is_none();
+    if ui.available_width() < BESIDE {
+        // Nothing stands beside the step; at the end the list is the result.
+        if goes_on {
+            step_ui(ui, skin, &shown, (view, age), actions);
+        } else {
+            card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
+        }
+        ui.add_space(skin.space.groups);
+        notes(ui, skin);
+        return;
     }
     split(
         ui,
         skin,
         (0.36, BESIDE),
         (view, actions),
-        |ui, _| {
-            if beside {
-                card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
-            }
-        },
+        |ui, _| card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown)),
         |ui, (view, actions)| {
-            if axis.end().is_none() {
+            if goes_on {
                 step_ui(ui, skin, &shown, (view, age), actions);
                 ui.add_space(skin.space.groups);
             }
@@ -234,6 +242,12 @@ fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
             .seen
             .actual
             .map_or_else(|| skin.say("hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
+        let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
+        let state = match (shown.seen.has_failed(), code) {
+            (false, _) => RichText::new(state),
+            (true, None) => RichText::new(state).color(skin.palette.bad),
+            (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(skin.palette.bad),
+        };
         row(ui, skin, &skin.say("hd_axis.state"), state);
     });
 }

@@ -41,30 +41,28 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
     });
     let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
     let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
-    match ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way)) {
-        Some(Direction::Clockwise) => paragraph(ui, skin.caption(skin.say("hd_outside.freed_up"))),
-        Some(Direction::Counterclockwise) => paragraph(ui, skin.caption(skin.say("hd_outside.freed_down"))),
-        None => {
-            let blocked = match outside.outside {
-                Outside::Unclear => "hd_outside.blocked_both",
-                Outside::At(Side::Above) => "hd_outside.blocked_up",
-                Outside::At(Side::Below) => "hd_outside.blocked_down",
+    let freed = ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way));
+    let words = match (freed, outside.outside) {
+        (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
+        (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
+        (None, Outside::Unclear) => "hd_outside.blocked_both",
+        (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
+        (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
+    };
+    paragraph(ui, skin.caption(skin.say(words)));
+    // The buttons stay once one was pressed: what can be clicked below them does not move under the pointer.
+    let allowed = if freed.is_some() { Err(Text::new(words)) } else { unit.may_move(drive) };
+    ui.horizontal_wrapped(|ui| {
+        for way in ways {
+            let free = match way {
+                Direction::Clockwise => "hd_outside.free_up",
+                Direction::Counterclockwise => "hd_outside.free_down",
             };
-            paragraph(ui, skin.caption(skin.say(blocked)));
-            let allowed = unit.may_move(drive);
-            ui.horizontal_wrapped(|ui| {
-                for way in ways {
-                    let free = match way {
-                        Direction::Clockwise => "hd_outside.free_up",
-                        Direction::Counterclockwise => "hd_outside.free_down",
-                    };
-                    if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
-                        actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
-                    }
-                }
-            });
+            if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
+                actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+            }
         }
-    }
+    });
     length_ui(ui, skin, unit, "hd_outside.place", &mut draft.place, actions);
     if allowed_button(ui, skin, &unit.may_plan(), "", &skin.say("hd_outside.set")).clicked() {
         let change =

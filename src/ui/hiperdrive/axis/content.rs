@@ -16,7 +16,7 @@ use crate::ui::{Skin, icons};
 const NUMBER: f32 = 112.0;
 const PAD: f32 = 64.0;
 /// Room for the button of a test move.
-const GO: f32 = 184.0;
+const GO: f32 = 172.0;
 
 /// The heading of a step.
 pub(super) const fn heading(step: Step) -> &'static str {
@@ -55,23 +55,35 @@ pub(super) fn content_ui(
         }
         Step::Confirm => limits(ui, skin, shown, actions),
         Step::Reference => number(ui, skin, "hd_axis.reference", &mut entries.reference),
-        Step::Lower => place(ui, skin, shown, "hd_axis.lower", &mut entries.lower, actions),
-        Step::Upper => place(ui, skin, shown, "hd_axis.upper", &mut entries.upper, actions),
+        Step::Lower => number(ui, skin, "hd_axis.lower", &mut entries.lower),
+        Step::Upper => number(ui, skin, "hd_axis.upper", &mut entries.upper),
         Step::Test => test(ui, skin, shown, actions),
         Step::PowerCycle => power(ui, skin, shown, actions),
         Step::Request | Step::Jog | Step::Save => {}
     }
-    if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Upper | Step::Save) {
+    if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Lower | Step::Upper | Step::Save) {
         ui.add_space(skin.space.inside);
-        let word = skin.words(&words::button(step));
-        ui.horizontal_wrapped(|ui| {
-            shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
-            if step == Step::Request {
-                super::recall(ui, skin, shown, actions);
-            }
-            super::skip(ui, skin, shown, actions);
-        });
+        ui.horizontal_wrapped(|ui| buttons(ui, skin, shown, actions));
     }
+}
+
+/// What the step does, in one line as far as there is room.
+fn buttons(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let step = shown.axis.step();
+    if matches!(step, Step::Lower | Step::Upper) {
+        let allowed = shown.axis.may_take_place(shown.seen);
+        if allowed_button(ui, skin, &allowed, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
+            shown.push(actions, Run::TakePlace);
+        }
+    }
+    if step != Step::Lower {
+        let word = skin.words(&words::button(step));
+        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+    }
+    if step == Step::Request {
+        super::recall(ui, skin, shown, actions);
+    }
+    super::skip(ui, skin, shown, actions);
 }
 
 /// What comes of the entries, and what came of the step so far. Nothing of it can be clicked.
@@ -120,6 +132,8 @@ fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
         && shown.axis.fallen().is_none()
+        // That stands above already.
+        && shown.axis.may_go_on(shown.seen).err().as_ref() != Some(&why)
     {
         super::warning(ui, skin, &why);
     }
@@ -210,18 +224,6 @@ fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
         Ok(_) => {}
         Err(why) => problem(ui, skin, Some(&why)),
     }
-}
-
-/// A limit: the place where the axis is, or typed.
-fn place(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, id: &'static str, text: &mut String, actions: &mut Vec<Action>) {
-    let word = skin.say(id);
-    entry(ui, skin, &word, |ui| {
-        text_entry(ui, text, NUMBER, &word, "");
-        let allowed = shown.axis.may_take_place(shown.seen);
-        if allowed_button(ui, skin, &allowed, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
-            shown.push(actions, Run::TakePlace);
-        }
-    });
 }
 
 /// Three places, and whether they were reached.

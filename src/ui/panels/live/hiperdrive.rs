@@ -1,6 +1,6 @@
 //! Where a drive is, large, with its state, its speed and where it is going.
 
-use egui::{RichText, Ui};
+use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
 use super::LOW;
 use crate::app::Rgb;
@@ -22,6 +22,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
     };
     let main = actual.map(|own| in_measure(own.position, unit.measure).unwrap_or_else(|| own.position.to_string()));
     let palette = skin.palette;
+    let mut warning = badge(skin, unit);
     ui.horizontal(|ui| {
         let shown = main.unwrap_or_else(|| "–".to_owned());
         let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
@@ -29,27 +30,32 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         // In the same line: nothing below it moves when it comes.
         let measure = skin.label(skin.say(unit.measure.unit()));
         ui.label(measure);
-        if let Some(badge) = badge(skin, unit) {
+        if let Some(badge) = warning.take_if(|own| fits(ui, own)) {
             ui.label(badge);
         }
     });
+    // Where it has no room there it stands before the state, where nothing moves by it either.
+    let is_told_below = warning.is_some();
     let Some(actual) = actual else { return };
     let state = actual.status.state();
     let colour = match state {
+        _ if is_told_below => palette.bad,
         State::Fault => palette.bad,
         State::Locked => palette.warn,
         State::Moving | State::Enabled => palette.good,
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
+    let word = skin.words(&explain::state(state));
+    let word = if is_told_below { format!("{} · {word}", skin.say("hd_outside.short")) } else { word };
     let rpm = skin.number(unit.speed_scale(drive).rpm(actual.speed), 1);
     let speed = format!("{rpm} {}", skin.say("unit.revolutions_per_minute"));
     if ui.available_height() < LOW {
         // In a low window the plot needs the room.
-        let words = format!("{} · {speed}", skin.words(&explain::state(state)));
+        let words = format!("{word} · {speed}");
         ui.add(egui::Label::new(RichText::new(words).size(skin.sizes.caption).color(colour)).truncate());
         return;
     }
-    row(ui, skin, &skin.say("hd_live.state"), RichText::new(skin.words(&explain::state(state))).color(colour));
+    row(ui, skin, &skin.say("hd_live.state"), RichText::new(word).color(colour));
     row(ui, skin, &skin.say("hd_effort.speed"), skin.mono(speed));
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     if let Some(target) = target {
@@ -62,4 +68,11 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         actual.position.to_string()
     };
     row(ui, skin, &skin.say("live.raw"), skin.mono(whole));
+}
+
+/// Whether a text has room in the rest of the line.
+fn fits(ui: &Ui, text: &RichText) -> bool {
+    let text = WidgetText::from(text.clone());
+    let galley = text.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);
+    galley.size().x <= ui.available_width()
 }
