@@ -16,3 +16,26 @@ pub(super) fn wires_ui(ui: &mut Ui, skin: &Skin, width: f32, wires: &[(&str, &'s
         });
     }
 }
+
+/// Each wire has this name, and its words say this, in English; in German it has other words.
+#[cfg(test)]
+pub(super) fn check_wires(wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
+    assert_eq!(wires.len(), expected.len());
+    for ((wire, id), (name, facts)) in wires.iter().zip(expected) {
+        assert_eq!(wire, name);
+        check_notes(&[*id], facts);
+    }
+}
+
+/// The notes of a card say this, in English; in German they have other words.
+#[cfg(test)]
+pub(super) fn check_notes(notes: &[&'static str], facts: &[&str]) {
+    use crate::app::Language::{English, German};
+    use crate::app::Text;
+    let said = |language| notes.iter().map(|id| Text::new(id).words(language)).collect::<Vec<_>>().join(" ");
+    let (english, german) = (said(English), said(German));
+    for fact in facts {
+        assert!(english.contains(fact), "{fact} is not in: {english}");
+    }
+    assert_ne!(english, german);
+}

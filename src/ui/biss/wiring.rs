@@ -21,6 +21,8 @@ const PINS: [(&str, &str); 8] = [
     ("8 VCC", "biss_wiring.supply"),
 ];
 
+const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
+
 /// Width of the card from which the pins stand in two columns.
 const BESIDE: f32 = 640.0;
 
@@ -33,8 +35,34 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
             two_columns(ui, skin, (), |ui, ()| wires_ui(ui, skin, PIN, left), |ui, ()| wires_ui(ui, skin, PIN, right));
         }
         ui.add_space(skin.space.inside);
-        for note in ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"] {
+        for note in NOTES {
             paragraph(ui, skin.caption(skin.say(note)));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NOTES, PINS};
+    use crate::ui::wires::{check_notes, check_wires};
+
+    /// Issue 22.23: kit encoder manual, table 1 (pins), 2 (supply), 14 (preset), 2.1 (connector), 2.3 (point to point,
+    /// RS-422); UBICOM at 115200 baud.
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_wires(
+            &PINS,
+            &[
+                ("1 GND", &["ground"]),
+                ("2 PRESET", &["3.3 V…VCC", "at least 100 ms", "01B, 03B"]),
+                ("3 CONFIG", &["UBICOM", "115200"]),
+                ("4 SLO+", &["data from the encoder", "RS-422"]),
+                ("5 SLO−", &["data from the encoder", "RS-422"]),
+                ("6 MA−", &["clock to the encoder", "RS-422"]),
+                ("7 MA+", &["clock to the encoder", "RS-422"]),
+                ("8 VCC", &["4.75…12.5 V (00B)", "15 V (01B, 03B)"]),
+            ],
+        );
+        check_notes(&NOTES, &["BM08B-GHS", "Point to point"]);
+    }
 }

@@ -129,10 +129,29 @@ fn services(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
+const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"];
+
 fn wiring(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        for note in ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"] {
+        for note in WIRING {
             paragraph(ui, skin.label(skin.say(note)));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::WIRING;
+    use crate::ui::wires::check_notes;
+
+    /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_notes(&WIRING, &["4 poles, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
+        check_notes(&WIRING, &["3 TD− green", "4 RD− orange", "four wires only"]);
+        check_notes(&WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
+        check_notes(&WIRING, &["control 1 +24 V, 3 GND (5 poles, A-coded)", "M6"]);
+        check_notes(&WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
+        check_notes(&WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub has to be at 0"]);
+    }
 }

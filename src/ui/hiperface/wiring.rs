@@ -22,12 +22,43 @@ const WIRES: [(&str, &str); 8] = [
     ("DATA −", "wiring.data"),
 ];
 
+const NOTES: [&str; 4] = ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"];
+
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
         wires_ui(ui, skin, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
-        for note in ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"] {
+        for note in NOTES {
             paragraph(ui, skin.caption(skin.say(note)));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NOTES, WIRES};
+    use crate::ui::wires::{check_notes, check_wires};
+
+    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted in
+    /// pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most 8, no
+    /// 130 Ω, terminated at the one farthest from the master).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_wires(
+            &WIRES,
+            &[
+                ("US", &["7…12 V", "typically 8 V", "at most 250 mA"]),
+                ("GND", &["ground"]),
+                ("SIN", &["sine, 1 Vpp"]),
+                ("REFSIN", &["reference of the sine"]),
+                ("COS", &["cosine, 1 Vpp"]),
+                ("REFCOS", &["reference of the cosine"]),
+                ("DATA +", &["RS-485"]),
+                ("DATA −", &["RS-485"]),
+            ],
+        );
+        check_notes(&NOTES, &["130 Ω and 1 kΩ pull-up and pull-down are built into the standard version"]);
+        check_notes(&NOTES, &["BUS version (up to 8 encoders): no 130 Ω inside", "farthest from the controller"]);
+        check_notes(&NOTES, &["overall screen and four twisted pairs"]);
+    }
 }

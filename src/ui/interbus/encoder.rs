@@ -139,10 +139,28 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     });
 }
 
+const WIRING: [&str; 5] =
+    ["ib_wiring.bus", "ib_wiring.supply", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"];
+
 fn wiring(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        for note in ["ib_wiring.bus", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"] {
+        for note in WIRING {
             paragraph(ui, skin.label(skin.say(note)));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::WIRING;
+    use crate::ui::wires::check_notes;
+
+    /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield to
+    /// the housing, Loop: housing to PE), 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_notes(&WIRING, &["two 9-pin round connectors", "male for the incoming and female for the outgoing line"]);
+        check_notes(&WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
+        check_notes(&WIRING, &["shield to the encoder's housing", "housing to PE", "no address switch"]);
+    }
 }

@@ -13,19 +13,21 @@ const WIRE: f32 = 84.0;
 
 /// The wires and what is on them (SICK SSI description 2.1, 2.2).
 const WIRES: [(&str, &str); 6] = [
-    ("CLOCK+", "ssi_wiring.clock"),
-    ("CLOCK−", "ssi_wiring.clock"),
-    ("DATA+", "ssi_wiring.data"),
-    ("DATA−", "ssi_wiring.data"),
+    ("CLOCK+", "ssi_wiring.clock_plus"),
+    ("CLOCK−", "ssi_wiring.clock_minus"),
+    ("DATA+", "ssi_wiring.data_plus"),
+    ("DATA−", "ssi_wiring.data_minus"),
     ("US", "ssi_wiring.supply"),
     ("GND", "ssi_wiring.ground"),
 ];
+
+const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"];
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
     card(ui, skin, "wiring.title", |ui| {
         wires_ui(ui, skin, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
-        for note in ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"] {
+        for note in NOTES {
             paragraph(ui, skin.caption(skin.say(note)));
         }
         let Some(family) = family else { return };
@@ -63,4 +65,30 @@ fn limits(skin: &Skin, signal: &Signal) -> String {
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NOTES, WIRES};
+    use crate::ui::wires::{check_notes, check_wires};
+
+    /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
+    /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and rates).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_wires(
+            &WIRES,
+            &[
+                ("CLOCK+", &["from the host", "RS-422", "at rest high"]),
+                ("CLOCK−", &["from the host", "RS-422", "at rest low"]),
+                ("DATA+", &["to the host", "RS-422", "at rest high"]),
+                ("DATA−", &["to the host", "RS-422", "at rest low"]),
+                ("US", &["type label"]),
+                ("GND", &["0 V"]),
+            ],
+        );
+        let lengths = ["50 m at most 400 kHz", "100 m 300 kHz", "200 m 200 kHz", "400 m 100 kHz"];
+        check_notes(&NOTES, &["twist", "shield"]);
+        check_notes(&NOTES, &lengths);
+    }
 }
