@@ -34,7 +34,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
             ui.label(badge);
         }
     });
-    // Where it has no room there it stands before the state, where nothing moves by it either.
+    // Where it has no room there it stands before the state.
     let is_told_below = warning.is_some();
     let Some(actual) = actual else { return };
     let state = actual.status.state();
