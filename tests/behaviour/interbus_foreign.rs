@@ -1,10 +1,10 @@
 //! The host's side of the handshake against a gateway and a K3 encoder that are not our program, with every trouble that
 //! these can make. What the encoder stored is told by its own log.
 
-use encoder_studio::device::interbus::{Error, Meddled};
+use encoder_studio::device::interbus::Error;
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::interbus::{Image, Item, ItemValue};
-use encoder_studio::protocol::interbus::{ProgramNumber, StartupMode};
+use encoder_studio::protocol::interbus::{Cam, CamNumber, ProgramNumber, StartupMode, Value};
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 use encoder_studio::worker::interbus::{
@@ -94,7 +94,7 @@ fn what_the_encoder_or_another_master_does_wrong_is_told() {
     let cases: [(&[&str], Told); 6] = [
         (&["--error=1:82000000"], |error| matches!(error, Error::Refused { .. })),
         (&["--deaf-from=1"], |error| matches!(error, Error::TimeOut { .. })),
-        (&["--other-data"], |error| matches!(error, Error::OtherMaster { seen: Meddled::Input(_), .. })),
+        (&["--other-data"], |error| matches!(error, Error::TimeOut { input: 0xCA00_0062, .. })),
         (&["--no-position"], |error| matches!(error, Error::Refused { .. } | Error::NotLedBack { .. })),
         (&["--unstored"], |error| matches!(error, Error::NotTaken { .. })),
         (&["--error=1:98000004"], |error| matches!(error, Error::Refused { .. })),
@@ -114,4 +114,82 @@ fn what_the_encoder_or_another_master_does_wrong_is_told() {
     let error = session(&bench, &foreign, "?handshake=300").run_inline(InterbusJob::Identify).unwrap_err();
     let expected = "another master writes to the encoder: OUT is 00000000 where 20210009 was written";
     assert_eq!(error.to_string(), expected);
+}
+
+/// Other cams in these programs, cam 0 among them.
+fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Interbus>, Prepared) {
+    let mut session = session(bench, foreign, "?cycle=1");
+    let parameters = match session.run_inline(InterbusJob::Survey).unwrap() {
+        InterbusOutput::Surveyed(survey) => survey.parameters,
+        other => panic!("{other:?}"),
+    };
+    let mut wanted = Image::of(parameters);
+    let wanted_ones = ProgramNumber::all().take(programs);
+    for (program, cam) in wanted_ones.flat_map(|program| CamNumber::all().map(move |cam| (program, cam))) {
+        let (start, stop) = (u32::from(program.get()) * 10 + u32::from(cam.get()), 2000 + u32::from(cam.get()));
+        let edges = Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() };
+        assert!(wanted.put(Item::Cam(program, cam), ItemValue::Cam(edges)));
+    }
+    for program in ProgramNumber::all().take(programs) {
+        assert!(wanted.put(Item::CamMask(program), ItemValue::Mask(0xFF)));
+    }
+    match session.run_inline(InterbusJob::Prepare(Change::Write(Box::new(wanted)))).unwrap() {
+        InterbusOutput::Prepared(prepared) => (session, *prepared),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is replaced
+/// while it is processed is not taken. Eight programs of eight cams are written at one store each.
+#[test]
+fn cam_0_is_written_through_a_gateway_that_is_busy() {
+    let bench = Bench::new();
+    let cases =
+        [("--busy=12", "sent", 8), ("--busy=12", "old", 1), ("--busy=40", "sent", 1), ("--busy=130", "sent", 2)];
+    for (busy, with, programs) in cases {
+        let options = ["--steps=3600", busy, "--busy-with", with, "--takes-late"];
+        let Some(foreign) = bench.gateway(&options) else { return };
+        let (mut session, prepared) = other_cams(&bench, &foreign, programs);
+        let done = commit(&mut session, prepared);
+        let log = log(&foreign);
+        let stores: Vec<&String> = log.iter().filter(|line| line.starts_with("STORE")).collect();
+        assert_eq!(done.unwrap_or_else(|error| panic!("{options:?}: {error}")), programs as u64 * 9, "{options:?}");
+        assert_eq!(stores.len(), programs, "{options:?}: {stores:?}");
+    }
+}
+
+/// Issue 22.2: an echo that comes 0.4 to 0.8 s late, or was never asked for (manual 5.3 shows C2000100), ends nothing.
+#[test]
+fn stale_echoes_are_waited_out() {
+    let bench = Bench::new();
+    for echo in ["400:C2000100", "800:CA000000", "600:E2000100"] {
+        let Some(foreign) = bench.gateway(&["--steps=3600", "--old-echo", echo]) else { return };
+        let mut session = session(&bench, &foreign, "?cycle=1");
+        let prepared = prepare(&mut session).unwrap_or_else(|error| panic!("{echo}: {error}"));
+        let verified = commit(&mut session, prepared).unwrap_or_else(|error| panic!("{echo}: {error}"));
+        assert_eq!(verified, 2, "{echo}");
+    }
+}
+
+/// Issue 22.2: what a gateway's lag costs is counted in changes of OUT, each of which takes the lag once. A parameter is
+/// set, stored, read back and left: four of them.
+#[test]
+fn a_parameter_takes_four_times_the_lag() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.gateway(&["--steps=3600", "--lag=250"]) else { return };
+    let mut session = session(&bench, &foreign, "");
+    let item = Change::Item(Item::ZeroShift, ItemValue::Number(99));
+    let prepared = match session.run_inline(InterbusJob::Prepare(item)).unwrap() {
+        InterbusOutput::Prepared(prepared) => *prepared,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(commit(&mut session, prepared).unwrap(), 1);
+    let words = log(&foreign);
+    let set = words.iter().position(|line| line == "W 0A000063").unwrap();
+    // 00000000 behind 80000000 changes nothing that has to be waited for.
+    let own: Vec<&str> = words[set..].iter().map(String::as_str).filter(|line| line.starts_with('W')).collect();
+    assert_eq!(own, ["W 0A000063", "W 80000000", "W 00000000", "W 20210005", "W 00000000"]);
+    // Who it is and its base are read for the plan, and once more before it is carried out.
+    let questions = words[..set].iter().filter(|line| line.starts_with("W 2021")).count();
+    assert_eq!(questions, (1 + 6 + 2) + (1 + 1 + 5));
 }

@@ -5,6 +5,7 @@ library alone. Where the manual is silent: a store is spent whenever something w
 goes on where it was, and what means nothing gets no reaction.
 """
 
+import copy
 import json
 import time
 
@@ -44,6 +45,9 @@ def add_options(add):
     add("--operating-time", type=number, default=1000, help="tens of minutes")
     add("--software-version", type=number, default=204)
     add("--busy", type=number, default=0, help="milliseconds of C0 words")
+    add("--busy-with", choices=["nothing", "sent", "old"], default="nothing", help="the data beside them")
+    add("--takes-late", action="store_true", help="what another word replaces while it is processed is not taken")
+    add("--old-echo", type=error, help="MS:WORD, an echo that stands for so long after each word that sets")
     add("--stale", type=number, default=0, help="how often the old IN word is read after a new OUT word")
     add("--early", action="store_true", help="the echo is there once before the busy words")
     add("--manufacturer", action="store_true", help="echoes have bit 29 set")
@@ -73,12 +77,18 @@ class K3:
         self.offset = 0
         self.state, self.changed, self.out, self.fixed = RUNNING, None, 0, None
         self.old, self.old_left, self.busy_until, self.early = 0, 0, 0.0, False
+        self.busy_data, self.stale_until, self.pending = 0, 0.0, None
         self.sets = 0
+        self.at = None
+
+    def now(self):
+        """The moment at which a word arrives, where a gateway passes it on late."""
+        return time.monotonic() if self.at is None else self.at
 
     # Position
 
     def turned(self):
-        place = self.options.position + (time.monotonic() - self.began) * self.options.rpm / 60 * 8192
+        place = self.options.position + (self.now() - self.began) * self.options.rpm / 60 * 8192
         return -int(place // 1) if self.backwards else int(place // 1)
 
     def position(self):
@@ -116,8 +126,10 @@ class K3:
             return self.old
         if self.early:
             return self.fixed
-        if time.monotonic() < self.busy_until:
-            return BUSY
+        if self.now() < self.stale_until:
+            return self.options.old_echo[1]
+        if self.now() < self.busy_until:
+            return BUSY | self.busy_data
         return self.live() if self.fixed is None else self.fixed
 
     def read(self):
@@ -133,7 +145,15 @@ class K3:
             return
         edge = word >> 31 and not self.out >> 31
         self.old, self.old_left = self.shown(), self.options.stale
-        self.out, self.early, self.busy_until = word, False, 0.0
+        if self.pending and self.now() < self.busy_until:
+            self.note("NOT TAKEN")
+            self.programs, self.shift, self.gear, self.backwards, self.preset, self.zero_shift = self.pending
+        self.busy_data = {"nothing": 0, "sent": word & DATA, "old": self.out & DATA}[self.options.busy_with]
+        self.pending = None
+        if self.options.takes_late:
+            self.pending = copy.deepcopy(
+                (self.programs, self.shift, self.gear, self.backwards, self.preset, self.zero_shift))
+        self.out, self.early, self.busy_until, self.stale_until = word, False, 0.0, 0.0
         program = self.program()
         if word == 0:
             if self.state == READING:
@@ -171,7 +191,8 @@ class K3:
         echo = word | BUSY | (self.options.manufacturer << 29)
         self.fixed = error or (echo ^ 1 if self.options.other_data else echo)
         self.early = self.options.early
-        self.busy_until = time.monotonic() + self.options.busy / 1000
+        self.stale_until = self.now() + (self.options.old_echo[0] / 1000 if self.options.old_echo else 0)
+        self.busy_until = max(self.now(), self.stale_until) + self.options.busy / 1000
 
     def store(self):
         if self.changed:

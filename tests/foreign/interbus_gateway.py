@@ -7,6 +7,7 @@ library alone. Several masters may be connected at once. The log has a line for 
 """
 
 import argparse
+import collections
 import random
 import select
 import signal
@@ -24,6 +25,8 @@ class Gateway:
         self.encoder = interbus.K3(options, self.note)
         self.random = random.Random(options.seed)
         self.requests = self.writes = 0
+        # OUT as the gateway holds it, and the words that have not come to the encoder yet.
+        self.out, self.coming = 0, collections.deque()
 
     def note(self, line):
         if self.options.log:
@@ -39,12 +42,13 @@ class Gateway:
         at = first - base
         if at < 0 or at + count > 2:
             raise modbus.Refused(modbus.ILLEGAL_ADDRESS)
+        self.pass_on()
         if function == modbus.READ_INPUT:
             self.note("R")
             return self.halves(self.encoder.read())[at:at + count]
         if values is None:
-            return self.halves(self.encoder.out)[at:at + count]
-        out = self.halves(self.encoder.out)
+            return self.halves(self.out)[at:at + count]
+        out = self.halves(self.out)
         out[at:at + count] = values
         high, low = out[::-1] if self.options.order == "low-first" else out
         self.put(high << 16 | low)
@@ -54,9 +58,18 @@ class Gateway:
         return None
 
     def put(self, word):
-        if word != self.encoder.out:
+        if word != self.out:
             self.note(f"W {word:08X}")
-        self.encoder.write(word)
+        self.out = word
+        self.coming.append((time.monotonic() + self.options.lag / 1000, word))
+        self.pass_on()
+
+    def pass_on(self):
+        """Words arrive in their order, each so late that IN answers after the lag."""
+        while self.coming and self.coming[0][0] <= time.monotonic():
+            self.encoder.at, word = self.coming.popleft()
+            self.encoder.write(word)
+            self.encoder.at = None
 
     def answer(self, unit, pdu):
         if unit != self.options.unit:
@@ -149,6 +162,7 @@ def main():
     add("--foreign-reply", action="store_true", help="the reply to another transaction before each reply")
     add("--cut", type=int, help="the end of every Nth reply is missing")
     add("--late", type=every(number), help="MS or MS:N: every Nth reply is that late")
+    add("--lag", type=int, default=0, help="milliseconds from a word written to its effect on IN")
     add("--pieces", action="store_true", help="replies come byte by byte")
     add("--seed", type=int, default=1)
     interbus.add_options(add)

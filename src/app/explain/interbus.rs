@@ -11,7 +11,7 @@ pub use write::{change, op, plan, wear, weight, written};
 
 use super::{link, plain};
 use crate::app::Text;
-use crate::device::interbus::{Awaited, Error, Implausible, Meddled, Standing};
+use crate::device::interbus::{Awaited, Error, Implausible, Standing};
 use crate::link::LinkError;
 use crate::protocol::interbus::{ErrorWord, GearError, Reply};
 use crate::worker::interbus::{Doing, JobError};
@@ -71,16 +71,15 @@ pub fn encoder(error: &Error) -> Text {
             .with_text("why", refusal(*error)),
         Error::UnknownReadOut { command } => Text::new("interbus.no_read_out").with("word", word(command.emit())),
         Error::TimeOut { awaited, sent, input, milliseconds } => {
-            let busy = matches!(Reply::parse(*input), Reply::Busy { .. });
-            let text = if busy { Text::new("interbus.still_busy") } else { time_out(*awaited) };
+            let text = match Reply::parse(*input) {
+                Reply::Busy { .. } => Text::new("interbus.still_busy"),
+                Reply::Echo { .. } => Text::new("interbus.other_echo"),
+                _ => time_out(*awaited),
+            };
             text.with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
         }
-        Error::OtherMaster { sent, seen } => {
-            let (id, seen) = match seen {
-                Meddled::Output(seen) => ("interbus.other_master_out", seen),
-                Meddled::Input(seen) => ("interbus.other_master_in", seen),
-            };
-            Text::new(id).with("sent", word(*sent)).with("seen", word(*seen))
+        Error::OtherMaster { sent, output } => {
+            Text::new("interbus.other_master_out").with("sent", word(*sent)).with("seen", word(*output))
         }
         Error::NotRunning { input } => Text::new("interbus.not_running").with("input", word(*input)),
         Error::WordOrder { input, swapped } => {

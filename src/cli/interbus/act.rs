@@ -5,7 +5,7 @@ use serde_json::json;
 use super::Disturbs;
 use super::inspect::mode;
 use super::plan::{commit, operations, prepare};
-use super::run::{Runner, survey};
+use super::run::Runner;
 use super::value::value;
 use crate::app::{Text, explain};
 use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
@@ -33,9 +33,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             output.remark(&Text::new("ib_disturbs.default").terminal());
             change(common, output, act, |_| Ok(Change::Default))
         }
-        (Action::Preset, []) => {
-            change(common, output, act, |runner| Ok(Change::Preset { value: survey(runner)?.parameters.preset }))
-        }
+        (Action::Preset, []) => change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? })),
         (Action::Preset, [number]) => match value(Item::Preset, number)? {
             ItemValue::Number(value) => change(common, output, act, |_| Ok(Change::Preset { value })),
             _ => Err(takes("a position")),
@@ -43,6 +41,14 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (Action::Preset, _) => Err(takes("nothing or a position")),
         (Action::Check | Action::LeadBack | Action::Default, _) => Err(takes("no argument")),
         (other, _) => Err(no_action(other, KIND, "check, preset, default and lead-back")),
+    }
+}
+
+/// The preset that the encoder has.
+fn preset(runner: &mut Runner) -> Result<u32> {
+    match runner.run(InterbusJob::Read(Item::Preset))? {
+        InterbusOutput::Item(ItemValue::Number(preset)) => Ok(preset),
+        other => Err(unexpected(&other)),
     }
 }
 

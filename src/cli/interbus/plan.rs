@@ -23,6 +23,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
         Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
+        Change::Item(..) => false,
         Change::Preset { .. } | Change::Default => true,
     };
     let prepared = match runner.run(InterbusJob::Prepare(change))? {

@@ -1,7 +1,7 @@
 //! `write`: one item.
 
 use super::plan::{commit, operations, prepare};
-use super::run::{Runner, programs, survey};
+use super::run::Runner;
 use super::value::value;
 use super::{Disturbs, item};
 use crate::cli::Result;
@@ -9,7 +9,6 @@ use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_changed;
-use crate::profile::interbus::{Image, Item};
 use crate::worker::interbus::Change;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
@@ -18,17 +17,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     require_consent(&write.consent)?;
     let mut runner = Runner::open(common)?;
     if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
-    let mut wanted = Image::of(survey(&mut runner)?.parameters);
-    if let Item::Cam(program, _) = item {
-        // A cam is nothing without the mask beside it.
-        for (number, own) in programs(&mut runner, vec![program])?.0 {
-            if let Some(place) = wanted.program_mut(number) {
-                *place = Some(own);
-            }
-        }
-    }
-    wanted.put(item, value);
-    let prepared = prepare(&mut runner, output, Change::Write(Box::new(wanted)))?;
+    let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
     let operations = operations(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     show_changed(output, &item.to_string(), &operations, &spent)

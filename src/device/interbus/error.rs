@@ -5,7 +5,7 @@ use std::fmt;
 use super::Standing;
 use crate::device::line::LineError;
 use crate::link::LinkError;
-use crate::protocol::interbus::{Command, ErrorWord, GearError, Refused, StartupMode};
+use crate::protocol::interbus::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
 
 /// What was asked of a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,15 +139,6 @@ pub enum Damage {
     Registers,
 }
 
-/// What another master did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meddled {
-    /// The gateway holds another OUT word than the one written last.
-    Output(u32),
-    /// The encoder answers a word that was not sent: this IN word.
-    Input(u32),
-}
-
 /// What did not come about within the time of the handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaited {
@@ -247,7 +238,7 @@ pub enum Error {
         command: Command,
     },
     /// Nothing came of a word within the time of the handshake.
-    #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}")]
+    #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
         /// What was waited for.
         awaited: Awaited,
@@ -259,12 +250,12 @@ pub enum Error {
         milliseconds: u64,
     },
     /// Somebody else writes to the encoder.
-    #[error("another master writes to the encoder: {}", meddling(*sent, *seen))]
+    #[error("another master writes to the encoder: OUT is {output:08X} where {sent:08X} was written")]
     OtherMaster {
         /// The OUT word written last.
         sent: u32,
-        /// What shows it.
-        seen: Meddled,
+        /// The OUT word that the gateway holds.
+        output: u32,
     },
     /// The encoder is being parameterised, and not by us: a write was cut off, or another master is at work.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
@@ -342,13 +333,13 @@ pub enum Error {
 
 /// The error as it came.
 fn word(error: ErrorWord) -> u32 {
-    crate::protocol::interbus::Reply::Error(error).emit()
+    Reply::Error(error).emit()
 }
 
-fn meddling(sent: u32, seen: Meddled) -> String {
-    match seen {
-        Meddled::Output(word) => format!("OUT is {word:08X} where {sent:08X} was written"),
-        Meddled::Input(word) => format!("it answers {word:08X} to {sent:08X}"),
+fn other_echo(input: u32) -> &'static str {
+    match Reply::parse(input) {
+        Reply::Echo { .. } => ", the acknowledgement of another word",
+        _ => "",
     }
 }
 

@@ -34,8 +34,7 @@ impl Identity {
     /// # Errors
     /// [`Implausible::Gear`].
     pub fn gear(&self) -> Result<Gear, Implausible> {
-        let steps = self.steps.saturating_add(u32::from(self.flags.steps_minus_one()));
-        Ok(Gear::new(steps, self.revolutions)?)
+        gear(self.steps, self.revolutions, self.flags)
     }
 }
 
@@ -157,14 +156,16 @@ pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, 
         Ok::<u32, Error>(value.get())
     };
     let [serial, steps, revolutions, direction] = [read(0)?, read(1)?, read(2)?, read(3)?];
-    let [software_version, mode, flags] = [read(7)?, read(9)?, read(0xA)?];
+    let [software_version, flags] = [read(7)?, read(0xA)?];
+    let mode = read_mode(master)?;
+    values.push((ReadOut::STARTUP_MODE, Value::of_word(mode.emit())));
     let identity = Identity {
         serial_number: serial.to_string(),
         steps,
         revolutions,
         direction: direction_of(direction)?,
         software_version,
-        mode: StartupMode::parse(Value::of_word(mode)),
+        mode,
         flags: Flags::new(Value::of_word(flags)),
     };
     master.learn_gear(identity.gear().ok());
@@ -203,9 +204,32 @@ pub(super) fn read_survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64
     })
 }
 
+/// What it does, as it said in this job.
+fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
+    match master.said_mode() {
+        Some(mode) => Ok(mode),
+        None => Ok(StartupMode::parse(master.read_out(ReadOut::STARTUP_MODE)?)),
+    }
+}
+
 /// Steps and turns may have changed.
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
-    read_identity(master, &mut Vec::new()).map(|_| ())
+    let mut read = |number: u16| master.read_out(ReadOut::new(number));
+    let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
+    master.learn_gear(gear(steps.get(), revolutions.get(), Flags::new(flags)).ok());
+    Ok(())
+}
+
+fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible> {
+    Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
+}
+
+/// Reads what an identity leaves open of how the encoder makes its position; both are of one job.
+pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
+    let Identity { steps, revolutions, direction, .. } = *identity;
+    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
+    let [preset, zero_shift] = [read(4)?, read(5)?];
+    Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
 /// Reads how the encoder makes its position.

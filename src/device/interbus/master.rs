@@ -1,24 +1,22 @@
 //! The host's side of the handshake (reference 4): words are sent, and each is waited for until it has had its effect.
 //! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
 
+mod acknowledge;
 mod held;
 mod modes;
 
 use std::time::Duration;
 
-use held::{Held, LEAST, LEAST_PATIENCE, Look};
+use held::{Held, LEAST_PATIENCE, Look};
 
 use super::data::ProcessData;
-use super::error::{Asked, Awaited, Meddled};
+use super::error::{Asked, Awaited};
 use super::handshake::{Handshake, Says, Standing, is_echo};
 use super::reading::{swapped, swapped_unexplained};
 use super::{Error, Gateway, Known, Reading, Station};
 use crate::link::Ctx;
 use crate::protocol::interbus::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
-
-/// The words of an encoder at work, without anything beside it: also the echo of cam 0's start at 0.
-const BUSY: u32 = 0xC000_0000;
 
 /// Who hears each step.
 type Teller<'a> = Box<dyn FnMut(Handshake) + 'a>;
@@ -49,8 +47,8 @@ pub struct Master<'a> {
     lost: bool,
     /// What came last.
     input: u32,
-    /// All that was to be acknowledged in this job: its echoes may still stand.
-    acknowledged: Vec<Command>,
+    /// When it was seen last to do what it did before this job, with nothing asked of it.
+    rested: Option<Moment>,
     told: Option<(u32, Says)>,
 }
 
@@ -84,7 +82,7 @@ impl<'a> Master<'a> {
             out: None,
             lost: false,
             input: 0,
-            acknowledged: Vec::new(),
+            rested: None,
             told: None,
         }
     }
@@ -104,6 +102,11 @@ impl<'a> Master<'a> {
     /// What the encoder does, as it said last.
     pub fn mode(&self) -> Option<StartupMode> {
         self.is.or(self.known.mode)
+    }
+
+    /// What the encoder does, as it said in this job.
+    pub(super) const fn said_mode(&self) -> Option<StartupMode> {
+        if self.unsure { None } else { self.is }
     }
 
     /// The gear that is in force from now on, as far as this session knows.
@@ -149,68 +152,20 @@ impl<'a> Master<'a> {
         self.data.wait(duration)
     }
 
-    /// Sends a word that is acknowledged, until its exact echo stands.
-    ///
-    /// # Errors
-    /// [`Error::Illegal`], and nothing is sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; the way.
-    pub(super) fn set(&mut self, command: Command) -> Result<(), Error> {
-        self.ensure_legal(command)?;
-        self.leave_value()?;
-        self.parameterising = true;
-        self.acknowledged(command, false)
-    }
-
-    /// As [`set`](Self::set), for a word that an encoder may also take without a word, and go on (`U`).
-    fn tell_to(&mut self, command: Command) -> Result<(), Error> {
-        self.ensure_legal(command)?;
-        self.leave_value()?;
-        self.acknowledged(command, true)
-    }
-
-    fn acknowledged(&mut self, command: Command, may_run: bool) -> Result<(), Error> {
-        let (before, found) = (self.input, self.found_error);
-        // What looks busy is the echo only where nobody is busy for so long (`U`).
-        let busy = (Reply::echo_of(command).emit() == BUSY).then_some(self.patience / 2);
-        self.acknowledged.push(command);
-        let known = self.acknowledged.clone();
-        let is_old = |word| word == before || known.iter().any(|own| is_echo(*own, word));
-        let mut rests = Held::new(self.recorded);
-        self.until(command, Awaited::Echo, |Look { now, word, same }| {
-            let reply = Reply::parse(word);
-            rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
-            match reply {
-                _ if is_echo(command, word) => {
-                    busy.map_or(same.stands(), |busy| same.stays_for(busy)).then_some(Ok(()))
-                }
-                Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
-                    Some(Err(Error::Refused { sent: command, error }))
-                }
-                Reply::Echo { .. } if !is_old(word) && same.stays() => {
-                    Some(Err(Error::OtherMaster { sent: command.emit(), seen: Meddled::Input(word) }))
-                }
-                _ if may_run && rests.stays() => Some(Ok(())),
-                _ => None,
-            }
-        })
-    }
-
     /// Asks for a value, and waits until it stands. The value of another question is gone by then: they look the same.
+    /// An echo may come late, of whatever word: it is no answer, and no sign of another master either.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
     pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
         self.leave_value()?;
         self.ensure_legal(command)?;
-        let (before, found, known) = (self.input, self.found_error, self.acknowledged.clone());
-        let is_old = |word| known.iter().any(|own| is_echo(*own, word));
-        self.until(command, Awaited::Value, |Look { word, same, .. }| match Reply::parse(word) {
+        let (before, found) = (self.input, self.found_error);
+        self.until(command, Awaited::Value, self.patience, |Look { word, same, .. }| match Reply::parse(word) {
             Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
             Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
             Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
                 Some(Err(Error::Refused { sent: command, error }))
-            }
-            Reply::Echo { .. } if !is_old(word) && same.stays() => {
-                Some(Err(Error::OtherMaster { sent: command.emit(), seen: Meddled::Input(word) }))
             }
             _ => None,
         })
@@ -244,14 +199,11 @@ impl<'a> Master<'a> {
 
     fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
-        let (whole, mut runs, found) = (self.patience, Held::new(self.recorded), self.found_error);
-        self.patience = patience;
-        let ended = self.until(command, Awaited::Run, |Look { now, word, same }| {
+        let (mut runs, found) = (Held::new(self.recorded), self.found_error);
+        self.until(command, Awaited::Run, patience, |Look { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
             (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
-        });
-        self.patience = whole;
-        ended
+        })
     }
 
     /// Sends `40000000` until the position is the preset, and takes it back. Once for each preset that was set. The word
@@ -263,7 +215,7 @@ impl<'a> Master<'a> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
         let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
-        let fired = self.until(Command::Preset, Awaited::Preset, |Look { now, word, .. }| {
+        let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |Look { now, word, .. }| {
             sent.go_on(true, now);
             there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
             (sent.stays() && there.stands()).then_some(Ok(()))
@@ -271,15 +223,19 @@ impl<'a> Master<'a> {
         self.shielded(Self::normal).and(fired)
     }
 
-    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and how long it has been that.
+    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and how long it has been that. How
+    /// long the encoder is at work meanwhile is remembered.
     fn until<T>(
         &mut self,
         command: Command,
         awaited: Awaited,
+        patience: Duration,
         mut judge: impl FnMut(Look) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
+        let least = held::least_cycles(self.recorded);
         let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
+        let mut at_work = Held::new(self.recorded);
         loop {
             let word = self.cycle(command)?;
             let now = self.data.now();
@@ -289,11 +245,13 @@ impl<'a> Master<'a> {
             }
             same.go_on(true, now);
             last = Some(word);
+            at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
+            self.known.processing = self.known.processing.max(at_work.lasted());
             if let Some(ended) = judge(Look { now, word, same }) {
                 return ended;
             }
-            if cycles >= LEAST && now.since(begun) >= self.patience {
-                return Err(self.too_late(command, awaited, word));
+            if cycles >= least && now.since(begun) >= patience {
+                return Err(self.too_late(command, awaited, word, patience));
             }
         }
     }
@@ -334,10 +292,10 @@ impl<'a> Master<'a> {
     }
 
     /// Why nothing came, as far as that can be seen.
-    fn too_late(&mut self, command: Command, awaited: Awaited, input: u32) -> Error {
+    fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
-            Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, seen: Meddled::Output(word) },
+            Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },
             Err(error) => return error,
             Ok(_) => {}
         }
@@ -347,7 +305,7 @@ impl<'a> Master<'a> {
         }
         match Reply::parse(input) {
             Reply::Error(error) => Error::Refused { sent: command, error },
-            _ => Error::TimeOut { awaited, sent, input, milliseconds: self.patience.as_millis() as u64 },
+            _ => Error::TimeOut { awaited, sent, input, milliseconds: patience.as_millis() as u64 },
         }
     }
 

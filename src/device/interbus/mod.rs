@@ -19,7 +19,7 @@ mod station;
 pub mod write;
 
 pub use data::ProcessData;
-pub use error::{Asked, Awaited, Damage, Error, Exception, Implausible, Meddled};
+pub use error::{Asked, Awaited, Damage, Error, Exception, Implausible};
 pub use gateway::{Carried, Gateway, carried};
 pub use handshake::{Handshake, Says, Standing};
 pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};

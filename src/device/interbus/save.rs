@@ -1,10 +1,11 @@
 //! What is read to be kept, to be planned upon, or to be shown as an item.
 
-use super::identify::{programs, read_cam, read_image, read_parameters, read_survey};
+use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
+use super::write::read_parameter;
 use super::{Error, Identity, Master};
 use crate::profile::Unknown;
-use crate::profile::interbus::{DeviceState, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
-use crate::protocol::interbus::{Command, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
+use crate::profile::interbus::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
+use crate::protocol::interbus::{Command, Parameter, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
 
 impl Identity {
     /// As it stands in a profile.
@@ -48,7 +49,7 @@ pub enum Kept {
     Program(ProgramNumber),
 }
 
-/// What a plan needs to know of an encoder: its parameters, and these programs of it.
+/// What a plan needs to know of an encoder that was identified in this job: its parameters, and these programs of it.
 ///
 /// # Errors
 /// [`Error::Implausible`] where steps and turns are no gear; the handshake and the way.
@@ -60,7 +61,7 @@ pub fn read_state(
 ) -> Result<DeviceState, Error> {
     identity.gear()?;
     master.guarded(|master| {
-        let parameters = read_parameters(master)?;
+        let parameters = read_other_parameters(master, identity)?;
         let image = read_image(master, parameters, programs, told)?;
         Ok(DeviceState { identity: identity.profile(), image })
     })
@@ -75,17 +76,21 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
         if let Some(program) = item.program() {
             master.go(StartupMode::Cams(program))?;
         }
+        if let Some(parameter) = item.parameter() {
+            let number = read_parameter(master, parameter)?;
+            return Ok(match parameter {
+                Parameter::Direction => ItemValue::Direction(direction_of(number)?),
+                _ => ItemValue::Number(number),
+            });
+        }
         Ok(match item {
-            Item::Steps | Item::Revolutions | Item::Direction | Item::Preset | Item::ZeroShift => {
-                of_parameters(item, &read_parameters(master)?)
-            }
             Item::Shift => {
                 let (_, shift) = programs(master, &[], &mut |_, _, _| {})?;
                 ItemValue::Number(shift.get().into())
             }
             Item::CamMask(_) => ItemValue::Mask(master.ask(Command::ReadActivation)?.get() as u8),
             Item::Cam(_, cam) => ItemValue::Cam(read_cam(master, cam)?),
-            Item::Temperature | Item::OperatingTime => {
+            item => {
                 let read_out = if item == Item::Temperature { ReadOut::TEMPERATURE } else { ReadOut::OPERATING_TIME };
                 let value = master.read_out(read_out)?;
                 match read_out.value(value) {
@@ -96,11 +101,4 @@ pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error
             }
         })
     })
-}
-
-fn of_parameters(item: Item, parameters: &Parameters) -> ItemValue {
-    match item {
-        Item::Direction => ItemValue::Direction(parameters.direction),
-        item => ItemValue::Number(item.parameter().and_then(|own| parameters.value(own)).unwrap_or_default()),
-    }
 }

@@ -52,6 +52,8 @@ pub(super) struct Known {
     pub(super) hold: Option<(StartupMode, Command)>,
     /// Normal running keeps this mode.
     pub(super) kept: Option<StartupMode>,
+    /// The longest that it was seen at work on a word.
+    pub(super) processing: Duration,
 }
 
 impl Station {

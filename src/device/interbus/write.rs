@@ -13,7 +13,9 @@ use super::identify::{direction_of, programs, read_cam, read_parameters, read_pr
 use super::{Error, Identity, Master};
 use crate::profile::Consent;
 use crate::profile::interbus::{CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange};
-use crate::protocol::interbus::{Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, StartupMode, Value};
+use crate::protocol::interbus::{
+    Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, Reply, StartupMode, Value,
+};
 
 /// A plan that a person consented to and whose base still holds.
 pub struct Confirmed<'p> {
@@ -166,11 +168,21 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
         check(item, change.to, reads)?;
         done.verified += 1;
     }
-    refresh_gear(master)
+    let of_gear = |change: &ParameterChange| matches!(change.parameter, Parameter::Steps | Parameter::Turns);
+    if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
+}
+
+/// What the encoder says that a parameter is; of the direction its code as it is set.
+fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
+    let value = read_parameter(master, parameter)?;
+    match parameter {
+        Parameter::Direction => Ok(direction_of(value)?.code()),
+        _ => Ok(value),
+    }
 }
 
 /// What the encoder says that a parameter is; 0 for the default, which cannot be read.
-fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
+pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let number = match parameter {
         Parameter::Steps => 1,
         Parameter::Turns => 2,
@@ -179,11 +191,7 @@ fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error
         Parameter::ZeroShift => 5,
         Parameter::Default => return Ok(0),
     };
-    let value = master.read_out(ReadOut::new(number))?.get();
-    match parameter {
-        Parameter::Direction => Ok(direction_of(value)?.code()),
-        _ => Ok(value),
-    }
+    Ok(master.read_out(ReadOut::new(number))?.get())
 }
 
 fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
@@ -196,10 +204,16 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
     master.go(StartupMode::Cams(number))?;
     done.write_cycles += 1;
     for CamChange { cam, edge, to, .. } in &change.cams {
-        master.set(match edge {
-            Edge::Start => Command::CamStart(*cam, *to),
-            Edge::Stop => Command::CamStop(*cam, *to),
-        })?;
+        let (command, question) = match edge {
+            Edge::Start => (Command::CamStart(*cam, *to), Command::ReadCamStart(*cam)),
+            Edge::Stop => (Command::CamStop(*cam, *to), Command::ReadCamStop(*cam)),
+        };
+        match Reply::echo_of(command) {
+            Reply::Busy { .. } => {
+                master.set_and_read_out(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
+            }
+            _ => master.set(command)?,
+        }
     }
     if let Some((_, to)) = change.mask {
         master.set(Command::Activate(to.into()))?;

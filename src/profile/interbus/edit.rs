@@ -84,9 +84,13 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     if !now_has_room {
         order.swap(0, 1);
     }
-    // A preset beyond the range that is to be has to go before the range does.
-    let preset_first = device.preset >= wanted.steps;
-    order.insert(if preset_first { 0 } else { 3 }, Parameter::Preset);
+    order.insert(3, Parameter::Preset);
+    // A place beyond the range that is to be has to go before the range does.
+    let is_beyond = |parameter: &Parameter| {
+        let places = matches!(parameter, Parameter::Preset | Parameter::ZeroShift);
+        places && device.value(*parameter).is_some_and(|place| place >= wanted.steps)
+    };
+    order.sort_by_key(|parameter| !is_beyond(parameter));
     let mut changes = Vec::new();
     for parameter in order {
         let (Some(from), Some(to)) = (device.value(parameter), wanted.value(parameter)) else { continue };

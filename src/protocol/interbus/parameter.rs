@@ -69,7 +69,7 @@ pub const PARAMETERS: [ParameterRow; 6] = [
     row(Turns, 2, "revolutions", "turns", Limit::Fixed(1, TURNS)),
     row(Direction, 3, "direction", "", Limit::Fixed(3, 4)),
     row(Preset, 4, "preset", "steps", Limit::WithinRange),
-    row(ZeroShift, 5, "zero-shift", "steps", Limit::Fixed(0, Value::MAX.get())),
+    row(ZeroShift, 5, "zero-shift", "steps", Limit::WithinRange),
     row(Default, 7, "default", "", Limit::Fixed(0, 0)),
 ];
 

@@ -72,6 +72,8 @@ pub enum Change {
     },
     /// Make it like this; what the image says nothing about stays as it is, and is not read.
     Write(Box<Image>),
+    /// Give one item this value; the rest stays as it is.
+    Item(Item, ItemValue),
     /// Store this preset, and make it the shaft's position; at standstill.
     Preset {
         /// The position.
@@ -99,7 +101,7 @@ impl Change {
     pub const fn kind(&self) -> ChangeKind {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
-            Change::Write(_) => ChangeKind::Edits,
+            Change::Write(_) | Change::Item(..) => ChangeKind::Edits,
             Change::Preset { .. } => ChangeKind::Preset,
             Change::Default => ChangeKind::Default,
         }

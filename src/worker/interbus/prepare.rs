@@ -3,7 +3,8 @@
 use super::{Change, Doing, Interbus, JobError, Prepared, Remark, Told, device_key};
 use crate::device::interbus::{identify, read_state};
 use crate::profile::interbus::{
-    Image, InterbusPlan, Restore, check_device, plan_default, plan_edits, plan_preset, plan_restore, programs_needed,
+    Image, InterbusPlan, Item, Restore, check_device, plan_default, plan_edits, plan_preset, plan_restore,
+    programs_needed,
 };
 use crate::protocol::interbus::ProgramNumber;
 use crate::worker::commit::cycles_seen;
@@ -36,6 +37,16 @@ pub(super) fn prepare(
         Change::Write(wanted) => {
             device = state(&programs_touched(wanted))?;
             only(plan_edits(&device.image, wanted)?)
+        }
+        Change::Item(item, value) => {
+            let needed = match item {
+                Item::Shift => ProgramNumber::all().take(1).collect(),
+                item => item.program().into_iter().collect::<Vec<_>>(),
+            };
+            device = state(&needed)?;
+            let mut wanted = Image { shift: None, ..device.image.clone() };
+            wanted.put(*item, *value);
+            only(plan_edits(&device.image, &wanted)?)
         }
         Change::Preset { value } => {
             device = state(&[])?;

@@ -21,7 +21,7 @@ pub fn change(change: &Change) -> Text {
             "" => Text::new("ib_change.restore"),
             serial => Text::new("change.restore").with("serial", serial),
         },
-        Change::Write(_) => Text::new("ib_change.write"),
+        Change::Write(_) | Change::Item(..) => Text::new("ib_change.write"),
         Change::Preset { value } => Text::new("ib_change.preset").with("value", value),
         Change::Default => Text::new("ib_change.default"),
     }

@@ -160,7 +160,7 @@ pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wan
         Edit::Gear { steps, revolutions } => set_gear(&mut after, steps, revolutions)?,
         Edit::Direction(direction) => parameters.direction = direction,
         Edit::Preset(to) => parameters.preset = within(Parameter::Preset, to, last(wanted))?,
-        Edit::ZeroShift(to) => parameters.zero_shift = within(Parameter::ZeroShift, to, Value::MAX.get())?,
+        Edit::ZeroShift(to) => parameters.zero_shift = within(Parameter::ZeroShift, to, last(wanted))?,
         Edit::Shift(shift) => {
             if ground == Ground::Encoder && wanted.image.shift.is_none() {
                 return Err(EditError::ShiftNotRead);

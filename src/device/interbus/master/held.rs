@@ -9,13 +9,16 @@ use crate::units::Moment;
 const STANDS: u32 = 2;
 /// and for so long: longer than a gateway usually keeps one word (`U`).
 const STANDS_FOR: Duration = Duration::from_millis(10);
-/// A word that may be the answer to the one before stands after so many,
+/// A word that may be the answer to the one before stands after so long (`U`),
+pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
+/// or after so many cycles of a recording, in which no time passes.
 const STAYS: u32 = 20;
-/// and after so long (`U`).
-const STAYS_FOR: Duration = Duration::from_millis(100);
 
 /// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
-pub(super) const LEAST: u32 = STAYS + 4;
+pub(super) const fn least_cycles(recorded: bool) -> u32 {
+    if recorded { STAYS + 4 } else { 8 }
+}
+
 /// Less patience than this is none: what stays has to be seen.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
@@ -52,12 +55,18 @@ impl Held {
 
     /// Long enough for one that could be.
     pub(super) fn stays(self) -> bool {
-        self.cycles >= STAYS && self.lasts(STAYS_FOR)
+        self.stays_for(STAYS_FOR)
     }
 
-    /// As [`stays`](Self::stays), and for so long.
+    /// For so long; of a slow gateway in no more cycles than it takes to see it stand.
     pub(super) fn stays_for(self, duration: Duration) -> bool {
-        self.stays() && self.lasts(duration)
+        let least = if self.timeless { STAYS } else { STANDS };
+        self.cycles >= least && self.lasts(duration)
+    }
+
+    /// From the first of these cycles to the last.
+    pub(super) const fn lasted(self) -> Duration {
+        self.lasted
     }
 
     fn lasts(self, duration: Duration) -> bool {

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use super::Master;
+use super::held::Look;
 use crate::device::interbus::Error;
+use crate::device::interbus::error::Awaited;
 use crate::protocol::interbus::{Command, ReadOut, Reply, StartupMode};
 
 /// So long the value of a question about a cam may stay behind `00000000`, before `80000000` is tried (`U`).
@@ -12,6 +14,8 @@ const VALUE_STAYS: Duration = Duration::from_millis(300);
 const LOOKS: u32 = 2;
 /// From one to the next.
 const LOOK: Duration = Duration::from_millis(10);
+/// What an encoder said it does holds for so long between two steps of a job; both lead it back.
+const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
     /// Does something with the encoder, and leads it back to what it did before, whatever happens.
@@ -25,7 +29,10 @@ impl Master<'_> {
             Err(error @ Error::Link(_)) => Err(error.clone()),
             _ => self.shielded(Self::lead_back),
         };
-        let Err(why) = led else { return ended };
+        let Err(why) = led else {
+            self.rested = self.is_as_found().then(|| self.data.now());
+            return ended;
+        };
         let cause = ended.err().unwrap_or(why);
         if self.is_as_found() {
             return Err(cause);
@@ -110,6 +117,10 @@ impl Master<'_> {
         }
         if let Reply::Error(_) = Reply::parse(self.input) {
             self.found_error = Some(self.input);
+        }
+        let runs = matches!(Reply::parse(self.input), Reply::Run { .. });
+        if runs && self.rested.take().is_some_and(|rested| self.data.now().since(rested) < STILL) {
+            return Ok(());
         }
         let mode = self.ask_mode()?;
         self.found = Some(mode);
@@ -233,6 +244,9 @@ impl Master<'_> {
         if !asks && !stands {
             return Ok(());
         }
+        if self.parameterising {
+            return self.stop_asking();
+        }
         let word = self.resting_word();
         let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
         let patience = if of_cams { VALUE_STAYS.min(self.patience) } else { self.patience };
@@ -241,6 +255,20 @@ impl Master<'_> {
                 self.running(Command::Run, self.patience)?;
                 self.running(word, self.patience)
             }
+            ended => ended,
+        }
+    }
+
+    /// `00000000` until no value stands, while something is being set: `80000000` would store it. A value that stays is
+    /// told from the echo that comes next.
+    fn stop_asking(&mut self) -> Result<(), Error> {
+        let patience = VALUE_STAYS.min(self.patience);
+        let ended = self.until(Command::Normal, Awaited::Run, patience, |Look { word, same, .. }| {
+            let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
+            (!asks && same.stands()).then_some(Ok(()))
+        });
+        match ended {
+            Err(Error::TimeOut { .. }) => Ok(()),
             ended => ended,
         }
     }

@@ -25,6 +25,29 @@ fn what_is_so_already_costs_nothing() {
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
 
+/// Issue 22.6: a zero shift is a place within the measuring range; one beyond the range that is to be goes first.
+#[test]
+fn a_zero_shift_lies_within_the_measuring_range() {
+    let device = Image::of(Parameters { steps: 255, revolutions: 1, preset: 0, zero_shift: 0, ..image().parameters });
+    let with = |change: &dyn Fn(&mut Parameters)| {
+        let mut wanted = device.clone();
+        change(&mut wanted.parameters);
+        wanted
+    };
+    let beyond = OutOfRange { parameter: Parameter::ZeroShift, value: 255, low: 0, high: 254 };
+    let refused = plan_edits(&device, &with(&|own| own.zero_shift = 255));
+    assert_eq!(refused, Err(PlanError::OutOfRange(beyond)));
+    assert_eq!(sent(&device, &with(&|own| own.zero_shift = 254)), [(Parameter::ZeroShift, 254)]);
+    // One that stays has to lie within the range that is to be, as the preset has.
+    let full = with(&|own| own.zero_shift = 254);
+    let shorter = |zero_shift| with(&|own| (own.steps, own.zero_shift) = (100, zero_shift));
+    assert!(matches!(plan_edits(&full, &shorter(254)), Err(PlanError::OutOfRange(_))));
+    assert_eq!(sent(&full, &shorter(99)), [(Parameter::ZeroShift, 99), (Parameter::Steps, 100)]);
+    // Into a longer one it follows.
+    let longer = with(&|own| (own.steps, own.zero_shift) = (1000, 999));
+    assert_eq!(sent(&device, &longer), [(Parameter::Steps, 1000), (Parameter::ZeroShift, 999)]);
+}
+
 /// The issue: a full set (64 cams, 8 masks) into an encoder that has 60 of the cams already touches what differs, and costs
 /// a store for each program that changes.
 #[test]

@@ -80,7 +80,7 @@ fn what_is_beyond_its_limits_is_wrong_data_and_changes_nothing() {
     assert_eq!((master.encoder.stores(), master.encoder.memory()), (3, &config("steps=8192&revolutions=1").memory));
     // With more turns there is room for more steps, and not for fewer turns afterwards.
     master.exchange(&[(0x0400_0002, 0xC400_0002), (0x0200_4000, 0xC200_4000), (0x0400_0001, 0x8200_0000)]);
-    master.exchange(&[(0x0800_3FFF, 0xC800_3FFF), (0x0BFF_FFFF, 0xCBFF_FFFF), (0x0600_0004, 0xC600_0004)]);
+    master.exchange(&[(0x0800_3FFF, 0xC800_3FFF), (0x0A00_3FFF, 0xCA00_3FFF), (0x0600_0004, 0xC600_0004)]);
 }
 
 #[test]
@@ -148,10 +148,11 @@ fn the_other_direction_counts_backwards() {
 fn zero_shift_moves_the_position_within_the_range() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0A00_00C8, 0x8000_0000, 0]);
-    // 180 and 200 of 360; then 180 and 1000.
+    // 180 and 200 of 360; then 180 and 359; 360 is beyond the range.
     assert_eq!(master.read(), 20);
-    master.put(&[0x0A00_03E8, 0x8000_0000, 0]);
-    assert_eq!(master.read(), 100);
+    master.put(&[0x0A00_0167, 0x8000_0000, 0]);
+    assert_eq!(master.read(), 179);
+    master.exchange(&[(0x0A00_0168, 0x8200_0000)]);
 }
 
 #[test]
