@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::args::{Common, Diff, Restore};
 use super::kind;
-use super::output::{Lines, Output};
+use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
@@ -20,6 +20,9 @@ use crate::store::{read_text, write_atomically};
 pub(super) fn load(path: &Path) -> Result<Body> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
     let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
+    if let Some(words) = document.body.biss().and_then(explain::biss::profile_unsaved) {
+        say(&format!("{}: {}\n", path.display(), words.terminal()));
+    }
     Ok(document.body)
 }
 

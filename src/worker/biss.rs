@@ -19,12 +19,12 @@ use super::commit::cycles_seen;
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::biss::check::Wear;
 use crate::device::biss::{
-    self as device, Error, Identity, Master, Place, Sample, Station, identify, procedure, read_position,
+    self as device, Error, Identity, Master, Place, Sample, Station, Unsaved, identify, procedure, read_position,
     read_registers, read_sample, read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::biss::RegisterRange;
-use crate::protocol::biss::{Descriptions, RegisterAddress};
+use crate::protocol::biss::{Descriptions, DeviceMode, RegisterAddress};
 use crate::sim::biss::Motor;
 use crate::store::{Store, StoreError};
 
@@ -146,11 +146,13 @@ impl Device for Biss {
                 let first = area.first;
                 let total = area.banks().count() as u64;
                 let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, Doing::Bank(bank));
-                BissOutput::Area(device::read_area_surely(&mut self.master(desk), &area, told)?)
+                let banks = device::read_area_surely(&mut self.master(desk), &area, told)?;
+                BissOutput::Area { banks, unsaved: self.unsaved(desk)? }
             }
-            BissJob::Save => {
+            BissJob::Save | BissJob::SaveToCompare => {
+                let unsaved = if matches!(job, BissJob::Save) { Unsaved::Marked } else { Unsaved::Refused };
                 let progress = &mut |done, total, place| steps(done, total, doing(place));
-                BissOutput::Saved(Box::new(device::save(&mut self.master(desk), &types, progress)?))
+                BissOutput::Saved(Box::new(device::save(&mut self.master(desk), &types, unsaved, progress)?))
             }
             BissJob::Prepare(change) => {
                 let steps = &mut |progress| tell(Tell::Progress(progress));
@@ -214,7 +216,16 @@ impl Biss {
     fn read(&mut self, desk: &mut Desk, start: RegisterAddress, count: u8) -> Result<BissOutput, JobError> {
         self.know(desk)?;
         let bytes = read_registers(&mut self.master(desk), start, count)?;
-        Ok(BissOutput::Registers(ReadRegisters { start, bytes }))
+        // Direct registers hold nothing that is entered first and saved later.
+        let unsaved = if start.bank().is_some() { self.unsaved(desk)? } else { None };
+        Ok(BissOutput::Registers(ReadRegisters { start, bytes, unsaved }))
+    }
+
+    /// The device mode in which registers may show what was never saved.
+    fn unsaved(&mut self, desk: &mut Desk) -> Result<Option<DeviceMode>, Error> {
+        let mut master = self.master(desk);
+        let description = master.description()?;
+        device::write::unsaved_mode(&mut master, &description)
     }
 }
 

@@ -295,6 +295,36 @@ fn a_link_that_is_cut_in_the_middle_is_told_with_the_backup() {
     }
 }
 
+/// Issue 22.15: registers that were entered and never saved are told, and no comparison takes them for the encoder's
+/// content. Only `lead-back` leads back.
+#[test]
+fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
+    let bench = Bench::new();
+    let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET, "--left-in", "4"]) else { return };
+    let file = bench.write("p.ron", PROFILE);
+    for encoder in &encoders {
+        for compares in [vec!["verify", &file], vec!["diff", &file]] {
+            let ran = ask(&bench, encoder, &compares);
+            assert_eq!((ran.status, ran.out.as_str()), (Some(1), ""), "{ran:?}");
+            assert!(ran.err.contains("device mode 0x04") && ran.err.contains("do biss lead-back --yes"), "{ran:?}");
+        }
+        let read = ask(&bench, encoder, &["read", "biss", "0x24:0x01"]);
+        read.says(&["device mode 0x04", "never saved", "lead-back"]);
+        assert_eq!((read.status, &read.json()["value"]), (Some(0), &json!(1)));
+        let saved = bench.file("saved.ron");
+        let ran = ask(&bench, encoder, &["save", "biss", "-o", &saved]);
+        ran.says(&["device mode 0x04", "never saved"]);
+        assert_eq!(ran.json()["unsaved_in_mode"], json!(4));
+        assert!(bench.read("saved.ron").contains("device_mode: 0x04"));
+        assert_eq!(written(encoder), [""; 0], "reading leads nothing back");
+        assert_eq!(ask(&bench, encoder, &["do", "biss", "lead-back", "--yes"]).json()["mode"], json!(4));
+        assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
+        let ran = ask(&bench, encoder, &["verify", &saved]);
+        ran.says(&["saved.ron", "device mode 0x04"]);
+        assert_eq!(ran.json()["equal"], json!(true));
+    }
+}
+
 /// Reference 5: a mode that another host has left, and the password that it has left set.
 #[test]
 fn an_encoder_that_was_left_in_a_mode_is_led_back() {

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::action::Action;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::{Text, explain};
 use crate::profile::Body;
 use crate::profile::biss::{BissProfile, RegisterRange};
 use crate::protocol::biss::{Area, Register, RegisterAddress};
@@ -136,6 +136,7 @@ impl Encoder {
     /// A profile was read for a file.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.edits());
-        self.session.write_read(Body::Biss(profile), edits, Vec::new(), services);
+        let remarks = explain::biss::saved_unsaved(&profile).into_iter().collect();
+        self.session.write_read(Body::Biss(profile), edits, remarks, services);
     }
 }

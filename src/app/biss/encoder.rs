@@ -14,12 +14,12 @@ use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text};
+use crate::app::{Severity, Text, explain};
 use crate::device::biss::{Identity, Status, Survey};
 use crate::link::LinkUrl;
 use crate::profile::biss::{BissProfile, ProfileIdentity};
 use crate::profile::{Body, Document};
-use crate::protocol::biss::{Description, Descriptions, Eds, EdsBank, EdsError};
+use crate::protocol::biss::{Description, Descriptions, DeviceMode, Eds, EdsBank, EdsError};
 use crate::sim::biss::Motor;
 use crate::worker::biss::Biss;
 
@@ -222,6 +222,23 @@ impl Encoder {
             self.log_answer(services);
         }
         self.list_backups(services);
+    }
+
+    /// The device mode in which registers were read just now; `None` in operation.
+    pub(super) fn see_mode(&mut self, unsaved: Option<DeviceMode>) {
+        if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
+            *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
+        }
+    }
+
+    /// The device mode in which its registers may show values that were never saved: of the encoder, or of a profile as it
+    /// was read.
+    pub fn unsaved(&self) -> Option<Text> {
+        if let Some(profile) = self.profile() {
+            return explain::biss::profile_unsaved(profile);
+        }
+        let mode = self.status.as_ref()?.mode.filter(|mode| *mode != DeviceMode::OPERATION)?;
+        Some(explain::biss::unsaved(mode))
     }
 
     /// Another encoder than the one that was read before.

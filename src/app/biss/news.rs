@@ -127,9 +127,13 @@ impl OnLine for Encoder {
             BissOutput::Position(reading) => self.record.add_position(reading),
             BissOutput::Registers(read) => {
                 self.memory.take(read.start, &read.bytes);
+                if read.start.bank().is_some() {
+                    self.see_mode(read.unsaved);
+                }
                 self.read_written(services);
             }
-            BissOutput::Area(banks) => {
+            BissOutput::Area { banks, unsaved } => {
+                self.see_mode(unsaved);
                 for bank in banks {
                     bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
                 }

@@ -55,6 +55,7 @@ impl Reviewed for Biss {
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(Text::new("biss_review.table"));
         }
+        warnings.extend(prepared.unsaved.map(explain::biss::profile_unsaved_in));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
         warnings.extend(review::left_alone("biss_review.missing", &prepared.missing, mounting));
         warnings

@@ -21,7 +21,7 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::ReadDirect => Text::new("job.read_direct"),
         BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
         BissJob::ReadArea(area) => Text::new("job.read").with_text("item", explain::name(&area.name)),
-        BissJob::Save => Text::new("job.save"),
+        BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::biss::change(change)),
         BissJob::Commit(_) => Text::new("job.write"),
         BissJob::LeadBack => Text::new("job.lead_back"),

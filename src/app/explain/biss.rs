@@ -14,7 +14,8 @@ use super::{adapter, link, not_begun, store};
 use crate::app::Text;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
-use crate::protocol::biss::Mismatch;
+use crate::profile::biss::BissProfile;
+use crate::protocol::biss::{DeviceMode, Mismatch};
 use crate::worker::biss::{Doing, JobError, Remark};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
@@ -87,10 +88,34 @@ pub fn encoder(error: &Error) -> Text {
         Error::NoDescription(found) => Text::new("biss.no_description").with("found", found),
         Error::NotIdentified => Text::new("biss.not_identified"),
         Error::Moving { rpm } => moving(*rpm),
-        Error::NotInOperation { mode } => Text::new("biss.not_in_operation").with_text("mode", self::mode(*mode)),
+        Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
         Error::Changed { item } => Text::new("biss.changed").with("item", item),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
+}
+
+/// An encoder in a device mode, where its registers may show what was never saved.
+pub fn unsaved(mode: DeviceMode) -> Text {
+    in_mode("biss.unsaved", mode)
+}
+
+/// The same of an encoder that was saved just now; `None` where it was in operation.
+pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
+    profile.recorded.device_mode.map(unsaved)
+}
+
+/// A profile that was read in a device mode; `None` where the encoder was in operation.
+pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
+    profile.recorded.device_mode.map(profile_unsaved_in)
+}
+
+/// A profile that was read in this device mode.
+pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
+    in_mode("biss.profile_unsaved", mode)
+}
+
+fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
+    Text::new(id).with_text("mode", self::mode(mode))
 }
 
 /// A shaft that has to stand and does not.

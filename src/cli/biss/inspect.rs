@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value as Json, json};
 
-use super::run::{Runner, crc_errors, identity, registers};
+use super::run::{Runner, crc_errors, identity, read_registers, registers};
 use super::words;
+use crate::app::explain;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Position};
 use crate::cli::output::{Lines, Output, say};
@@ -15,7 +16,7 @@ use crate::cli::{Done, Result};
 use crate::device::biss::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
 use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{KIND, Name, Role};
-use crate::worker::biss::{Biss, BissJob, BissOutput, JobError};
+use crate::worker::biss::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
 
 /// Without a good frame for so long, nothing but noise comes.
 const NOISE: Duration = Duration::from_secs(5);
@@ -241,7 +242,10 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let range = super::item(item)?;
     let mut runner = Runner::open(common)?;
     let identity = identity(&mut runner)?;
-    let bytes = registers(&mut runner, range)?;
+    let ReadRegisters { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
+    if let Some(mode) = unsaved {
+        output.remark(&explain::biss::unsaved(mode).terminal());
+    }
     let said = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),

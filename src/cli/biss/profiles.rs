@@ -13,20 +13,25 @@ use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
 use crate::profile::biss::{self, BissProfile, ProfileIdentity, RestoreOptions};
 use crate::profile::{Body, Comparison, ProfileError};
+use crate::protocol::biss::DeviceMode;
 use crate::worker::biss::{BissJob, BissOutput, Change};
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
-    let profile = saved(common)?;
+    let profile = saved(common, BissJob::Save)?;
     let banks = profile.banks().count();
+    let (mode, unsaved) = (profile.recorded.device_mode, explain::biss::saved_unsaved(&profile));
     keep(&save.file, Body::Biss(profile))?;
-    let json = json!({"file": save.file, "banks": banks});
+    if let Some(words) = unsaved {
+        output.remark(&words.terminal());
+    }
+    let json = json!({"file": save.file, "banks": banks, "unsaved_in_mode": mode.map(DeviceMode::byte)});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(banks, "bank")))?;
     Ok(Done::Well)
 }
 
-/// The encoder as it is, for a comparison.
+/// The encoder as it is, for a comparison: refused where it shows what was never saved.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    Ok(Body::Biss(saved(common)?))
+    Ok(Body::Biss(saved(common, BissJob::SaveToCompare)?))
 }
 
 /// What differs between two profiles.
@@ -44,8 +49,8 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     })
 }
 
-fn saved(common: &Common) -> Result<BissProfile> {
-    match Runner::open(common)?.run(BissJob::Save)? {
+fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
+    match Runner::open(common)?.run(job)? {
         BissOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
     }

@@ -10,7 +10,7 @@ use crate::device::biss::{Identity, Way};
 use crate::link::LinkUrl;
 use crate::profile::biss::RegisterRange;
 use crate::store::Store;
-use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, Remark, open};
+use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, open};
 use crate::worker::{OpenError, Session};
 
 /// A session with a BiSS encoder on its thread.
@@ -94,8 +94,13 @@ pub(super) fn crc_errors(runner: &Runner) -> u64 {
 
 /// The registers of a run.
 pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
+    read_registers(runner, range).map(|read| read.bytes)
+}
+
+/// The registers of a run, and whether they may show what was never saved.
+pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
     match runner.run(BissJob::Read(range))? {
-        BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read.bytes),
+        BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),
         BissOutput::Registers(read) => {
             let (wanted, came) = (range.count(), read.bytes.len());
             Err(Failure::Failed(vec![format!("{range}: {came} registers came where {wanted} were asked for.")]))

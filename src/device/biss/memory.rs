@@ -6,10 +6,11 @@ use std::time::Duration;
 use super::identify::identify_with;
 use super::registers::Registers;
 use super::survey::look_around;
+use super::write::unsaved_mode;
 use super::{Error, Master, PositionReading, Survey};
 use crate::profile::Unknown;
 use crate::profile::biss::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
-use crate::protocol::biss::{Area, Descriptions, RegisterAddress};
+use crate::protocol::biss::{Area, Descriptions, DeviceMode, RegisterAddress};
 
 /// Positions that say whether the shaft stands still, and the time between two.
 const READINGS: usize = 3;
@@ -19,6 +20,15 @@ const BETWEEN: Duration = Duration::from_millis(100);
 const COUNTED: u8 = 7;
 /// A shaft that moves by no more than a revolution's 8192nd part stands still: the position trembles (`U`).
 const TREMBLE: u64 = 8192;
+
+/// What becomes of values that were entered in a device mode and never saved: the encoder shows them as if it held them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unsaved {
+    /// They are saved, and the profile says so.
+    Marked,
+    /// Nothing is read: they would be compared as the encoder's content.
+    Refused,
+}
 
 /// Where reading of memory is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,19 +119,26 @@ pub fn read_area_surely(master: &mut Master<'_>, area: &Area, told: &mut dyn FnM
     certainly(master, |master| read_area(master, area, told))
 }
 
-/// Reads everything that can be restored, and what identifies the encoder.
+/// Reads everything that can be restored, and what identifies the encoder. It leaves the device mode as it is: leading back
+/// would discard what somebody has entered.
 ///
 /// # Errors
-/// The line, or [`Error::Moving`].
+/// The line, [`Error::Moving`], or [`Error::NotInOperation`] where unsaved values are refused.
 pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
+    unsaved: Unsaved,
     progress: &mut dyn FnMut(u64, u64, Place),
 ) -> Result<BissProfile, Error> {
     certainly(master, |master| {
         let mut registers = Registers::default();
         let identity = identify_with(master, types, &mut registers)?;
         let description = identity.description.clone();
+        let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == Unsaved::Refused);
+        let before = unsaved_mode(master, &description)?;
+        if let Some(mode) = refused(&before) {
+            return Err(Error::NotInOperation { mode });
+        }
         let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.reads()).collect();
         let (mut done, mut total) = (0, areas.iter().map(|area| area.size() as u64).sum());
         let in_areas = total;
@@ -138,7 +155,12 @@ pub fn save(
             })?;
             data.push(DataImage::of(area, banks));
         }
-        Ok(profile_of(&survey, data))
+        // Another host may have entered a mode meanwhile.
+        let mode = before.or(unsaved_mode(master, &description)?);
+        match refused(&mode) {
+            Some(mode) => Err(Error::NotInOperation { mode }),
+            None => Ok(profile_of(&survey, data, mode)),
+        }
     })
 }
 
@@ -153,8 +175,8 @@ fn certainly<T>(
     if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
 }
 
-/// A profile of an encoder with these data.
-pub fn profile_of(survey: &Survey, data: Vec<DataImage>) -> BissProfile {
+/// A profile of an encoder with these data, which were read in this device mode where that is not operation.
+fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
     let mut profile = BissProfile {
@@ -167,6 +189,7 @@ pub fn profile_of(survey: &Survey, data: Vec<DataImage>) -> BissProfile {
             wiegand_production: survey.wiegand_production,
             wiegand_saved: survey.wiegand_saved,
             calibration_status: survey.calibration.map(|status| status.byte()),
+            device_mode: unsaved,
             unknown: Unknown::new(),
         },
         mounting: Vec::new(),

@@ -211,11 +211,21 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
 /// # Errors
 /// [`Error::NotInOperation`]; the line.
 pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
-    let Some(lock) = description.lock() else { return Ok(()) };
-    match DeviceMode::new(master.read(lock.mode_at)?) {
-        DeviceMode::OPERATION => Ok(()),
-        mode => Err(Error::NotInOperation { mode }),
+    match unsaved_mode(master, description)? {
+        None => Ok(()),
+        Some(mode) => Err(Error::NotInOperation { mode }),
     }
+}
+
+/// The device mode in which registers may show what was entered and never saved; `None` in operation, and for an encoder
+/// without device modes.
+///
+/// # Errors
+/// The line.
+pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
+    let Some(lock) = description.lock() else { return Ok(None) };
+    let mode = DeviceMode::new(master.read(lock.mode_at)?);
+    Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
 /// What a plan needs to know of an encoder: who it is, its settings, and these banks of it.

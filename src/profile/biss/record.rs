@@ -5,7 +5,9 @@ use std::fmt;
 
 use super::RegisterRange;
 use crate::profile::ron_text::Unknown;
-use crate::protocol::biss::{Area, Filter, Firmware, Identity, PresetValue, ProfileId, RegisterAddress, WiegandResult};
+use crate::protocol::biss::{
+    Area, DeviceMode, Filter, Firmware, Identity, PresetValue, ProfileId, RegisterAddress, WiegandResult,
+};
 
 /// A BiSS encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +71,9 @@ pub struct Recorded {
     pub wiegand_saved: Option<WiegandResult>,
     /// Status register of the calibration (bank 0, 01h).
     pub calibration_status: Option<u8>,
+    /// The device mode in which it was read, where that was not operation: values may be among it that were entered and
+    /// never saved.
+    pub device_mode: Option<DeviceMode>,
     /// Entries that this program does not know.
     pub unknown: Unknown,
 }

@@ -7,7 +7,7 @@ use crate::bits::hex;
 use crate::profile::ProfileError;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{BYTE, Entries, Writer, quoted};
-use crate::protocol::biss::{Filter, Firmware, PresetValue, ProfileId, WiegandResult};
+use crate::protocol::biss::{DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
 
 /// Three registers hold a preset value.
 const PRESET_NUMBER: &str = "a number from 0 to 16777215";
@@ -103,6 +103,9 @@ impl Recorded {
         }
         if let Some(status) = self.calibration_status {
             writer.entry("calibration_status", &format!("0x{status:02X}"), "");
+        }
+        if let Some(mode) = self.device_mode {
+            writer.entry("device_mode", &format!("0x{:02X}", mode.byte()), "values may not have been saved");
         }
         if !self.eds.is_empty() {
             writer.open("eds", '[');
@@ -203,6 +206,7 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
         wiegand_production: result("wiegand_production")?,
         wiegand_saved: result("wiegand_saved")?,
         calibration_status: entries.optional("calibration_status", BYTE)?,
+        device_mode: entries.optional("device_mode", BYTE)?.map(DeviceMode::new),
         eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
         unknown: entries.rest(),
     })

@@ -54,6 +54,7 @@ pub(super) fn page_ui(
         ui.label(skin.caption(skin.words(&text)));
     });
     ui.add_space(skin.space.inside);
+    super::unsaved_ui(ui, skin, encoder, actions);
     super::refusal_ui(ui, skin, encoder, actions);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
         Some(((read, wanted), own)) => bytes(ui, skin, encoder, &own, (&read, &wanted), view, actions),

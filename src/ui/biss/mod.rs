@@ -12,9 +12,9 @@ mod wiring;
 
 use egui::Ui;
 
-use super::controls::paragraph;
+use super::controls::{enabled_button, paragraph};
 use super::{Skin, backups, icons, page};
-use crate::app::biss::Encoder;
+use crate::app::biss::{Action as Biss, Encoder};
 use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
@@ -103,6 +103,27 @@ fn refusal_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Act
         paragraph(ui, skin.words(why));
     });
     motor::turning_ui(ui, skin, encoder, actions);
+}
+
+/// Registers that may show what was never saved, with the way back to operation.
+fn unsaved_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(why) = encoder.unsaved() else { return };
+    ui.horizontal_top(|ui| {
+        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, skin.words(&why));
+    });
+    if encoder.profile().is_none() {
+        lead_back_ui(ui, skin, encoder, actions);
+    }
+    ui.add_space(skin.space.inside);
+}
+
+/// The button that leads back to operation.
+fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let word = skin.say("lead_back_card.button");
+    if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
+        actions.push(Action::Biss(encoder.session.id, Biss::LeadBack));
+    }
 }
 
 /// Draws the open page.

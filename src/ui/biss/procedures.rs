@@ -106,10 +106,7 @@ fn left_behind(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Ac
         let mode = explain::biss::mode(status.mode.unwrap_or_default());
         let text = Text::new("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
-        let word = skin.say("lead_back_card.button");
-        if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::LeadBack));
-        }
+        super::lead_back_ui(ui, skin, encoder, actions);
     });
     ui.add_space(skin.space.groups);
 }

@@ -39,6 +39,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     }
     let beside = ui.available_width() >= BESIDE;
     head(ui, skin, encoder, (&groups, beside), view, actions);
+    super::unsaved_ui(ui, skin, encoder, actions);
     super::refusal_ui(ui, skin, encoder, actions);
     ui.add_space(skin.space.inside);
     let height = ui.available_height();

@@ -8,7 +8,7 @@ use crate::app::biss::{Action as Biss, Encoder, End, Guide, Reached};
 use crate::app::{Action, Severity, Text, explain::biss as says};
 use crate::device::biss::procedure::{Advice, Answer, Demand, Detail, Run, Task};
 use crate::profile::biss::Op;
-use crate::ui::controls::{button, card, enabled_button, paragraph, severity};
+use crate::ui::controls::{button, card, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Skin, icons};
 
@@ -182,10 +182,7 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
         ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
-                let word = skin.say("lead_back_card.button");
-                if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
-                    actions.push(Action::Biss(id, Biss::LeadBack));
-                }
+                super::lead_back_ui(ui, skin, encoder, actions);
             }
             if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));

@@ -42,8 +42,10 @@ pub enum BissJob {
     ReadBank(u8),
     /// All registers of an area of data; at standstill.
     ReadArea(Area),
-    /// Everything that can be restored; at standstill.
+    /// Everything that can be restored; at standstill. What was never saved is marked.
     Save,
+    /// The same for a comparison: refused where it may hold what was never saved.
+    SaveToCompare,
     /// Makes a plan; writes nothing.
     Prepare(Change),
     /// Carries a plan out.
@@ -133,6 +135,8 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<RegisterRange>,
+    /// The device mode in which the profile was read that is restored, where it may hold what was never saved.
+    pub unsaved: Option<DeviceMode>,
 }
 
 impl Prepared {
@@ -190,6 +194,8 @@ pub struct ReadRegisters {
     pub start: RegisterAddress,
     /// Their values, in the order of their addresses.
     pub bytes: Vec<u8>,
+    /// The device mode in which they were read, where they may show what was never saved.
+    pub unsaved: Option<DeviceMode>,
 }
 
 /// What a BiSS encoder says on the way, or the program about it.
@@ -237,7 +243,11 @@ pub enum BissOutput {
     Check(Vec<Line>),
     Position(PositionReading),
     Registers(ReadRegisters),
-    Area(Vec<Bank>),
+    Area {
+        banks: Vec<Bank>,
+        /// The device mode in which they were read, where they may show what was never saved.
+        unsaved: Option<DeviceMode>,
+    },
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),

@@ -49,7 +49,11 @@ pub(super) fn prepare(
     };
     let cycles_seen = cycles_seen(&desk.store, &device_key(&identity, desk.is_virtual));
     let Restore { plan, unchanged, missing, mounting_left } = plan;
-    Ok(Prepared { kind: change.kind(), plan, identity, cycles_seen, unchanged, missing, mounting_left })
+    let unsaved = match change {
+        Change::Restore { profile, .. } => profile.recorded.device_mode,
+        _ => None,
+    };
+    Ok(Prepared { kind: change.kind(), plan, identity, cycles_seen, unchanged, missing, mounting_left, unsaved })
 }
 
 fn only(plan: BissPlan) -> Restore {

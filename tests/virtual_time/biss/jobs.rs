@@ -143,7 +143,7 @@ fn registers_and_banks_are_read() {
             Ok(BissOutput::Registers(registers)) => registers,
             other => panic!("{other:?}"),
         };
-        let temperature = ReadRegisters { start: at("0x66"), bytes: vec![75] };
+        let temperature = ReadRegisters { start: at("0x66"), bytes: vec![75], unsaved: None };
         assert_eq!(read(BissJob::Read("0x66".parse().unwrap())), temperature);
         assert_eq!(read(BissJob::Read("0x03:0x2C+2".parse().unwrap())).bytes, [0x2E, 0xE0]);
         let direct = read(BissJob::ReadDirect);
@@ -189,6 +189,34 @@ fn everything_that_can_be_restored_is_saved_over_both_ways() {
         assert_eq!(profile.recorded.wiegand_production, Some(WiegandResult::parse([64, 60, 64, 59])));
         assert_eq!(profile.mounting.len(), 2, "preset and calibration");
         assert_eq!(bench.flash_cycles(), 3, "as at the start");
+    }
+}
+
+/// Issue 22.15, reference 5.3: in mode 04 the data registers show what was entered and not saved. It is told and marked, and
+/// not compared; reading leaves it as it is, since leading back discards it.
+#[test]
+fn what_was_never_saved_is_not_taken_for_the_encoders_content() {
+    for way in WAYS {
+        let mut bench = Bench::new(way, "");
+        let held = bench.encoder_reads(at("0x24:0x10")).unwrap();
+        let entered = held ^ 0xFF;
+        let entries = [("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", entered)];
+        bench.encoder(|encoder, now| entries.map(|(place, value)| assert!(encoder.write(now, at(place), value))));
+        let mode = DeviceMode::DATA_WRITE;
+        for job in [BissJob::ReadBank(0x24), BissJob::Read("0x24:0x10".parse().unwrap())] {
+            let Ok(BissOutput::Registers(read)) = bench.run(job) else { panic!() };
+            assert_eq!(read.unsaved, Some(mode), "{way:?}");
+        }
+        let profile = save(&mut bench).unwrap();
+        assert_eq!(profile.bank(0x24).unwrap().bytes[0x10], entered, "as it was read");
+        assert_eq!(profile.recorded.device_mode, Some(mode), "{way:?}");
+        assert_eq!(device_error(bench.run(BissJob::SaveToCompare).unwrap_err()), Error::NotInOperation { mode });
+        assert_eq!(bench.encoder_reads(at("0x24:0x10")), Some(entered), "{way:?}: still entered");
+        assert_eq!(bench.lead_back().unwrap(), mode);
+        let Ok(BissOutput::Saved(profile)) = bench.run(BissJob::SaveToCompare) else { panic!() };
+        assert_eq!((profile.bank(0x24).unwrap().bytes[0x10], profile.recorded.device_mode), (held, None), "{way:?}");
+        let Ok(BissOutput::Registers(read)) = bench.run(BissJob::ReadBank(0x24)) else { panic!() };
+        assert_eq!(read.unsaved, None);
     }
 }
 
@@ -252,7 +280,7 @@ fn a_device_id_that_fits_no_description_is_told() {
     assert_eq!((survey.status.mode, survey.status.celsius), (None, None));
     assert_eq!(survey.identity.serial_number, "1234567");
     assert_eq!(survey.identity.multiturn_bits(), Some(16), "the data sheet tells it");
-    assert_eq!(device::save(&mut pin.master(), &types, &mut |_, _, _| {}).unwrap().data, []);
+    assert_eq!(device::save(&mut pin.master(), &types, device::Unsaved::Marked, &mut |_, _, _| {}).unwrap().data, []);
     let (none, _) = Descriptions::read([("other.ron", other.as_str())]);
     let error = device::identify(&mut pin.master(), &none).unwrap_err();
     assert!(matches!(error, Error::NoDescription(_)), "{error}");

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::profile::{Body, Document};
-use crate::protocol::biss::{Access, Area, RegisterAddress};
+use crate::protocol::biss::{Access, Area, DeviceMode, RegisterAddress};
 
 const SHORT: &str = r#"(
     schema: 1, device: "biss",
@@ -51,6 +51,7 @@ fn full() -> BissProfile {
         wiegand_production: Some(WiegandResult::parse([1, 2, 3, 4])),
         wiegand_saved: None,
         calibration_status: Some(0x22),
+        device_mode: Some(DeviceMode::DATA_WRITE),
         unknown: Default::default(),
     };
     profile.mark_mounting();
