@@ -28,6 +28,7 @@ impl CheckLine {
 /// How a step ended.
 pub fn verdict(verdict: Verdict) -> Text {
     Text::new(match verdict {
+        Verdict::Skipped => "check.skipped",
         Verdict::Good => "check.good",
         Verdict::Attention => "check.attention",
         Verdict::Bad => "check.bad",

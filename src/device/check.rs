@@ -4,6 +4,8 @@
 /// How a step ended. The worse is the greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
+    /// It was not checked.
+    Skipped,
     /// As it should be.
     Good,
     /// It works, and somebody should look.

@@ -17,6 +17,7 @@ pub(super) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, no
     let palette = skin.palette;
     for line in lines {
         let (icon, colour) = match line.verdict {
+            Verdict::Skipped => (icons::INFO, palette.muted),
             Verdict::Good => (icons::CHECK_CIRCLE, palette.good),
             Verdict::Attention => (icons::WARNING, palette.warn),
             Verdict::Bad => (icons::X_CIRCLE, palette.bad),

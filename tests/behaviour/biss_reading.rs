@@ -73,6 +73,7 @@ fn status_names_what_is_set() {
     }
 }
 
+/// Issue 22.19: nothing tells that a Wiegand sensor is good whose test was never saved.
 /// A verdict a line: an encoder as delivered, and one with the errors of reference 7 that is hotter than its data sheet
 /// allows (105 °C), behind an adapter that measures its supply on a disturbed line.
 #[test]
@@ -86,7 +87,8 @@ fn a_check_judges_what_the_encoder_says_of_itself() {
     let good = ["identity", "status", "position", "data sheet", "limits", "Wiegand test", "line", "wear"];
     for link in ["sim:", "sim:?bridge=on"] {
         let told = check(link).json();
-        assert_eq!(verdicts(&told), good.map(|step| format!("{step} good")), "{told}");
+        let expected = good.map(|step| format!("{step} {}", if step == "Wiegand test" { "skipped" } else { "good" }));
+        assert_eq!(verdicts(&told), expected, "{told}");
     }
     let ill = check("sim:?bridge=on&errors=0x12&temperature=106&supply=switched&voltage=4.9&noise=0.2").json_with(1);
     let expected = [
@@ -95,7 +97,7 @@ fn a_check_judges_what_the_encoder_says_of_itself() {
         "position bad",
         "data sheet good",
         "limits attention",
-        "Wiegand test good",
+        "Wiegand test skipped",
         "line attention",
         "wear good",
     ];

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
-use crate::app::explain;
+use crate::app::{Text, explain};
 use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
 use crate::cli::check;
 use crate::cli::consent::{answer, can_ask, require_consent};
@@ -17,6 +17,7 @@ use crate::cli::output::Output;
 use crate::cli::profiles::{load, show_done};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
+use crate::device::biss::procedure::Outcome;
 use crate::profile::biss::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
 use crate::protocol::biss::{Filter, KIND, PresetValue};
 use crate::worker::biss::{BissJob, BissOutput, Change};
@@ -116,7 +117,25 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let patience = act.timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
     let name = action_name(act.action);
-    show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))
+    let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))?;
+    if outcomes.iter().all(passes) {
+        Ok(done)
+    } else {
+        Err(failed(&Text::new("biss_cli.not_passed").with("what", name)))
+    }
+}
+
+/// An operation that is done, with a result that is good where it has one.
+fn passes(outcome: &Outcome) -> bool {
+    match outcome {
+        Outcome::Tested(report) => report.result.passes(),
+        Outcome::Skipped { .. } => false,
+        Outcome::Stored { .. }
+        | Outcome::PresetStored { .. }
+        | Outcome::PresetFired { .. }
+        | Outcome::FilterSelected(_)
+        | Outcome::Calibrated(_) => true,
+    }
 }
 
 /// What is asked of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. With neither calibration nor
