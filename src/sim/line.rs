@@ -25,6 +25,11 @@ impl<T> Queue<T> {
         self.0.insert(place, (at, item));
     }
 
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     /// When the next one counts.
     pub(super) fn due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
@@ -73,6 +78,8 @@ pub(super) struct Wires {
     pub(super) now: Moment,
     /// The host's UART has sent everything then.
     host_done: Moment,
+    /// Bytes that the host's UART still sends, with when the last of them is through.
+    sending: VecDeque<(Moment, usize)>,
     /// What has arrived at the host.
     pub(super) inbox: Vec<u8>,
 }
@@ -85,8 +92,20 @@ impl Wires {
             host,
             now: Moment::START,
             host_done: Moment::START,
+            sending: VecDeque::new(),
             inbox: Vec::new(),
         }
+    }
+
+    /// Bytes that a UART holds until they are sent, as in a device server; what comes beyond is lost. No request of these
+    /// protocols is longer, and at 9600 bit/s it takes half a second.
+    const BUFFER: usize = 512;
+
+    /// So many bytes the host's UART can still take.
+    fn room(&mut self) -> usize {
+        let now = self.now;
+        while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
+        Self::BUFFER.saturating_sub(self.sending.iter().map(|(_, count)| count).sum())
     }
 
     /// Sends bytes over the noisy line, from `start` on, each taking the time of a character.
@@ -141,9 +160,13 @@ pub(super) trait Line: Send {
 impl<L: Line> ByteDevice for L {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
         self.advance(now);
-        if !bytes.is_empty() {
+        let taken = bytes.get(..self.wires_mut().room()).unwrap_or(bytes);
+        if !taken.is_empty() {
             let start = self.wires().now.max(self.wires().host_done);
-            self.wires_mut().host_done = self.host_sends(start, bytes);
+            let end = self.host_sends(start, taken);
+            let wires = self.wires_mut();
+            wires.host_done = end;
+            wires.sending.push_back((end, taken.len()));
         }
     }
 

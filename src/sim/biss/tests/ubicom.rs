@@ -207,3 +207,17 @@ fn a_dead_encoder_comes_back_with_the_link() {
     assert_eq!(line.port.encoder().flash().cycles(), 4);
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
+
+/// Issue 22.18: what no UART holds is lost, so that the line is not busy for longer than its buffer lasts.
+#[test]
+fn a_flood_of_bytes_does_not_make_it_deaf() {
+    let mut line = Line::with("temperature=25");
+    for _ in 0..2_000 {
+        line.port.on_bytes(line.now, &[0x55; 512]);
+    }
+    line.receive();
+    // 512 characters of 10 bits at 115200 bit/s.
+    assert!(line.now.since_start() < Duration::from_millis(50), "{:?}", line.now);
+    line.wait(0.1);
+    line.expect(READ_TEMPERATURE, TEMPERATURE);
+}

@@ -175,3 +175,16 @@ fn one_long_poll_equals_many_short_ones() {
         long.now = short.now;
     }
 }
+
+/// Issue 22.18: what no UART holds is lost, so that the line is not busy for longer than its buffer lasts.
+#[test]
+fn a_flood_of_bytes_does_not_make_it_deaf() {
+    let mut host = Host::with("");
+    for _ in 0..2_000 {
+        host.bus.on_bytes(host.now, &[0x55; 512]);
+    }
+    // 512 characters of 11 bits at 9600 bit/s take 587 ms.
+    host.wait(ms(700.0));
+    host.bus.poll(host.now);
+    host.expect("40 42 02", POSITION);
+}
