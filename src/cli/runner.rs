@@ -93,6 +93,17 @@ pub(super) enum Ended<D: Device> {
     Worker,
 }
 
+/// What must not be left as it is (a drive in control, a supply that was switched on) takes no longer.
+const LEAVING: Duration = Duration::from_secs(4);
+
+impl<D: Runs> Drop for Runner<D> {
+    fn drop(&mut self) {
+        if !self.worker.finish(LEAVING) {
+            tracing::warn!("the link could not be left in the orderly way");
+        }
+    }
+}
+
 impl<D: Runs> Runner<D> {
     /// Opens the link of the command line.
     pub(super) fn open(common: &Common) -> Result<Self> {

@@ -4,6 +4,7 @@
 
 mod drift;
 pub(super) mod flow;
+mod power;
 mod tap;
 
 use crate::bits::MaskedBytes;
@@ -12,8 +13,10 @@ use crate::protocol::bridge::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
 use crate::units::{Moment, SupplyVoltage};
+use power::Power;
 
 pub use flow::Portion;
+pub use power::SupplyAfter;
 pub use tap::{Streaming, Tap, TapError, Wanted};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
@@ -27,6 +30,7 @@ pub struct AdapterState {
     hello: Option<Hello>,
     has_spoken: bool,
     clocks: Clocks,
+    power: Power,
 }
 
 /// Why an adapter gives no reply that can be used.
@@ -149,6 +153,31 @@ impl AdapterState {
         self.hello.as_ref()
     }
 
+    /// How the encoder's supply is left at the end of the session.
+    pub fn leave_supply(&mut self, after: SupplyAfter) {
+        self.power.after = after;
+    }
+
+    /// It is asked anew who it is. What is known of the encoder's supply stays: HELLO does not switch it.
+    pub(super) fn forget(&mut self) {
+        *self = AdapterState { power: self.power, ..AdapterState::default() };
+    }
+
+    /// Whether the encoder had power before the session; `None` where nothing has told yet.
+    pub(super) const fn found_supplied(&self) -> Option<bool> {
+        self.power.found
+    }
+
+    /// The encoder had power before the session, or had none.
+    pub(super) const fn find_supplied(&mut self, is_supplied: bool) {
+        self.power.found = Some(is_supplied);
+    }
+
+    /// The supply has to be switched off at the end of the session.
+    pub(super) fn supply_goes_off(&self) -> bool {
+        self.power.goes_off()
+    }
+
     /// Anything at all has come from it, be it damaged.
     pub(super) const fn has_spoken(&self) -> bool {
         self.has_spoken
@@ -168,7 +197,7 @@ pub(super) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Asks who is there, once a session: HELLO switches the supply off and ends streams.
+    /// Asks who is there, once a session: HELLO ends streams. It does not switch the supply.
     ///
     /// # Errors
     /// [`AdapterError::Version`] among others.
@@ -179,6 +208,10 @@ impl Adapter<'_, '_> {
             let Reply::Hello(hello) = answered.reply else {
                 return Err(other(Operation::Hello, &answered.reply).into());
             };
+            // Adapters that cannot tell have this bit clear.
+            if self.adapter.power.found.is_none() && hello.capabilities.has(Capabilities::SUPPLIED) {
+                self.adapter.power.found = Some(true);
+            }
             self.adapter.hello = Some(hello);
         }
         Ok(())
@@ -194,15 +227,31 @@ impl Adapter<'_, '_> {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
         let SupplyVoltage { given, greatest, .. } = voltage;
+        // Also where its reply is lost.
+        self.adapter.power.given = true;
         let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
             return Err(other(Operation::Supply, &answered.reply).into());
         };
         if measured > greatest {
-            self.ask(&Request::Supply { on: false, millivolt: 0 })?;
+            self.switch_off()?;
             return Err(AdapterError::Overvoltage { given, measured, greatest }.into());
         }
         Ok((measured, milliampere))
+    }
+
+    /// Switches the encoder's supply off at the end of a session, where it is not to stay on.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
+    pub(super) fn leave_supply(&mut self) -> Result<(), Failure> {
+        if self.adapter.supply_goes_off() { self.switch_off() } else { Ok(()) }
+    }
+
+    fn switch_off(&mut self) -> Result<(), Failure> {
+        self.ask(&Request::Supply { on: false, millivolt: 0 })?;
+        (self.adapter.power.given, self.adapter.power.found) = (false, Some(false));
+        Ok(())
     }
 
     /// Asks; once more where no reply comes. Only for what may be done twice.

@@ -162,7 +162,11 @@ impl Device for Biss {
                 let steps = &mut |progress| tell(Tell::Progress(progress));
                 BissOutput::Committed(Box::new(commit::commit(self, desk, &commit, steps)?))
             }
-            BissJob::LeadBack => BissOutput::LedBack(procedure::lead_back(&mut self.master(desk), &types)?),
+            BissJob::LeadBack => {
+                let mode = procedure::lead_back(&mut self.master(desk), &types)?;
+                self.station.unfinished = false;
+                BissOutput::LedBack(mode)
+            }
         })
     }
 
@@ -209,6 +213,12 @@ impl Device for Biss {
 
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
+    }
+
+    fn leave(&mut self, desk: &mut Desk) {
+        if let Err(error) = self.master(desk).leave_supply() {
+            tracing::warn!("the encoder's supply could not be switched off: {error}");
+        }
     }
 }
 

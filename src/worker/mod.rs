@@ -321,6 +321,15 @@ impl<D: Device> Worker<D> {
         Ending { events: self.events.clone(), ended: self.ended.clone() }
     }
 
+    /// [`end`](Self::end) for whoever cannot give the worker away: no job is taken any more. Waits at most `patience`; true
+    /// when the thread has ended and the wire is free.
+    pub fn finish(&mut self, patience: Duration) -> bool {
+        self.live.stop();
+        // The thread ends when nobody can order any more.
+        self.orders = bounded(0).0;
+        matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
+    }
+
     /// [`end`](Self::end), waiting at most `patience`; true when the thread has ended and the wire is free.
     pub fn close(self, patience: Duration) -> bool {
         self.end().wait(patience)

@@ -81,7 +81,7 @@ impl<D: Device> Session<D> {
     }
 
     /// The session ends: what must not be left as it is.
-    pub(super) fn leave(&mut self) {
+    pub fn leave(&mut self) {
         self.device.leave(&mut self.desk);
     }
 

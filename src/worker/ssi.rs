@@ -170,4 +170,10 @@ impl Device for Ssi {
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
     }
+
+    fn leave(&mut self, desk: &mut Desk) {
+        if let Err(error) = self.master(desk).leave_supply() {
+            tracing::warn!("the encoder's supply could not be switched off: {error}");
+        }
+    }
 }

@@ -325,6 +325,25 @@ fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
     }
 }
 
+/// Issue 22.16: the program ends when the supply is as it was found.
+#[test]
+fn an_adapter_is_left_with_the_supply_as_it_was_found() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.adapter(&["--supply", "off"]) else { return };
+    let supplied = |parameters: &str| -> Vec<String> {
+        let url = format!("{}?voltage=5{parameters}", adapter.url);
+        let ran = bench.run(&["read", "biss", "0x66", "--json", "--link", &url]);
+        assert_eq!(ran.json()["value"], json!(80), "{ran:?}");
+        adapter.requests().into_iter().filter(|line| line.starts_with("S ")).collect()
+    };
+    assert_eq!(supplied(""), ["S 5000", "S off"]);
+    assert_eq!(supplied("&leave-supply=on"), ["S 5000"]);
+    assert_eq!(supplied(""), ["S 5000"], "it was on before");
+    assert_eq!(supplied("&leave-supply=off"), ["S 5000", "S off"]);
+    let url = format!("{}?voltage=5&leave-supply=no", adapter.url);
+    bench.run(&["read", "biss", "0x66", "--link", &url]).fails(2, &["leave-supply=no", "as-found, on or off"]);
+}
+
 /// Reference 5: a mode that another host has left, and the password that it has left set.
 #[test]
 fn an_encoder_that_was_left_in_a_mode_is_led_back() {

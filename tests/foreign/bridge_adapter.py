@@ -59,9 +59,12 @@ class Adapter:
     def carry_out(self, op, body):
         if op == bridge.HELLO:
             self.stream = None
-            numbers = [self.options.capabilities, self.options.max_clock, 0]
+            switches = 0 if self.encoder.supplied is None else 1 << 5
+            numbers = [self.options.capabilities | switches, self.options.max_clock, 0]
             numbers = b"".join(number.to_bytes(4, "little") for number in numbers)
             return bytes([self.options.version]) + numbers + b"".join(map(bridge.text, ["bench adapter", "B7", "2.1"]))
+        if op == bridge.SUPPLY and self.encoder.supplied is not None:
+            return self.supply(bool(body[0]), int.from_bytes(body[1:3], "little"))
         if op == bridge.BISS_CONFIG:
             clock = min(int.from_bytes(body[0:4], "little"), self.options.max_clock)
             self.bits = body[4] + body[5]
@@ -81,7 +84,7 @@ class Adapter:
         if op == bridge.BISS_READ:
             status, raw = self.frame()
             return self.clock(time.monotonic()) + bytes([status]) + raw.to_bytes(8, "little")
-        if self.options.line != "good":
+        if self.options.line != "good" or self.encoder.supplied is False:
             raise Refused(bridge.NO_ANSWER, "no answer")
         address = body[1]
         place = (None, address) if address >= 0x40 else (self.encoder.bank, address)
@@ -95,6 +98,15 @@ class Adapter:
         if value is None:
             raise Refused(bridge.NO_ANSWER, "no answer")
         return bytes([value])
+
+    def supply(self, on, millivolt):
+        """HELLO does not switch it, nor does a host that goes."""
+        self.encoder.note(f"S {millivolt}" if on else "S off")
+        if on and not self.encoder.supplied:
+            self.encoder.restart()
+        self.encoder.supplied = on
+        measured = (millivolt, 60) if on else (0, 0)
+        return bytes([on]) + b"".join(number.to_bytes(2, "little") for number in measured)
 
     def of_ssi(self, op, body):
         if op == bridge.SSI_CONFIG:
@@ -137,7 +149,7 @@ class Adapter:
         """Status and bits of a position frame."""
         if self.options.line != "good":
             return {"open": (1, 0), "low": (2, 0), "high": (3, (1 << self.bits) - 1)}[self.options.line]
-        position = self.encoder.position()
+        position = None if self.encoder.supplied is False else self.encoder.position()
         if position is None:
             return 1, 0
         self.frames += 1
@@ -170,9 +182,16 @@ class Adapter:
             self.stream = (period, start, sent + count, is_ssi)
 
 
+def supplied(options):
+    """The encoder; with None its supply is no matter of the adapter."""
+    encoder = kit.Kit(options)
+    encoder.supplied = {None: None, "off": False, "on": True}[options.supply]
+    return encoder
+
+
 def serve_terminal(options):
     terminal = Terminal(options.stdin_eof)
-    encoder = kit.Kit(options)
+    encoder = supplied(options)
 
     def run():
         adapter = Adapter(encoder, options, terminal.write)
@@ -191,7 +210,7 @@ def serve_terminal(options):
 
 
 def serve_port(options):
-    encoder = kit.Kit(options)
+    encoder = supplied(options)
     server = socket.create_server(("127.0.0.1", 0))
     print("ready", f"127.0.0.1:{server.getsockname()[1]}", flush=True)
     client = adapter = None
@@ -230,6 +249,7 @@ def main():
     add("--ssi-error", type=int, default=0, help="the last error bit speaks in every Nth word")
     add("--damage", type=int, help="one bit of every Nth frame is flipped")
     add("--silent", action="store_true", help="never answer")
+    add("--supply", choices=["off", "on"], help="it switches the encoder's supply, which is like this at the start")
     kit.add_options(add)
     options = parser.parse_args()
     if options.link:

@@ -5,6 +5,7 @@
 
 mod bus;
 mod stream;
+mod supply;
 mod ubicom;
 
 use std::sync::Arc;
@@ -159,6 +160,9 @@ impl<'a> Master<'a> {
             tries += 1;
             if self.station.way == Way::Adapter {
                 self.select_bank(address)?;
+            }
+            if address != RegisterAddress::BANK_SELECT {
+                self.station.written_at = Some(self.now());
             }
             let trouble = match self.write_once(address, value).map_err(|error| match error {
                 Error::Link(_) | Error::NeverSilent => unclear(error),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::flags::Flags;
-use crate::device::bridge::AdapterState;
 use crate::device::bridge::flow::Flow;
+use crate::device::bridge::{AdapterState, SupplyAfter};
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
@@ -15,7 +15,8 @@ use crate::signal::Time;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 8] = ["baud", "parity", "order", "echo", "timeout", "margin", "clock", "voltage"];
+pub const PARAMETERS: [&str; 9] =
+    ["baud", "parity", "order", "echo", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER];
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +32,7 @@ impl Way {
     pub const fn parameters(self) -> &'static [&'static str] {
         match self {
             Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin"],
-            Way::Adapter => &["margin", "clock", "voltage"],
+            Way::Adapter => &["margin", "clock", "voltage", SupplyAfter::PARAMETER],
         }
     }
 }
@@ -82,6 +83,10 @@ pub struct Station {
     pub(super) flow: Option<Flow>,
     /// The last frame of the streams before.
     pub(super) streamed_until: Option<Time>,
+    /// When a register was last written.
+    pub(super) written_at: Option<Moment>,
+    /// A write ended early and could not be led back: a store, a calibration or a restart may be under way.
+    pub unfinished: bool,
 }
 
 /// The encoder's supply as an adapter gives it.
@@ -141,6 +146,8 @@ impl Station {
             flags: None,
             flow: None,
             streamed_until: None,
+            written_at: None,
+            unfinished: false,
         }
     }
 
@@ -171,6 +178,9 @@ impl Station {
         }
         let millivolt = query.read("voltage", "volts from 4.75 to 12.5", read_voltage)?;
         station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
+            station.adapter.leave_supply(after);
+        }
         Ok(station)
     }
 
@@ -182,11 +192,12 @@ impl Station {
 
     /// The adapter is asked anew who it is, and set anew.
     pub(super) fn forget_adapter(&mut self) {
-        (self.adapter, self.flow) = (AdapterState::default(), None);
+        self.adapter.forget();
+        self.flow = None;
         self.forget_settings();
     }
 
-    /// An adapter that says HELLO, or was reset, has neither a setting of its bus nor the supply switched on.
+    /// An adapter that was reset has neither a setting of its bus nor the supply switched on.
     pub(super) fn forget_settings(&mut self) {
         (self.bank, self.bus) = (None, None);
         if let Some(supply) = &mut self.supply {

@@ -143,16 +143,17 @@ impl Tap {
         Ok(flow.next(&mut adapter, until)?)
     }
 
-    /// Ends the stream at the adapter, also where an end is wished.
+    /// Ends the stream at the adapter, also where an end is wished, and leaves the encoder's supply as it was found.
     ///
     /// # Errors
     /// The adapter or the wire.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
-        let Some(flow) = self.flow.take() else { return Ok(()) };
         let mut line = Line::new(ctx);
         line.shield(true);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
-        Ok(flow.end(&mut adapter)?)
+        let ended = self.flow.take().map_or(Ok(()), |flow| flow.end(&mut adapter));
+        let left = adapter.leave_supply();
+        Ok(ended.and(left)?)
     }
 }
 

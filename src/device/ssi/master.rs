@@ -139,6 +139,19 @@ impl<'a> Master<'a> {
         }
     }
 
+    /// Leaves the encoder's supply as it is to be left at the end of a session.
+    ///
+    /// # Errors
+    /// The adapter's.
+    pub fn leave_supply(&mut self) -> Result<(), Error> {
+        if !self.station.adapter.supply_goes_off() {
+            return Ok(());
+        }
+        self.line.shield(true);
+        self.end_words()?;
+        Ok(self.adapter().leave_supply()?)
+    }
+
     fn now(&self) -> Moment {
         self.line.now()
     }

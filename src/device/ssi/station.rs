@@ -3,8 +3,8 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::device::bridge::AdapterState;
 use crate::device::bridge::flow::Flow;
+use crate::device::bridge::{AdapterState, SupplyAfter};
 use crate::device::line::{LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::bridge::Hello;
@@ -12,7 +12,7 @@ use crate::signal::Time;
 use crate::units::SupplyVoltage;
 
 /// Link parameters that describe the line and the encoder's supply.
-pub const PARAMETERS: [&str; 4] = ["margin", "clock", "pause", "voltage"];
+pub const PARAMETERS: [&str; 5] = ["margin", "clock", "pause", "voltage", SupplyAfter::PARAMETER];
 
 /// How words are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,16 +120,20 @@ impl Station {
         }
         let millivolt = query.read("voltage", "volts from 4.5 to 30", read_voltage)?;
         station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
+            station.adapter.leave_supply(after);
+        }
         Ok(station)
     }
 
     /// The adapter is asked anew who it is, and set anew.
     pub(super) fn forget_adapter(&mut self) {
-        (self.adapter, self.flow) = (AdapterState::default(), None);
+        self.adapter.forget();
+        self.flow = None;
         self.forget_settings();
     }
 
-    /// An adapter that says HELLO, or was reset, is not set, and has the supply switched off.
+    /// An adapter that was reset is not set, and has the supply switched off.
     pub(super) fn forget_settings(&mut self) {
         self.set = None;
         if let Some(supply) = &mut self.supply {

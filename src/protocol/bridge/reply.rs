@@ -154,6 +154,8 @@ impl Capabilities {
     pub const UART: Capabilities = Capabilities(1 << 4);
     /// A supply that can be switched.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
+    /// No ability but a state: the encoder's supply is on. An adapter that does not tell has this bit clear.
+    pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
     /// Any word is a set of capabilities.
     pub const fn new(word: u32) -> Self {

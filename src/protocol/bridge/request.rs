@@ -42,7 +42,7 @@ pub enum Operation {
 pub enum Request {
     /// Who is there.
     Hello,
-    /// The encoder's supply, off after HELLO.
+    /// The encoder's supply. HELLO leaves it as it is.
     Supply {
         /// On or off.
         on: bool,

@@ -1,6 +1,6 @@
 //! The adapter: requests in, replies and streams out, byte for byte, with its faults. Chosen here, where the reference
 //! says nothing: a reply comes a quarter of a millisecond after its request, one that needs a control frame after the 47
-//! cycles of that; HELLO ends all streams; SSI and BiSS share their wires, so that a stream of one keeps both busy.
+//! cycles of that; HELLO ends all streams and leaves the supply as it is; SSI and BiSS share their wires, so that a stream of one keeps both busy.
 
 use std::time::Duration;
 
@@ -59,6 +59,8 @@ impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
+    /// Replies that wait to be sent: the memory of a small controller. Requests beyond are lost.
+    const WAITING: usize = 16;
     /// The encoder's supply (manual, chapter 2).
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
@@ -165,6 +167,9 @@ impl Adapter {
     }
 
     fn take(&mut self, packet: &Packet) {
+        if self.to_host.len() >= Self::WAITING {
+            return;
+        }
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
@@ -285,12 +290,13 @@ impl Adapter {
 
     fn hello(&mut self) -> Hello {
         (self.clocked, self.sampled) = (None, None);
-        self.switch_off();
+        let is_supplied = self.switched_supply && self.is_supplied;
         let can = Capabilities::SSI
             .and(Capabilities::BISS)
             .and(Capabilities::BISS_REGISTERS)
             .and(Capabilities::ANALOG)
             .and(if self.switched_supply { Capabilities::SUPPLY } else { Capabilities::new(0) })
+            .and(if is_supplied { Capabilities::SUPPLIED } else { Capabilities::new(0) })
             .and(if self.uart.is_some() { Capabilities::UART } else { Capabilities::new(0) });
         Hello {
             capabilities: can,

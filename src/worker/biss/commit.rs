@@ -2,7 +2,7 @@
 
 use super::{Attendance, Biss, Commit, Committed, Doing, JobError, Prepared, WEAR_LIMIT, device_key};
 use crate::device::biss::procedure::{Failure, News};
-use crate::device::biss::write::{Confirmed, Interrupted, Written, carry_out, confirm};
+use crate::device::biss::write::{Confirmed, Interrupted, Left, Written, carry_out, confirm};
 use crate::device::biss::{Error, Master};
 use crate::profile::biss::{BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
@@ -24,7 +24,15 @@ pub(super) fn commit(
     encoder.know(desk)?;
     let attendance = commit.attendance.clone();
     let mut write = EncoderWrite { master: encoder.master(desk), commit, attendance, tell };
-    carry_through(&store, &terms, prepared.kind, &mut write)
+    let ended = carry_through(&store, &terms, prepared.kind, &mut write);
+    match &ended {
+        Ok(_) => encoder.station.unfinished = false,
+        Err(JobError::Interrupted { interrupted, .. }) => {
+            encoder.station.unfinished = interrupted.left != Left::Operation;
+        }
+        Err(_) => {}
+    }
+    ended
 }
 
 struct EncoderWrite<'w, 'm> {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Biss;
 use crate::device::biss::{Echo, Station, Way};
+use crate::device::bridge::SupplyAfter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
 use crate::sim::ConfigError;
 use crate::sim::biss::{Config, Motor, Port};
@@ -15,7 +16,8 @@ use crate::worker::{OpenError, Session};
 /// Whether an adapter is in between, where the kind of link does not tell.
 const BRIDGE: &str = "bridge";
 /// Link parameters that describe the line and nothing of the virtual device; `echo` and `order` describe both.
-const LINE_ONLY: [&str; 7] = [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage"];
+const LINE_ONLY: [&str; 8] =
+    [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER];
 
 /// Everything about a link to a BiSS encoder that can be told without opening it.
 ///

@@ -75,7 +75,10 @@ mod tests {
             ),
             ("modbus:host", "modbus: links do not lead to this device; those that do are sim:, bridge:, replay:"),
             ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim:, bridge:, replay:"),
-            ("bridge:/dev/x?rpm=1", "rpm is not a parameter of bridge: links; known are margin, clock, pause, voltage"),
+            (
+                "bridge:/dev/x?rpm=1",
+                "rpm is not a parameter of bridge: links; known are margin, clock, pause, voltage, leave-supply",
+            ),
             ("bridge:/dev/x?layout=atm60", "layout is not a parameter of bridge: links"),
             ("bridge:/dev/x?clock=5", "clock=5: hertz from 80000 to 10000000"),
             ("sim:?ssi=atm61", "`ssi=atm61` cannot be used: allowed is a family of SSI encoders"),

@@ -380,7 +380,10 @@ fn links_lead_to_the_way_that_they_name() {
             "serial:/dev/null?clock=1",
             "clock is not a parameter of serial: links; known are baud, parity, order, echo, timeout, margin",
         ),
-        ("bridge:/dev/null?echo=on", "echo is not a parameter of bridge: links; known are margin, clock, voltage"),
+        (
+            "bridge:/dev/null?echo=on",
+            "echo is not a parameter of bridge: links; known are margin, clock, voltage, leave-supply",
+        ),
         ("bridge:/dev/null?clock=1", "clock=1: hertz from 80000 to 10000000"),
     ];
     for (text, sentence) in cases {

@@ -8,6 +8,7 @@ mod jobs;
 mod master;
 mod procedures;
 mod streams;
+mod supply;
 pub(crate) mod support;
 mod unknown;
 mod writing;

@@ -213,7 +213,8 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     }
 }
 
-/// HELLO switches the supply off: the encoder gets it again, and the time that it needs to start.
+/// An adapter that falls silent may have been reset, which takes the supply away: the encoder gets it again, and the time that
+/// it needs to start.
 #[test]
 fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {
     let supply = Supply { millivolt: 5_000, measured: None };

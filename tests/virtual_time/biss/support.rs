@@ -5,7 +5,8 @@ use std::time::Duration;
 
 pub(crate) use encoder_studio::device::biss::Way;
 use encoder_studio::device::biss::procedure::News;
-use encoder_studio::device::biss::{Master, Station};
+use encoder_studio::device::biss::{Master, Station, Supply};
+use encoder_studio::device::bridge::SupplyAfter;
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
 use encoder_studio::protocol::bridge::{Operation, Receiver};
@@ -195,6 +196,26 @@ impl Bench {
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().way, self.clock.clone(), store, folder)
+    }
+
+    /// Behind an adapter that switches the encoder's supply, at first off.
+    pub(crate) fn supplied(after: SupplyAfter) -> Self {
+        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs("supply=switched")).unwrap());
+        let folder = Arc::new(tempfile::tempdir().unwrap());
+        Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
+    }
+
+    /// As [`reconnected`](Self::reconnected), with the supply switched on again and left like this.
+    pub(crate) fn supplied_again(&self, after: SupplyAfter) -> Self {
+        Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
+    }
+
+    fn with_supply(end: End, after: SupplyAfter, clock: Arc<VirtualClock>, folder: Arc<tempfile::TempDir>) -> Self {
+        let mut station = Station::new(Way::Adapter, MARGIN);
+        station.supply = Some(Supply { millivolt: 5_000, measured: None });
+        station.adapter.leave_supply(after);
+        let store = Store::at(folder.path());
+        Self::with_station(end, station, clock, store, folder)
     }
 
     /// As [`reconnected`](Self::reconnected), knowing already who is there.

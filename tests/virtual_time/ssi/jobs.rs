@@ -35,10 +35,13 @@ fn who_the_adapter_is_and_how_words_are_taken() {
     assert_eq!(identity.clock_hz, 697_674);
     // 300 mW at 12 V.
     assert_eq!(identity.supply, Some(Supply { millivolt: 12_000, measured: Some((12_000, 25)) }));
-    // What is known is not asked again: HELLO would switch the supply off.
+    // What is known is not asked again.
     assert_eq!(hello(&mut stand), identity);
     let counts = [Operation::Hello, Operation::Supply, Operation::SsiConfig].map(|own| stand.count(own));
     assert_eq!(counts, [1, 1, 1]);
+    // Issue 22.16: what was switched on goes off at the end.
+    stand.session.leave();
+    assert_eq!(stand.count(Operation::Supply), 2);
 }
 
 #[test]

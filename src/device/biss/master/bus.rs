@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::{Attempt, Master, Taken, Trouble};
 use crate::device::biss::error::{Asked, Damage, Error};
 use crate::device::biss::position::PositionReading;
-use crate::device::biss::station::{Bus, Supply};
+use crate::device::biss::station::Bus;
 use crate::device::bridge::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::device::line::LineError;
 use crate::protocol::biss::{FrameError, RegisterAddress};
@@ -50,16 +50,10 @@ impl<'a> Master<'a> {
             return Err(AdapterError::NoBiss { name: hello.name.clone() }.into());
         }
         let fastest = hello.max_clock_hz;
+        // The bus first: a frame tells whether the encoder has power already.
+        self.set_bus(fastest, data_bits, crc_bits)?;
         self.switch_on()?;
         self.set_bus(fastest, data_bits, crc_bits)
-    }
-
-    fn switch_on(&mut self) -> Result<(), Error> {
-        let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
-        let measured = self.adapter().supply(Supply::voltage(millivolt))?;
-        self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
-        // Data sheet, 02:0Eh: 500 ms until registers can be asked.
-        self.wait(Supply::POWER_UP)
     }
 
     /// Sets clock and widths, where they are others than before.

@@ -341,7 +341,7 @@ fn the_shaft_is_turned_for_all_encoders() {
 fn the_supply_can_be_switched() {
     let mut host = Host::with("supply=switched");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
-    assert!(hello.capabilities.has(Capabilities::SUPPLY));
+    assert!(hello.capabilities.has(Capabilities::SUPPLY) && !hello.capabilities.has(Capabilities::SUPPLIED));
     host.ask(BISS);
     let status = |host: &mut Host| match host.ask(Request::BissRead) {
         Some(Message::Reply(Reply::BissRead { status, .. })) => status,
@@ -354,10 +354,29 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE, "it starts");
     host.now = host.now + Duration::from_millis(500);
     assert_eq!(status(&mut host), BissStatus::OK);
+    // Issue 22.16: another host says HELLO, which leaves the supply as it is and tells it.
+    let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
+    assert!(hello.capabilities.has(Capabilities::SUPPLIED));
+    assert_eq!(status(&mut host), BissStatus::OK);
     let off = Reply::Supply { on: false, millivolt: 0, milliampere: 0 };
     host.expect(Request::Supply { on: false, millivolt: 5000 }, off);
     host.adapter.connect(host.now);
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE);
+}
+
+/// Issue 22.18: requests that come faster than they can be answered are lost, and the adapter answers the next one.
+#[test]
+fn a_flood_of_requests_does_not_make_it_deaf() {
+    let mut host = Host::with("");
+    host.expect(BISS, Reply::BissConfig { clock_hz: 2_000_000 });
+    let read = Request::BissRegisterRead { slave: 0, address: 0x42 };
+    let packet = read.emit(1).emit();
+    (0..20_000).for_each(|_| host.adapter.on_bytes(host.now, &packet));
+    host.adapter.on_bytes(host.now, &vec![0x55; 1 << 20]);
+    host.adapter.on_bytes(host.now, &[0]);
+    let answered = host.receive(host.now + Duration::from_secs(1)).len();
+    assert!((1..100).contains(&answered), "{answered}");
+    host.expect(read, Reply::BissRegisterRead { value: 0x61 });
 }
 
 #[test]

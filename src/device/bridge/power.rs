@@ -1,0 +1,81 @@
+//! The encoder's supply, where an adapter switches it: how it was found when the session began, and how it is left at its end.
+
+/// How the supply is left at the end of a session.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SupplyAfter {
+    /// As it was found: what this session switched on goes off.
+    #[default]
+    AsFound,
+    /// On.
+    On,
+    /// Off, also where it was on before.
+    Off,
+}
+
+impl SupplyAfter {
+    /// The link parameter that chooses it.
+    pub const PARAMETER: &str = "leave-supply";
+    /// What the parameter takes.
+    pub const ALLOWED: &str = "as-found, on or off";
+
+    /// By its word in a link.
+    pub fn read(word: &str) -> Option<Self> {
+        match word {
+            "as-found" => Some(SupplyAfter::AsFound),
+            "on" => Some(SupplyAfter::On),
+            "off" => Some(SupplyAfter::Off),
+            _ => None,
+        }
+    }
+}
+
+/// What is known of an adapter's supply.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Power {
+    /// The user's choice.
+    pub(super) after: SupplyAfter,
+    /// The encoder had power before the session; `None` where nothing has told.
+    pub(super) found: Option<bool>,
+    /// This session has switched it on.
+    pub(super) given: bool,
+}
+
+impl Power {
+    /// It has to be switched off at the end of the session.
+    pub(super) fn goes_off(self) -> bool {
+        let found = self.found == Some(true);
+        match self.after {
+            SupplyAfter::AsFound => self.given && !found,
+            SupplyAfter::On => false,
+            SupplyAfter::Off => self.given || found,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Issue 22.16: off, unless it was on before or something else was chosen.
+    #[test]
+    fn the_supply_is_left_as_it_was_found_or_as_it_was_chosen() {
+        use SupplyAfter::{AsFound, Off, On};
+        let cases = [
+            (AsFound, None, true, true),
+            (AsFound, Some(false), true, true),
+            (AsFound, Some(true), true, false),
+            (AsFound, Some(true), false, false),
+            (AsFound, None, false, false),
+            (On, None, true, false),
+            (Off, Some(true), false, true),
+            (Off, Some(true), true, true),
+            (Off, None, false, false),
+        ];
+        for (after, found, given, off) in cases {
+            assert_eq!(Power { after, found, given }.goes_off(), off, "{after:?} {found:?} {given}");
+        }
+        for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
+            assert_eq!(SupplyAfter::read(word), after);
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Issue 22.16: how a session leaves the supply that an adapter gives the encoder.
+
+use std::time::Duration;
+
+use encoder_studio::device::biss::write::Left;
+use encoder_studio::device::bridge::SupplyAfter::{AsFound, Off, On};
+use encoder_studio::worker::biss::{BissJob, JobError};
+
+use super::hands::{Hands, data};
+use super::support::{Bench, at};
+
+fn has_power(bench: &Bench) -> bool {
+    bench.encoder(|encoder, _| encoder.has_power())
+}
+
+#[test]
+fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
+    let mut bench = Bench::supplied(AsFound);
+    // What was on before a session, how the session is to leave it, whether it is on then.
+    for (found, after, left) in
+        [(false, AsFound, false), (false, On, true), (true, AsFound, true), (true, Off, false), (false, Off, false)]
+    {
+        assert_eq!(has_power(&bench), found, "{after:?}");
+        bench = bench.supplied_again(after);
+        bench.run(BissJob::Status).unwrap();
+        assert!(has_power(&bench), "{after:?}");
+        bench.session.leave();
+        assert_eq!(has_power(&bench), left, "{found} {after:?}");
+    }
+}
+
+/// A session that never asked anything, or whose supply is no matter of the link, switches nothing.
+#[test]
+fn a_session_that_switched_nothing_on_switches_nothing_off() {
+    let mut bench = Bench::supplied(On);
+    bench.run(BissJob::Status).unwrap();
+    bench.session.leave();
+    let mut other = bench.reconnected();
+    other.run(BissJob::Status).unwrap();
+    other.session.leave();
+    bench.supplied_again(AsFound).session.leave();
+    assert!(has_power(&bench));
+}
+
+/// What is stored is given its time before the power goes; an encoder that somebody has in a mode keeps it.
+#[test]
+fn power_is_not_cut_while_something_may_be_under_way() {
+    let mut bench = Bench::supplied(AsFound);
+    bench.change(data()).unwrap();
+    let before = bench.now();
+    bench.session.leave();
+    assert!(!has_power(&bench) && bench.now() - before > Duration::from_millis(900), "{:?}", bench.now() - before);
+    let mut bench = Bench::supplied(AsFound);
+    bench.change(data()).unwrap();
+    bench.encoder(|encoder, now| {
+        assert!(encoder.write(now, at("0x6B"), 0x2A) && encoder.write(now, at("0x6A"), 1));
+    });
+    bench.session.leave();
+    assert!(has_power(&bench), "it may calibrate");
+}
+
+/// Wherever a write is cut off: what could not be led back keeps its power until it is.
+#[test]
+fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
+    let mut whole = Bench::supplied(AsFound);
+    let prepared = whole.prepare(data()).unwrap();
+    let begins = whole.tap().sent.len();
+    let mut hands = Hands::on(&whole);
+    whole.commit(&prepared, &mut hands).unwrap();
+    let frames = whole.tap().sent.len() - begins;
+    let mut kept = 0;
+    for part in 0..12 {
+        let mut bench = Bench::supplied(AsFound);
+        let prepared = bench.prepare(data()).unwrap();
+        let cut = bench.tap().sent.len() + frames * part / 12;
+        bench.tap().mute_from = Some(cut);
+        let mut hands = Hands::on(&bench);
+        let error = *bench.commit(&prepared, &mut hands).unwrap_err();
+        bench.tap().mute_from = None;
+        let unknown =
+            matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.left != Left::Operation);
+        bench.session.leave();
+        assert_eq!(has_power(&bench), unknown, "cut in part {part}: {error}");
+        if unknown {
+            kept += 1;
+            bench.lead_back().unwrap();
+            bench.session.leave();
+            assert!(!has_power(&bench), "cut in part {part}");
+        }
+    }
+    assert!(kept > 0);
+}
