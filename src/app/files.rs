@@ -12,9 +12,35 @@ use super::signals;
 use super::ssi;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Picture, Severity, Text, explain};
-use crate::store::FileError;
+use crate::link::{LinkUrl, Scheme};
+use crate::store::{FileError, Folders};
 
 impl Studio {
+    /// The same with a path that leads to the same file from everywhere: here, and nowhere else, paths that a person gives
+    /// come in.
+    pub(super) fn with_whole_path(&self, action: Action) -> Action {
+        let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
+        match action {
+            Action::Open(path) => Action::Open(whole(path)),
+            Action::Typed(question, path) => Action::Typed(question, whole(path)),
+            Action::Chosen(question, path) => Action::Chosen(question, whole(path)),
+            action => action,
+        }
+    }
+
+    /// The same of a link that leads to a file.
+    pub(super) fn with_whole_file(&self, mut url: LinkUrl) -> LinkUrl {
+        if url.scheme == Scheme::Replay {
+            url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();
+        }
+        url
+    }
+
+    /// Where paths begin that a person gives.
+    pub fn folders(&self) -> &Folders {
+        &self.services.world.folders
+    }
+
     /// A path was typed: what is there already is not replaced without a question.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested().is_none() {

@@ -25,6 +25,7 @@ impl Studio {
     /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of
     /// another kind lets go of the wire.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
+        let url = self.with_whole_file(url);
         let mut own = None;
         for device in &mut self.devices {
             let holds = matches!(device.source(), Source::Link(other) if same_wire(other, &url));

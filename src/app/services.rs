@@ -16,7 +16,7 @@ use crate::device::hiperdrive::{Error as DriveError, Found};
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
 use crate::protocol::ssi::Families;
-use crate::store::{Store, StoreError};
+use crate::store::{Folders, Store, StoreError};
 use crate::worker::biss::{self, Biss};
 use crate::worker::hiperdrive::{self, Hiperdrive};
 use crate::worker::hiperface::{self, Hiperface};
@@ -48,6 +48,8 @@ pub struct World {
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
     pub codes: Vec<(CodeNumber, AccessCode)>,
+    /// Where paths begin that a person gives.
+    pub folders: Folders,
     /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// How long closing waits.
@@ -67,6 +69,7 @@ impl World {
             discover: Arc::new(super::connect::ask_all),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
+            folders: Folders::of_user(),
             now: Arc::new(Zoned::now),
             patience: Patience::default(),
         }

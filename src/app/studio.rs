@@ -87,7 +87,7 @@ impl Studio {
 
     /// Does what is asked.
     pub fn act(&mut self, action: Action) {
-        match action {
+        match self.with_whole_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::NewLayout => self.new_layout(),
             Action::SetTheme(theme) => self.settings.theme = theme,

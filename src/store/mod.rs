@@ -10,6 +10,7 @@ mod file_error;
 mod file_lock;
 mod file_names;
 mod files;
+mod folders;
 mod log_file;
 mod logbook;
 
@@ -23,6 +24,7 @@ pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use file_lock::update_text;
 pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder};
+pub use folders::Folders;
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
 

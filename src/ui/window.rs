@@ -1,7 +1,6 @@
 //! The window: header, navigation, panels, dialogs and the keyboard; what eframe asks of an application.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use egui::{Key, Modifiers, Panel, Ui};
@@ -144,8 +143,7 @@ impl Window {
     }
 
     fn type_path(&mut self, question: crate::app::FileQuestion) {
-        let folder = directories::UserDirs::new().map_or_else(PathBuf::new, |dirs| dirs.home_dir().to_owned());
-        self.views.file = Some(FileView::new(question, &folder));
+        self.views.file = Some(FileView::new(question, self.studio.folders()));
     }
 
     fn shell(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {

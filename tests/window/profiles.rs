@@ -199,3 +199,46 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
     desk.until("a new file needs no question", |_| new.exists());
     assert!(desk.studio.question.is_none());
 }
+
+/// Issue 22.24: a path that begins nowhere is the same file for as long as the window is open, whichever way it came in.
+#[test]
+fn a_relative_path_is_the_same_file_when_it_is_saved() {
+    let (mut desk, path) = saved();
+    let (work, home) = (desk.outside.path("work"), desk.outside.path("home"));
+    for folder in [&work, &home] {
+        fs::create_dir(folder).unwrap();
+        fs::copy(&path, folder.join("rel.ron")).unwrap();
+    }
+    desk = desk.crash();
+    desk.studio.begin(None, Some("rel.ron".into()));
+    desk.until("it is open", |studio| studio.hiperface().is_some());
+    desk.settle();
+    let rel = work.join("rel.ron");
+    assert_eq!(desk.encoder().session.place(), rel.display().to_string());
+    desk.ask(Hiperface::AskSave);
+    let question = desk.studio.take_file_question().unwrap();
+    assert_eq!(question.suggested(), Some(rel.as_path()));
+    desk.put(0, 0, b"X");
+    desk.act(Action::Chosen(question, "rel.ron".into()));
+    desk.until("it is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
+    assert_ne!(read_text(&rel).unwrap(), read_text(&path).unwrap());
+    assert_eq!(read_text(&home.join("rel.ron")).unwrap(), read_text(&path).unwrap());
+
+    // Dropped and typed, it is the session that there is; the home folder's has its own.
+    desk.act(Action::Open("./rel.ron".into()));
+    desk.act(Action::Typed(FileQuestion::Open, "rel.ron".into()));
+    desk.until("both were read", |studio| studio.opening_files().is_empty());
+    assert_eq!(desk.studio.devices().len(), 1);
+    desk.act(Action::Typed(FileQuestion::Open, "~/rel.ron".into()));
+    desk.until("it is open", |studio| studio.devices().len() == 2);
+    assert_eq!(desk.encoder().session.place(), home.join("rel.ron").display().to_string());
+}
+
+/// Issue 22.24: a link to a recording leads to the same file at the next start, wherever that is.
+#[test]
+fn a_link_to_a_recording_is_remembered_with_its_whole_path() {
+    let mut desk = Desk::fresh("");
+    desk.open("replay:monday.trace");
+    let expected = format!("replay:{}", desk.outside.path("work").join("monday.trace").display());
+    assert_eq!(desk.encoder().session.place(), expected);
+}

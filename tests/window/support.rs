@@ -15,7 +15,7 @@ use encoder_studio::device::hiperface::Station;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
-use encoder_studio::store::Store;
+use encoder_studio::store::{Folders, Store};
 use encoder_studio::worker::{Session, biss, hiperdrive, interbus};
 
 use crate::texts;
@@ -135,6 +135,7 @@ impl Outside {
             ports: Arc::new(|| Ok(Vec::new())),
             discover: Arc::new(move || Ok(found.clone())),
             patience: self.patience,
+            folders: Folders::at(&self.path("work"), &self.path("home")),
             ..World::real(self.store())
         }
     }

@@ -1,10 +1,11 @@
 //! Asking for a file: with the dialog of the system, on a thread of its own; where there is none, with a path to type.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::app::{Action, FileQuestion, Mailbox};
+use crate::app::{Action, FileQuestion, Mailbox, Text};
+use crate::store::Folders;
 use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
 use crate::ui::{Skin, icons};
 
@@ -12,6 +13,8 @@ use crate::ui::{Skin, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
+    /// From where a path counts that begins nowhere.
+    working: Option<PathBuf>,
     fresh: bool,
 }
 
@@ -78,13 +81,12 @@ fn kind(question: &FileQuestion) -> &'static str {
 }
 
 impl FileView {
-    /// Asks for a path to be typed, beginning in `folder`.
-    pub(in crate::ui) fn new(question: FileQuestion, folder: &std::path::Path) -> Self {
-        let path = match question.suggested() {
-            None => folder.join(""),
-            Some(suggested) => folder.join(suggested),
-        };
-        FileView { question, path: path.display().to_string(), fresh: true }
+    /// Asks for a path to be typed, beginning at the user's home where the question names no place.
+    pub(in crate::ui) fn new(question: FileQuestion, folders: &Folders) -> Self {
+        let home = folders.home().unwrap_or(Path::new(""));
+        let path = home.join(question.suggested().unwrap_or(Path::new("")));
+        let working = folders.working().map(Path::to_owned);
+        FileView { question, path: path.display().to_string(), working, fresh: true }
     }
 }
 
@@ -122,6 +124,10 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
         }
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         ui.label(skin.caption(skin.say("file.hint")));
+        if let Some(working) = &view.working {
+            let rule = Text::new("file.rule").with("folder", working.display());
+            ui.label(skin.caption(skin.words(&rule)));
+        }
         ui.add_space(skin.space.groups);
         at_the_right(ui, |ui| {
             let named = !view.path.trim().is_empty();

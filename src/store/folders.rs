@@ -1,0 +1,79 @@
+//! Where the paths that a person gives begin: one rule for the command line, for what is typed and for what is dropped.
+
+use std::ffi::OsStr;
+use std::path::{Component, Path, PathBuf};
+
+use directories::UserDirs;
+
+/// The folders from which a path counts that does not say where it begins.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Folders {
+    working: Option<PathBuf>,
+    home: Option<PathBuf>,
+}
+
+impl Folders {
+    /// The folder in which the program was started, and the user's home.
+    pub fn of_user() -> Self {
+        let home = UserDirs::new().map(|own| own.home_dir().to_owned());
+        Folders { working: std::env::current_dir().ok(), home }
+    }
+
+    /// Folders of a test.
+    pub fn at(working: &Path, home: &Path) -> Self {
+        Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
+    }
+
+    /// The folder from which relative paths count; `None` where the system does not tell.
+    pub fn working(&self) -> Option<&Path> {
+        self.working.as_deref()
+    }
+
+    /// The user's home; `None` where the system names none.
+    pub fn home(&self) -> Option<&Path> {
+        self.home.as_deref()
+    }
+
+    /// A path that leads to the same file from everywhere: `~` in front is the user's home, and what else begins nowhere
+    /// begins in the folder in which the program was started.
+    pub fn absolute(&self, path: &Path) -> PathBuf {
+        let mut parts = path.components();
+        let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
+        match (&self.home, &self.working) {
+            (Some(home), _) if from_home => home.join(parts.as_path()),
+            // Nothing is named, so that there is nothing to begin.
+            (_, Some(working)) if !path.as_os_str().is_empty() => working.join(path.strip_prefix(".").unwrap_or(path)),
+            _ => path.to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Issue 22.24: one rule for every path that a person gives.
+    #[test]
+    fn a_path_leads_to_the_same_file_from_everywhere() {
+        let root = std::env::temp_dir();
+        let (working, home) = (root.join("work"), root.join("home"));
+        let folders = Folders::at(&working, &home);
+        let elsewhere = root.join("elsewhere.ron");
+        let cases = [
+            ("a.ron", working.join("a.ron")),
+            ("./a.ron", working.join("a.ron")),
+            ("sub/a.ron", working.join("sub").join("a.ron")),
+            ("~/a.ron", home.join("a.ron")),
+            ("~", home.clone()),
+            // A name of its own, and no home.
+            ("~a.ron", working.join("~a.ron")),
+            ("sub/~/a.ron", working.join("sub/~/a.ron")),
+        ];
+        for (given, expected) in cases {
+            assert_eq!(folders.absolute(Path::new(given)), expected, "{given}");
+        }
+        assert_eq!(folders.absolute(&elsewhere), elsewhere);
+        assert_eq!(folders.absolute(Path::new("")), PathBuf::new());
+        assert_eq!(Folders::default().absolute(Path::new("~/a.ron")), PathBuf::from("~/a.ron"));
+    }
+}
