@@ -3,6 +3,7 @@
 use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
+use super::page::apart;
 use super::stopping::{goes_down, means_motion, pressed_at};
 use super::{Skin, Views, icons};
 use crate::app::connect;
@@ -34,7 +35,10 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
                 }
             },
         );
-        let tools = ui.scope(|ui| tools(ui, skin, studio, views, actions)).response.rect.width();
+        let tools = apart(ui, "tools", |ui| {
+            tools(ui, skin, studio, views, actions);
+            ui.min_rect().width()
+        });
         if (tools - width).abs() > 0.5 {
             ui.data_mut(|data| data.insert_temp(width_id, tools));
             ui.ctx().request_repaint();

@@ -1,6 +1,6 @@
-//! The room around a page of a tab, and a page that scrolls as a whole.
+//! The room around a page of a tab, a page that scrolls as a whole, and widgets that stay the same whatever comes before them.
 
-use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui};
+use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 
 use super::Skin;
 
@@ -25,4 +25,11 @@ pub(super) fn around(ui: &Ui, skin: &Skin) -> Margin {
 pub(super) fn scrolling(ui: &mut Ui, skin: &Skin, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, skin));
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| frame.show(ui, content));
+}
+
+/// Draws widgets whose ids do not depend on what was drawn before them; `name` is unique in `ui`. Else each of them becomes
+/// another one when something appears above or goes: it loses the keyboard, and a click between press and release.
+pub(super) fn apart<R>(ui: &mut Ui, name: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = ui.scope_id().with(name);
+    ui.scope_builder(UiBuilder::new().scope_id(id), content).inner
 }

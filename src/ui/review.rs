@@ -7,6 +7,7 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
+use super::page::apart;
 use super::{Skin, icons};
 use crate::app::review::{ChangeWords, Manner, OpWords, Sheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
@@ -21,8 +22,20 @@ pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, ac
         ui.label(skin.heading(skin.words(&sheet.what)));
         ui.label(skin.label(device.name()));
         ui.add_space(skin.space.between);
-        content(ui, skin, device, (&sheet, room), actions);
+        // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
+        apart(ui, stage_name(&sheet.stage), |ui| content(ui, skin, device, (&sheet, room), actions));
     });
+}
+
+const fn stage_name(stage: &Stage) -> &'static str {
+    match stage {
+        Stage::Planning => "planning",
+        Stage::Nothing => "nothing",
+        Stage::Ready(_) => "ready",
+        Stage::Writing(_) => "writing",
+        Stage::Done { .. } => "done",
+        Stage::Failed { .. } => "failed",
+    }
 }
 
 fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet, f32), actions: &mut Vec<Action>) {

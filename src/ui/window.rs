@@ -9,6 +9,7 @@ use super::dialogs::{self, ConnectView, FileView};
 use super::docks::Docks;
 use super::keys::Keys;
 use super::navigation::navigation_ui;
+use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, signals, ssi, stopping};
 use crate::app::hiperface::Encoder;
@@ -162,7 +163,7 @@ impl Window {
             .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
-                navigation_ui(ui, skin, studio, views, docks, actions);
+                apart(ui, "entries", |ui| navigation_ui(ui, skin, studio, views, docks, actions));
             });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
             docks.ui(ui, skin, studio, views, actions);

@@ -3,6 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
+use super::page::apart;
 use super::panels::plot_ui;
 use super::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, signals, ssi};
 use crate::app::connect;
@@ -36,7 +37,7 @@ fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, ac
     };
     running(ui, skin, device, None, actions);
     lost(ui, skin, device, actions);
-    hiperface::page_ui(ui, skin, (studio, device), encoder, views.hiperface(encoder), actions);
+    apart(ui, "page", |ui| hiperface::page_ui(ui, skin, (studio, device), encoder, views.hiperface(encoder), actions));
 }
 
 fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -49,7 +50,7 @@ fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions
     let instead = is_led.then(|| skin.say("guide.cancel_note"));
     running(ui, skin, device, instead, actions);
     lost(ui, skin, device, actions);
-    biss::page_ui(ui, skin, (studio, device), encoder, view, actions);
+    apart(ui, "page", |ui| biss::page_ui(ui, skin, (studio, device), encoder, view, actions));
 }
 
 fn ssi_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -57,7 +58,7 @@ fn ssi_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions:
         return nothing(ui, skin, studio, actions);
     };
     lost(ui, skin, device, actions);
-    ssi::page_ui(ui, skin, (studio, device), encoder, views.ssi(encoder), actions);
+    apart(ui, "page", |ui| ssi::page_ui(ui, skin, (studio, device), encoder, views.ssi(encoder), actions));
 }
 
 fn interbus_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -66,7 +67,7 @@ fn interbus_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, act
     };
     running(ui, skin, device, None, actions);
     lost(ui, skin, device, actions);
-    interbus::page_ui(ui, skin, (studio, device), encoder, views.interbus(encoder), actions);
+    apart(ui, "page", |ui| interbus::page_ui(ui, skin, (studio, device), encoder, views.interbus(encoder), actions));
 }
 
 fn hiperdrive_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -81,7 +82,7 @@ fn hiperdrive_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, a
             .show(ui, |ui| running(ui, skin, device, None, actions));
     }
     lost(ui, skin, device, actions);
-    hiperdrive::page_ui(ui, skin, (studio, device), unit, views.hiperdrive(unit), actions);
+    apart(ui, "page", |ui| hiperdrive::page_ui(ui, skin, (studio, device), unit, views.hiperdrive(unit), actions));
 }
 
 /// No device is on the desk: the ways to one.

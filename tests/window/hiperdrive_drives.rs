@@ -177,17 +177,11 @@ fn on_screen() -> Screen {
 }
 
 fn choose(screen: &mut Screen, of: DriveNumber) {
-    // A click through the accessibility tree names a node of the picture before, which may be another one by now.
-    for _ in 0..3 {
-        let drive = screen.studio().hiperdrive().unwrap();
-        if drive.drive() == of {
-            break;
-        }
-        let state = screen.words(&explain::state(drive.state(of).unwrap()));
-        let label = format!("drive {}, {state}", of.get());
-        screen.harness.get_by_role_and_label(Role::RadioButton, &label).click();
-        screen.steps();
-    }
+    let drive = screen.studio().hiperdrive().unwrap();
+    let state = screen.words(&explain::state(drive.state(of).unwrap()));
+    let label = format!("drive {}, {state}", of.get());
+    screen.harness.get_by_role_and_label(Role::RadioButton, &label).click();
+    screen.steps();
     screen.until("it is shown", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.drive() == of && own.may_move(of).is_ok()

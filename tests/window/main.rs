@@ -28,6 +28,7 @@ mod interbus;
 mod leaving;
 mod losing;
 mod monkey;
+mod pressing;
 mod profiles;
 mod recording;
 mod remembering;

@@ -15,6 +15,7 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
 use crate::device::hiperface::Watch;
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
+use crate::ui::page::apart;
 use crate::ui::{Skin, Views, icons, plot};
 
 /// Microseconds from one reading of the position to the next; back to back first.
@@ -50,10 +51,10 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
         ui.label(skin.caption(skin.say("live.paused_by_job")));
     }
     ui.add_space(skin.space.inside);
-    controls(ui, skin, device, views, actions);
+    apart(ui, "controls", |ui| controls(ui, skin, device, views, actions));
     ui.add_space(skin.space.between);
     if !views.plot.is_large() {
-        plot_ui(ui, skin, device, views, actions);
+        apart(ui, "plot", |ui| plot_ui(ui, skin, device, views, actions));
     }
 }
 

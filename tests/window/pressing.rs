@@ -1,0 +1,138 @@
+//! A press and its release find the same button, and the keyboard stays where it is, whatever appears or goes meanwhile
+//! somewhere else in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
+
+use std::collections::BTreeMap;
+
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton};
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::interbus::Action as Interbus;
+use encoder_studio::app::{Action, Tab, Wish};
+
+use crate::screen::Screen;
+use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};
+
+const SIZE: [f32; 2] = [1280.0, 900.0];
+
+/// Each kind of device at a cable: its tab, its link, its place in the world of the test, and a command of its reading.
+const KINDS: [(Tab, &str, &str, u8); 4] = [
+    (Tab::Hiperface, "serial", PORT, 0x52),
+    (Tab::Biss, "serial", KIT, 0x01),
+    // Function 4 reads a word.
+    (Tab::Interbus, "modbus", GATE, 4),
+    // The service that gets an attribute.
+    (Tab::Hiperdrive, "enip", DRIVE, 0x0E),
+];
+
+/// What can be pressed or typed into, by its name, where only one has it: which widget it is.
+fn widgets(screen: &Screen) -> BTreeMap<String, String> {
+    let (mut found, mut several) = (BTreeMap::new(), Vec::new());
+    for node in screen.harness.query_all_by(|node| {
+        matches!(node.role(), Role::Button | Role::RadioButton | Role::CheckBox | Role::TextInput | Role::ComboBox)
+    }) {
+        let node = node.accesskit_node();
+        let name = format!("{:?} {}", node.role(), node.label().unwrap_or_default());
+        if found.insert(name.clone(), format!("{:?}", node.id())).is_some() {
+            several.push(name);
+        }
+    }
+    found.retain(|name, _| !several.contains(name));
+    found
+}
+
+#[track_caller]
+fn check(screen: &Screen, before: &BTreeMap<String, String>, what: &str) {
+    let now = widgets(screen);
+    let other: Vec<&String> =
+        before.iter().filter(|(name, id)| now.get(*name).is_some_and(|own| own != *id)).map(|own| own.0).collect();
+    assert!(other.is_empty(), "{what}: no longer the same: {other:?}");
+    assert!(before.len() > 8, "{what}: {}", before.len());
+}
+
+fn ready(screen: &mut Screen) {
+    screen.until("it is ready", |studio| studio.shown().is_some_and(|own| own.is_readable()) && !studio.works());
+}
+
+/// Issue 21.7: a notice and a job that runs come and go by themselves.
+#[test]
+fn what_appears_elsewhere_exchanges_no_button() {
+    for (tab, scheme, port, reads) in KINDS {
+        let mut screen = Screen::opened_in(tab, &format!("{scheme}:{port}"), SIZE);
+        ready(&mut screen);
+        let id = screen.studio().shown().unwrap().id();
+        if tab == Tab::Interbus {
+            // Else it is not read.
+            screen.act(Action::Interbus(id, Interbus::Stopped(true)));
+        }
+        screen.act(Action::Dismiss);
+        for page in encoder_studio::ui::pages(tab) {
+            screen.click(page);
+            let before = widgets(&screen);
+            screen.act(Action::NoThread("told".to_owned()));
+            check(&screen, &before, &format!("{tab:?}, {page}, with a notice"));
+            screen.act(Action::Dismiss);
+            check(&screen, &before, &format!("{tab:?}, {page}, without it"));
+            let wire = screen.outside.wire(port).clone();
+            wire.hold_at(reads, 1);
+            let read = screen.studio().shown().unwrap().wish(Wish::Read);
+            screen.act(read);
+            wire.wait_until_held();
+            screen.steps();
+            assert!(screen.studio().shown().unwrap().running().is_some(), "{tab:?}");
+            check(&screen, &before, &format!("{tab:?}, {page}, while it is read"));
+            wire.release();
+            ready(&mut screen);
+            screen.act(Action::Dismiss);
+            check(&screen, &before, &format!("{tab:?}, {page}, read"));
+        }
+    }
+}
+
+/// Issue 21.7: a click during which a notice goes, or comes.
+#[test]
+fn a_click_counts_whatever_appears_between_its_press_and_its_release() {
+    for comes in [true, false] {
+        let mut screen = Screen::begun(SIZE);
+        if !comes {
+            screen.act(Action::NoThread("told".to_owned()));
+        }
+        let place = screen.button("page.memory").rect().center();
+        let button = |pressed| Event::PointerButton {
+            pos: place,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        screen.harness.hover_at(place);
+        screen.harness.event(button(true));
+        screen.harness.step();
+        screen.studio().mailbox().send(if comes { Action::NoThread("told".to_owned()) } else { Action::Dismiss });
+        screen.harness.step();
+        screen.harness.event(button(false));
+        screen.steps();
+        assert!(screen.has_button("memory.review"), "{comes}");
+    }
+}
+
+/// Issue 22.29: the keyboard on a button of a review that is still planned is on none of the plan that is ready.
+#[test]
+fn a_review_that_becomes_ready_takes_no_key_for_a_button_before() {
+    let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
+    ready(&mut screen);
+    screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
+    let wire = screen.outside.wire(PORT).clone();
+    // The status of the data field.
+    wire.hold_at(0x4C, 1);
+    screen.ask(Hiperface::Review);
+    wire.wait_until_held();
+    screen.steps();
+    screen.button("review.cancel").focus();
+    screen.steps();
+    assert!(screen.button("review.cancel").accesskit_node().is_focused());
+    wire.release();
+    screen.until("it is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
+    for id in ["review.write", "review.cancel"] {
+        assert!(!screen.button(id).accesskit_node().is_focused(), "{id}");
+    }
+}
