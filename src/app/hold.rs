@@ -12,7 +12,8 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! What has ended begins again only by another press; a key only by one that is [fresh](FreshKeys).
+//! What has ended begins again only by another press; a key only by one that is [fresh](FreshKeys), which none is at once
+//! after another key.
 
 use super::press::{FreshKeys, PressKey};
 
@@ -136,7 +137,11 @@ impl HoldState {
                     self.let_go();
                 }
             }
-            HoldInput::OtherKey | HoldInput::Modifiers | HoldInput::Finger => self.let_go(),
+            HoldInput::OtherKey => {
+                self.keys.doubt(now);
+                self.let_go();
+            }
+            HoldInput::Modifiers | HoldInput::Finger => self.let_go(),
             HoldInput::PointerDown { on } => {
                 let alone = self.holder.is_none() && !self.pointer && !self.is_any_key_down();
                 self.pointer = true;
@@ -444,6 +449,19 @@ mod tests {
                 assert_eq!(pad.picture(&[UP]), None, "{apart}");
             }
         }
+    }
+
+    /// Issue 22.29: a barcode scanner types Enter within milliseconds of the last digit.
+    #[test]
+    fn a_press_at_once_after_another_key_holds_nothing() {
+        let mut pad = Pad::armed();
+        assert_eq!(pad.picture(&[HoldInput::OtherKey, DOWN]), None);
+        assert_eq!(pad.lift(&[UP]), None);
+        assert_eq!(pad.picture(&[HoldInput::OtherKey]), None);
+        assert_eq!(pad.picture(&[DOWN]), None);
+        assert_eq!(pad.lift(&[UP]), None);
+        assert_eq!(pad.lift(&[HoldInput::OtherKey]), None);
+        assert_eq!(pad.picture(&[DOWN]), Some(Press));
     }
 
     /// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.

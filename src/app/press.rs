@@ -26,7 +26,7 @@ enum Seen {
     #[default]
     Nothing,
     Down,
-    /// Its release came in the picture of this time; since then it was not seen up for long enough.
+    /// Its release, or another key, came in the picture of this time; since then it was not seen up for long enough.
     Released(f64),
     Up,
 }
@@ -62,6 +62,17 @@ impl FreshKeys {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
             if *own == Seen::Nothing {
+                *own = Seen::Released(now);
+            }
+        }
+    }
+
+    /// Another key goes down, which is not typed into a text entry: a press at once after it is no person's. A barcode
+    /// scanner types digits and Enter that fast.
+    pub fn doubt(&mut self, now: f64) {
+        for key in [PressKey::Space, PressKey::Enter] {
+            let own = self.of(key);
+            if *own == Seen::Up {
                 *own = Seen::Released(now);
             }
         }
@@ -197,5 +208,28 @@ mod tests {
         keys.press_other(1.2);
         pictures(&mut keys, 1.2, 0.05, 2);
         assert!(!keys.press(Enter), "it is known to be down");
+    }
+
+    /// Issue 22.29: what a barcode scanner types.
+    #[test]
+    fn a_press_at_once_after_another_key_is_not_fresh() {
+        let mut keys = FreshKeys::UP;
+        keys.doubt(1.0);
+        assert!(!keys.press(Enter), "in the same picture");
+        let mut keys = FreshKeys::UP;
+        keys.doubt(1.0);
+        let _ = keys.end_picture(1.0);
+        assert!(!keys.press(Enter), "in the next one, whenever that is");
+        let mut keys = FreshKeys::UP;
+        keys.doubt(1.0);
+        pictures(&mut keys, 1.0, 0.05, 2);
+        assert!(keys.press(Enter), "a person's");
+        keys.doubt(2.0);
+        pictures(&mut keys, 2.0, 0.05, 2);
+        assert!(!keys.press(Enter), "it is down");
+        let mut keys = FreshKeys::default();
+        keys.doubt(1.0);
+        pictures(&mut keys, 1.0, 0.05, 2);
+        assert!(!keys.press(Enter), "it may be held");
     }
 }

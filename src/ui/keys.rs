@@ -1,4 +1,4 @@
-//! Keys before any widget sees them: a key that repeats itself presses nothing, Space stops what moves, and so does every
+//! Keys before any widget sees them: a key that repeats itself, or comes at once after another, presses nothing, Space stops what moves, and so does every
 //! key while the pointer holds a drive. What holds a drive with a key judges for itself ([`HoldState`](crate::app::HoldState)).
 
 use egui::{Context, Event, Key};
@@ -28,6 +28,8 @@ impl Keys {
         self.asked = asks;
         let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_keyboard(ctx));
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
+        // Enter ends what is typed into an entry, and presses nothing there.
+        let typing = ctx.text_edit_focused();
         let space_stops = !for_hold_button && (moves || stopping::has_just_stopped(ctx, now));
         let fresh = &mut self.fresh;
         let mut stops = false;
@@ -50,6 +52,9 @@ impl Keys {
                     None => {
                         if !asks {
                             fresh.press_other(now);
+                        }
+                        if !typing {
+                            fresh.doubt(now);
                         }
                         true
                     }

@@ -255,3 +255,32 @@ fn a_review_takes_a_key_only_after_it_was_seen_up() {
     down(&mut screen, Key::Enter);
     screen.until("it is written", |studio| !studio.shown().unwrap().is_dirty());
 }
+
+/// Issue 22.29: a barcode scanner, its Enter within milliseconds of the last digit, while *Write* has the keyboard: in one
+/// picture or in two.
+#[test]
+fn a_barcode_scanner_writes_nothing() {
+    let mut screen = in_hand();
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
+    screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
+    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
+    screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
+    screen.button("review.write").focus();
+    screen.steps();
+    for _ in 0..4 {
+        for digit in [Key::Num4, Key::Num0, Key::Num6] {
+            let now = screen.harness.ctx.input(|input| input.time);
+            // The release of a digit comes in the picture of the next key.
+            screen.harness.input_mut().time = Some(now + 0.004);
+            picture(&mut screen, [event(digit, true)]);
+        }
+        screen.harness.input_mut().time = None;
+        picture(&mut screen, [event(Key::Enter, true)]);
+        up(&mut screen, Key::Enter);
+        assert!(screen.studio().shown().unwrap().is_dirty() && screen.has_button("review.write"));
+    }
+    assert!(!screen.studio().hiperdrive().unwrap().session.is_writing());
+    down(&mut screen, Key::Enter);
+    screen.until("it is written", |studio| !studio.shown().unwrap().is_dirty());
+}
