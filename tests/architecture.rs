@@ -226,12 +226,13 @@ fn only_the_window_draws() {
 #[test]
 fn no_view_holds_a_literal_text() {
     /// Behind these stand names for egui, for a place in a text, for the system or the compiler.
-    const NAMES: [&str; 20] = [
+    const NAMES: [&str; 21] = [
         "Id::unique(",
         "id_salt(",
         "make_persistent_id(",
         "make_persistent_id((",
         "modal(ctx, skin,",
+        "apart(ui,",
         "add_filter(filter, &[",
         "Panel::top(",
         "Panel::bottom(",

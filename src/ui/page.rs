@@ -29,7 +29,7 @@ pub(super) fn scrolling(ui: &mut Ui, skin: &Skin, id: impl AsIdSalt, content: im
 
 /// Draws widgets whose ids do not depend on what was drawn before them; `name` is unique in `ui`. Else each of them becomes
 /// another one when something appears above or goes: it loses the keyboard, and a click between press and release.
-pub(super) fn apart<R>(ui: &mut Ui, name: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn apart<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);
     ui.scope_builder(UiBuilder::new().scope_id(id), content).inner
 }

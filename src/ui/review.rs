@@ -23,19 +23,8 @@ pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, ac
         ui.label(skin.label(device.name()));
         ui.add_space(skin.space.between);
         // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
-        apart(ui, stage_name(&sheet.stage), |ui| content(ui, skin, device, (&sheet, room), actions));
+        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content(ui, skin, device, (&sheet, room), actions));
     });
-}
-
-const fn stage_name(stage: &Stage) -> &'static str {
-    match stage {
-        Stage::Planning => "planning",
-        Stage::Nothing => "nothing",
-        Stage::Ready(_) => "ready",
-        Stage::Writing(_) => "writing",
-        Stage::Done { .. } => "done",
-        Stage::Failed { .. } => "failed",
-    }
 }
 
 fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet, f32), actions: &mut Vec<Action>) {

@@ -1,0 +1,257 @@
+//! What begins a hold, and what ends it, picture by picture.
+
+use super::HoldEvent::{Hold, Press, Release, Stop};
+use super::PressKey::{Enter, Space};
+use super::*;
+
+const SCENE: HoldScene = HoldScene { enabled: true, window: true, keyboard: true, moving: false };
+const DOWN: HoldInput = HoldInput::Down { key: Space, plain: true };
+const UP: HoldInput = HoldInput::Up(Space);
+const POINTER: HoldInput = HoldInput::PointerDown { on: true };
+
+/// A button, a picture each fifth of a second.
+struct Pad {
+    state: HoldState,
+    now: f64,
+    apart: f64,
+    scene: HoldScene,
+    pointer: bool,
+    follows: bool,
+}
+
+impl Pad {
+    fn new() -> Self {
+        Pad { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
+    }
+
+    /// With the keyboard, and after Space and Enter were seen up.
+    fn armed() -> Self {
+        let mut pad = Pad::new();
+        assert_eq!(pad.picture(&[]), None);
+        assert_eq!(pad.picture(&[DOWN, HoldInput::Down { key: Enter, plain: true }]), None);
+        assert_eq!(pad.lift(&[UP, HoldInput::Up(Enter)]), None);
+        pad
+    }
+
+    /// A picture in which keys go up, and one that sees them up.
+    fn lift(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
+        let event = self.picture(inputs);
+        assert_eq!(self.picture(&[]), None);
+        event
+    }
+
+    fn picture(&mut self, inputs: &[HoldInput]) -> Option<HoldEvent> {
+        self.now += self.apart;
+        self.state.begin(self.scene, self.follows);
+        for input in inputs {
+            self.pointer = match input {
+                HoldInput::PointerDown { .. } => true,
+                HoldInput::PointerUp => false,
+                _ => self.pointer,
+            };
+            self.state.take(self.now, *input);
+        }
+        self.state.end(self.now, self.pointer, true)
+    }
+}
+
+/// Issue 21.2: what X11 delivers where Space is held and the window loses the keyboard and gets it back.
+#[test]
+fn a_key_that_is_held_while_the_keyboard_goes_and_comes_holds_nothing() {
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[DOWN]), Some(Press));
+    assert_eq!(pad.picture(&[DOWN]), Some(Hold), "it repeats itself");
+    pad.scene.window = false;
+    // The release is made up by the toolkit.
+    assert_eq!(pad.picture(&[HoldInput::Modifiers, UP, HoldInput::WindowFocus(false)]), Some(Release));
+    assert_eq!(pad.picture(&[]), None);
+    pad.scene.window = true;
+    assert_eq!(pad.picture(&[HoldInput::WindowFocus(true), HoldInput::Modifiers, DOWN]), None);
+    for _ in 0..20 {
+        assert_eq!(pad.picture(&[DOWN]), None, "it is still held");
+    }
+    assert!(pad.state.waits_for_release());
+    assert_eq!(pad.lift(&[UP]), None);
+    assert!(!pad.state.waits_for_release());
+    assert_eq!(pad.picture(&[DOWN]), Some(Press));
+    // All of it between two pictures.
+    let blink = [UP, HoldInput::WindowFocus(false), HoldInput::WindowFocus(true), DOWN];
+    assert_eq!(pad.picture(&blink), Some(Release));
+    assert_eq!(pad.picture(&[DOWN]), None);
+}
+
+/// Issue 21.2: whatever changes around the button, a key counts only after it was seen up.
+#[test]
+fn after_each_change_a_key_counts_only_once_it_was_seen_up() {
+    type Change = fn(&mut Pad);
+    let changes: [(&str, Change); 4] = [
+        ("the keyboard was elsewhere in the window", |pad| {
+            pad.scene.keyboard = false;
+            pad.picture(&[]);
+            pad.scene.keyboard = true;
+        }),
+        ("the window was without it", |pad| {
+            pad.scene.window = false;
+            pad.picture(&[]);
+            pad.scene.window = true;
+        }),
+        ("it was disabled", |pad| {
+            pad.scene.enabled = false;
+            pad.picture(&[]);
+            pad.scene.enabled = true;
+        }),
+        ("another page was shown", |pad| pad.follows = false),
+    ];
+    for (what, change) in changes {
+        for held in [false, true] {
+            let mut pad = Pad::armed();
+            if held {
+                assert_eq!(pad.picture(&[DOWN]), Some(Press));
+            }
+            change(&mut pad);
+            pad.picture(&[DOWN]);
+            pad.follows = true;
+            assert!(!pad.state.is_held(), "{what}, {held}");
+            assert_eq!(pad.picture(&[DOWN]), None, "{what}, {held}");
+            assert_eq!(pad.lift(&[UP]), None, "{what}, {held}");
+            assert_eq!(pad.picture(&[DOWN]), Some(Press), "{what}, {held}");
+        }
+    }
+}
+
+/// Issue 21.2: a pointer that is down already begins nothing, whatever becomes possible meanwhile.
+#[test]
+fn a_pointer_begins_a_hold_only_by_going_down() {
+    let mut pad = Pad::armed();
+    pad.scene.enabled = false;
+    assert_eq!(pad.picture(&[POINTER]), None);
+    pad.scene.enabled = true;
+    assert_eq!(pad.picture(&[]), None);
+    assert_eq!(pad.picture(&[HoldInput::PointerUp]), None);
+    assert_eq!(pad.picture(&[POINTER]), Some(Press));
+    // Disabled and enabled again while it is held.
+    pad.scene.enabled = false;
+    assert_eq!(pad.picture(&[]), Some(Release));
+    pad.scene.enabled = true;
+    assert_eq!(pad.picture(&[]), None);
+    // Off the button and back.
+    pad.picture(&[HoldInput::PointerUp]);
+    assert_eq!(pad.picture(&[POINTER]), Some(Press));
+    let aside = [HoldInput::PointerMoved { inside: false }, HoldInput::PointerMoved { inside: true }];
+    assert_eq!(pad.picture(&aside), Some(Release));
+    assert_eq!(pad.picture(&[]), None);
+    // In a window without the keyboard, which gets it by that very click.
+    pad.picture(&[HoldInput::PointerUp]);
+    assert_eq!(pad.picture(&[POINTER, HoldInput::WindowFocus(true)]), None);
+    assert_eq!(pad.picture(&[]), None);
+}
+
+/// Issue 21.2: any key while the pointer holds it, any second thing while a key does.
+#[test]
+fn whatever_comes_beside_what_holds_it_ends_it() {
+    let beside = [
+        HoldInput::OtherKey,
+        HoldInput::Modifiers,
+        HoldInput::Down { key: Enter, plain: true },
+        HoldInput::Down { key: Enter, plain: false },
+        HoldInput::PointerDown { on: true },
+        HoldInput::PointerDown { on: false },
+        HoldInput::Finger,
+        HoldInput::WindowFocus(true),
+        HoldInput::Down { key: Space, plain: false },
+    ];
+    for input in beside {
+        for holds in [DOWN, POINTER] {
+            let mut pad = Pad::armed();
+            assert_eq!(pad.picture(&[holds]), Some(Press));
+            assert_eq!(pad.picture(&[]), Some(Hold));
+            assert_eq!(pad.picture(&[input]), Some(Release), "{input:?} beside {holds:?}");
+            assert_eq!(pad.picture(&[]), None, "{input:?} beside {holds:?}");
+            assert_eq!(pad.picture(&[DOWN]), None, "{input:?} beside {holds:?}");
+        }
+    }
+    let mut pad = Pad::armed();
+    pad.picture(&[POINTER]);
+    assert_eq!(pad.picture(&[DOWN]), Some(Release), "also the key that could hold it");
+    // Two at once: neither.
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[DOWN, POINTER]), None);
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[POINTER, DOWN]), None);
+    // The pointer is down elsewhere.
+    let mut pad = Pad::armed();
+    pad.picture(&[HoldInput::PointerDown { on: false }]);
+    assert_eq!(pad.picture(&[DOWN]), None);
+}
+
+/// Issue 21.2: whoever hits a key while something moves means that, also where it does not count as a press.
+#[test]
+fn a_key_stops_what_moves_and_begins_nothing() {
+    for armed in [false, true] {
+        let mut pad = if armed { Pad::armed() } else { Pad::new() };
+        pad.scene.moving = true;
+        assert_eq!(pad.picture(&[DOWN]), Some(Stop), "{armed}");
+        pad.scene.moving = false;
+        assert_eq!(pad.picture(&[DOWN]), None, "{armed}: still held");
+        assert_eq!(pad.lift(&[UP]), None);
+        assert_eq!(pad.picture(&[DOWN]), Some(Press));
+    }
+    let mut pad = Pad::armed();
+    (pad.scene.moving, pad.scene.keyboard) = (true, false);
+    assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
+}
+
+/// Issue 21.2: a key that repeats itself by a release and a press at once, which come in two pictures of any distance.
+#[test]
+fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
+    for apart in [0.016, 0.05, 0.08, 0.25] {
+        let mut pad = Pad::armed();
+        pad.apart = apart;
+        assert_eq!(pad.picture(&[DOWN]), Some(Press), "{apart}");
+        assert_eq!(pad.picture(&[UP]), Some(Release), "{apart}");
+        for _ in 0..30 {
+            assert_eq!(pad.picture(&[DOWN]), None, "{apart}");
+            assert_eq!(pad.picture(&[UP]), None, "{apart}");
+        }
+    }
+}
+
+/// Issue 22.29: a barcode scanner types Enter within milliseconds of the last digit.
+#[test]
+fn a_press_at_once_after_another_key_holds_nothing() {
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[HoldInput::OtherKey, DOWN]), None);
+    assert_eq!(pad.lift(&[UP]), None);
+    assert_eq!(pad.picture(&[HoldInput::OtherKey]), None);
+    assert_eq!(pad.picture(&[DOWN]), None);
+    assert_eq!(pad.lift(&[UP]), None);
+    assert_eq!(pad.lift(&[HoldInput::OtherKey]), None);
+    assert_eq!(pad.picture(&[DOWN]), Some(Press));
+}
+
+/// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.
+#[test]
+fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[DOWN]), Some(Press));
+    assert_eq!(pad.state.next_picture(), None, "while it is held");
+    assert_eq!(pad.picture(&[UP]), Some(Release));
+    let released = pad.now;
+    while let Some(next) = pad.state.next_picture() {
+        pad.apart = next;
+        assert_eq!(pad.picture(&[]), None);
+        assert!(pad.now < released + 0.0501);
+    }
+    pad.apart = released + 0.1 - pad.now;
+    assert_eq!(pad.picture(&[DOWN]), Some(Press));
+}
+
+#[test]
+fn what_is_over_within_a_picture_is_no_hold() {
+    let mut pad = Pad::armed();
+    assert_eq!(pad.picture(&[DOWN, UP]), None);
+    assert_eq!(pad.picture(&[POINTER, HoldInput::PointerUp]), None);
+    assert_eq!(pad.picture(&[POINTER]), Some(Press));
+    assert_eq!(pad.picture(&[HoldInput::PointerUp, POINTER]), Some(Release), "the next press counts");
+    assert_eq!(pad.picture(&[]), None);
+}
