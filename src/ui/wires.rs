@@ -35,7 +35,7 @@ pub(super) fn check_notes(notes: &[&'static str], facts: &[&str]) {
     let said = |language| notes.iter().map(|id| Text::new(id).words(language)).collect::<Vec<_>>().join(" ");
     let (english, german) = (said(English), said(German));
     for fact in facts {
-        assert!(english.contains(fact), "{fact} is not in: {english}");
+        assert!(english.contains(fact), "{fact}: {english}");
     }
     assert_ne!(english, german);
 }
