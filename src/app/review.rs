@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{Severity, Text, explain};
 use crate::profile::{Operation, Plan, PlanId};
-use crate::worker::Committed;
+use crate::worker::{Committed, is_uncounted};
 
 /// A write on its way.
 pub struct Review<K: Reviewed> {
@@ -229,8 +229,10 @@ pub struct Sheet {
     pub manner: Manner,
     /// What may be allowed beyond the usual.
     pub toggles: Vec<Toggle>,
-    /// The device counts as worn after it: whether it is to be written all the same.
+    /// The device counts as worn after it, or its wear is not known: whether it is to be written all the same.
     pub force_wear: Option<bool>,
+    /// How many write cycles it has had is not known.
+    pub is_uncounted: bool,
 }
 
 /// How far a review is.
@@ -293,6 +295,8 @@ pub trait Reviewed {
     fn cost(prepared: &Self::Prepared) -> Text;
     /// The device counts as worn after it.
     fn is_worn(prepared: &Self::Prepared) -> bool;
+    /// Write cycles that this computer has seen it take; `None` where the logbook does not tell.
+    fn cycles_seen(prepared: &Self::Prepared) -> Option<u64>;
     /// What was written.
     fn written(written: &Self::Written) -> Text;
 
@@ -347,6 +351,7 @@ impl<K: Reviewed> Review<K> {
         };
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
+        let uncounted = |own: &K::Prepared| is_uncounted(K::cycles_seen(own), K::plan(own).write_cycles());
         let lines = |own| K::plan(own).ops.iter().map(|op| K::op(own, op)).collect();
         Sheet {
             what: self.what.clone(),
@@ -357,7 +362,8 @@ impl<K: Reviewed> Review<K> {
             cost: costs.map(K::cost),
             manner: prepared.map_or(Manner::Writes, K::manner),
             toggles: self.toggles(),
-            force_wear: costs.filter(|own| K::is_worn(own)).map(|_| self.force_wear),
+            force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),
+            is_uncounted: costs.is_some_and(uncounted),
         }
     }
 }

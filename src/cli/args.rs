@@ -78,13 +78,25 @@ pub(super) enum Command {
     /// The position.
     Position(Position),
     /// One value: a data field, a register, a setting.
+    ///
+    /// Cam programs of an INTERBUS encoder are selected one after the other to be read, which switches its live outputs. On
+    /// a terminal it asks first whether the machine stands still; without one it says so and goes on.
     #[command(after_long_help = listed_parameters())]
     Read(Read),
     /// Read everything that can be restored, and what identifies the device.
+    ///
+    /// Cam programs of an INTERBUS encoder are selected one after the other to be read, which switches its live outputs. On
+    /// a terminal it asks first whether the machine stands still; without one it says so and goes on.
     Save(Save),
     /// What differs, field by field.
+    ///
+    /// Cam programs of an INTERBUS encoder are selected one after the other to be read, which switches its live outputs. On
+    /// a terminal it asks first whether the machine stands still; without one it says so and goes on.
     Diff(Diff),
     /// Read back and compare; changes nothing.
+    ///
+    /// Cam programs of an INTERBUS encoder are selected one after the other to be read, which switches its live outputs. On
+    /// a terminal it asks first whether the machine stands still; without one it says so and goes on.
     Verify(Verify),
     /// Make the device as the profile says.
     Restore(Restore),

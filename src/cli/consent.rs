@@ -34,7 +34,7 @@ pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
 }
 
 /// Asks for a yes.
-fn ask(question: &str) -> bool {
+pub(super) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 

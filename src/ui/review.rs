@@ -249,8 +249,9 @@ fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
             actions.push(Action::Review(device.id(), ReviewAction::Toggle(permit)));
         }
     }
+    let force_wear = if sheet.is_uncounted { "review.force_uncounted" } else { "review.force_wear" };
     if let Some(mut force) = sheet.force_wear
-        && ui.checkbox(&mut force, skin.say("review.force_wear")).changed()
+        && ui.checkbox(&mut force, skin.say(force_wear)).changed()
     {
         actions.push(Action::Review(device.id(), ReviewAction::ForceWear(force)));
     }

@@ -88,6 +88,12 @@ pub struct Committed<W> {
 /// Why a write was not begun, whatever the device says. Nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotBegun {
+    /// How many write cycles the device has had cannot be read, or these cannot be counted.
+    #[error("the write cycles so far are not known, {cost} more would not be counted")]
+    WearUnknown {
+        /// What the plan costs.
+        cost: u64,
+    },
     /// The device counts as worn.
     #[error("{seen} write cycles seen, {cost} more would exceed {limit}")]
     Worn {
@@ -119,6 +125,10 @@ pub(super) fn commit<W: Write, P, K>(
     check_wear(terms)?;
     let confirmed = write.confirm().map_err(JobError::Device)?;
     let intended = Intended::note(store, terms, &write.before_image()).map_err(NotBegun::NotKept)?;
+    if let (Err(why), false) = (&intended.entry, terms.force_wear || terms.cost == 0) {
+        tracing::warn!("{why}");
+        return Err(NotBegun::WearUnknown { cost: terms.cost }.into());
+    }
     let ended = write.carry_out(&confirmed, &intended);
     let (outcome, spent) = match &ended {
         Ok(written) => (Outcome::Done, W::write_cycles(written)),
@@ -150,10 +160,15 @@ pub(super) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     (cost > 0 && after >= warning).then_some(after)
 }
 
+/// A write costs cycles of a device of which it is not known how many it has had.
+pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
+    seen.is_none() && cost > 0
+}
+
 /// Write cycles that this computer has seen a device take; `None` where the logbook does not tell.
 pub(super) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
-    if !path.exists() {
+    if matches!(path.try_exists(), Ok(false)) {
         return Some(0);
     }
     match Logbook::open(&path).and_then(|logbook| logbook.write_cycles(device)) {
@@ -167,15 +182,16 @@ pub(super) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
 
 fn check_wear(terms: &Terms) -> Result<(), NotBegun> {
     let Terms { cost, limit, force_wear, .. } = *terms;
-    let seen = terms.seen.unwrap_or(0);
-    if !force_wear && seen.saturating_add(cost) > limit {
-        return Err(NotBegun::Worn { seen, cost, limit });
+    match terms.seen {
+        _ if force_wear => Ok(()),
+        None if cost > 0 => Err(NotBegun::WearUnknown { cost }),
+        Some(seen) if seen.saturating_add(cost) > limit => Err(NotBegun::Worn { seen, cost, limit }),
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 impl Intended {
-    /// Keeps the before-image and tells the logbook, which may fail without stopping the write.
+    /// Keeps the before-image and tells the logbook.
     fn note(store: &Store, terms: &Terms, before_image: &str) -> Result<Self, FileError> {
         let DeviceKey { kind, serial_number, .. } = &terms.device;
         let backup = store.backups().keep(kind, serial_number, Timestamp::now(), before_image)?;
@@ -313,12 +329,13 @@ mod tests {
         }
     }
 
+    /// Issue 22.4: a count that is not known is no 0. It opens by force alone, and is told then.
     #[test]
-    fn a_logbook_that_cannot_be_used_stops_no_write() {
+    fn a_logbook_that_cannot_be_used_stops_a_write() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         std::fs::create_dir_all(store.logbook_path()).unwrap();
-        struct Plain;
+        struct Plain(u32);
         impl Write for Plain {
             type Confirmed = ();
             type Written = ();
@@ -331,15 +348,28 @@ mod tests {
                 String::new()
             }
             fn carry_out(&mut self, (): &(), _: &Intended) -> Result<(), Box<Cancelled>> {
+                self.0 += 1;
                 Ok(())
             }
             fn write_cycles((): &()) -> u64 {
                 2
             }
         }
-        let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(0), (), &mut Plain);
-        let Ok(done) = ended else { panic!() };
-        assert!(done.logbook_warning.is_some());
-        assert_eq!(cycles_seen(&store, &terms(0).device), None);
+        let seen = cycles_seen(&store, &terms(0).device);
+        assert_eq!(seen, None);
+        // Not read; or read before and not to be written now.
+        for seen in [seen, Some(0)] {
+            let mut plain = Plain(0);
+            let terms = |force_wear, cost| Terms { seen, force_wear, cost, ..terms(0) };
+            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(false, 2), (), &mut plain);
+            let refused = matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 2 })));
+            assert!(refused && plain.0 == 0, "{seen:?}");
+            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(true, 2), (), &mut plain);
+            let Ok(done) = ended else { panic!("{seen:?}") };
+            assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");
+            // What costs nothing wears nothing.
+            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(false, 0), (), &mut plain);
+            assert!(ended.is_ok() && plain.0 == 2, "{seen:?}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran};
+use super::support::{Bench, Foreign, Ran, asked};
 
 /// Programs of a foreign encoder: two of them, as JSON.
 const PROGRAMS: &str =
@@ -193,4 +193,40 @@ fn the_virtual_encoder_is_read_either_way() {
         assert_eq!(told[0], told[1]);
     }
     port.end("INT");
+}
+
+/// Issue 22.31: reading cam programs switches live outputs. On a terminal it asks first; without one it goes on for what
+/// names it in its help.
+#[test]
+fn cam_programs_are_read_once_the_machine_stands_still() {
+    let bench = Bench::new();
+    let Some(foreign) = bench.gateway(&["--steps=3600"]) else { return };
+    let (url, all) = (format!("{}?cycle=1", foreign.url), bench.file("k3.ron"));
+    let file = bench.write(
+        "one.ron",
+        r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
+            zero_shift: 0), programs: [(program: 2, mask: 0x00, cams: [(cam: 3, start: 0, stop: 0)])])"#,
+    );
+    let commands: [&[&str]; 4] = [
+        &["save", "interbus", "-o", &all, "--link", &url],
+        &["verify", &file, "--link", &url],
+        &["diff", &file, "--link", &url],
+        &["read", "interbus", "cam:2:3", "--link", &url],
+    ];
+    let selects = || done(&foreign).iter().any(|line| line.starts_with("W 2080"));
+    for command in commands {
+        // Without a terminal.
+        let ran = bench.run(command);
+        assert!(ran.status == Some(0) && ran.err.contains("outputs are switched"), "{ran:?}");
+        assert!(selects(), "{command:?}");
+        assert!(bench.run(&[command[0], "--help"]).out.contains("switches its live outputs"), "{command:?}");
+        let ran = asked(&bench, command, "n\n");
+        assert!(ran.status == Some(1) && ran.out.contains("Does the machine stand still?"), "{ran:?}");
+        assert!(!selects(), "{command:?}");
+    }
+    let ran = asked(&bench, commands[3], "y\n");
+    assert!(ran.status == Some(0) && ran.out.contains("0..0"), "{ran:?}");
+    // What selects no program asks nothing.
+    let ran = asked(&bench, &["do", "interbus", "check", "--link", &url], "");
+    assert!(ran.status == Some(0) && !ran.out.contains("stand still?"), "{ran:?}");
 }

@@ -23,13 +23,19 @@ fn without_a_before_image_nothing_is_written() {
         fs::write(&path, "a file").unwrap();
         let memory = desk.memory();
         let error = desk.change(store_byte(0xEE)).unwrap_err();
-        assert!(matches!(error, JobError::NotBegun(NotBegun::NotKept(_))), "{in_the_way}: {error:?}");
+        // Where there is no folder, the write cycles are not known either.
+        let refused = match in_the_way {
+            "data" => matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })),
+            _ => matches!(error, JobError::NotBegun(NotBegun::NotKept(_))),
+        };
+        assert!(refused, "{in_the_way}: {error:?}");
         assert_eq!((desk.memory(), desk.wear()), (memory, 0), "{in_the_way}");
     }
 }
 
+/// Issue 22.4: the write cycles so far are not known then. Only force begins a write, and what it could not note is told.
 #[test]
-fn a_broken_logbook_stops_no_write_and_is_told() {
+fn a_broken_logbook_stops_a_write_that_is_not_forced() {
     for garbage in [true, false] {
         let mut desk = Desk::new("");
         let path = Store::at(desk.folder.path()).logbook_path();
@@ -39,7 +45,11 @@ fn a_broken_logbook_stops_no_write_and_is_told() {
         } else {
             fs::create_dir(&path).unwrap();
         }
-        let done = desk.change(store_byte(0xEE)).unwrap();
+        let prepared = desk.prepare(store_byte(0xEE)).unwrap();
+        let error = desk.commit(&prepared).unwrap_err();
+        assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })), "{error:?}");
+        assert_eq!(desk.wear(), 0);
+        let done = desk.commit_by_force(&prepared).unwrap();
         assert!(done.logbook_warning.is_some());
         assert_eq!(desk.memory()[0].1[3], 0xEE);
         assert_eq!(done.written.verified, 1);

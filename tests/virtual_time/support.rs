@@ -224,12 +224,16 @@ impl Desk {
     }
 
     pub(crate) fn commit(&mut self, prepared: &Prepared) -> Result<Committed, JobError> {
-        let consent = Consent::to(prepared.plan.id());
-        match self.run(HiperfaceJob::Commit(Box::new(Commit {
-            prepared: prepared.clone(),
-            consent,
-            force_wear: false,
-        })))? {
+        self.commit_with(prepared, false)
+    }
+
+    pub(crate) fn commit_by_force(&mut self, prepared: &Prepared) -> Result<Committed, JobError> {
+        self.commit_with(prepared, true)
+    }
+
+    fn commit_with(&mut self, prepared: &Prepared, force_wear: bool) -> Result<Committed, JobError> {
+        let (prepared, consent) = (prepared.clone(), Consent::to(prepared.plan.id()));
+        match self.run(HiperfaceJob::Commit(Box::new(Commit { prepared, consent, force_wear })))? {
             HiperfaceOutput::Committed(committed) => Ok(committed),
             other => panic!("{other:?}"),
         }

@@ -160,6 +160,12 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     wish(&mut desk, Wish::Read);
     desk.settle();
     assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (1, 0));
+    // Issue 22.31: a profile of what it holds selects cam programs.
+    act(&mut desk, Interbus::AskSave);
+    act(&mut desk, Interbus::Save("k3.ron".into()));
+    desk.settle();
+    assert!(desk.studio.take_file_question().is_none());
+    assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (3, 0));
     act(&mut desk, Interbus::Stopped(true));
     wish(&mut desk, Wish::Read);
     desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());

@@ -131,6 +131,7 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
 pub fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
+        NotBegun::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
         NotBegun::Worn { seen, cost, limit } => {
             Text::new("write.worn").with("used", seen).with("cost", cost).with("limit", limit)
         }

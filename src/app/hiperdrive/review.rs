@@ -106,6 +106,10 @@ impl Reviewed for Hiperdrive {
         false
     }
 
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
     fn written(written: &Written) -> Text {
         explain::hiperdrive::written(written)
     }

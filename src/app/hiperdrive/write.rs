@@ -49,10 +49,10 @@ impl WithMemory for Unit {
     }
 
     /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
-    fn commit(&mut self, Agreed { prepared, consent, .. }: Agreed<Hiperdrive>) -> HiperdriveJob {
+    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&prepared.plan);
-        HiperdriveJob::Commit(Box::new(Commit { prepared, consent }))
+        HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
     }
 
     fn carried_out(&mut self, _: &Committed, _: &mut Services) {

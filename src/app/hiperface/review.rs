@@ -113,6 +113,10 @@ impl Reviewed for Hiperface {
         prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
     }
 
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
     fn written(written: &Written) -> Text {
         explain::hiperface::written(written)
     }

@@ -3,10 +3,10 @@
 use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
-use crate::app::Text;
 use crate::app::action::FileQuestion;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::{Severity, Text};
 use crate::profile::Body;
 use crate::profile::interbus::InterbusProfile;
 use crate::protocol::interbus::ProgramNumber;
@@ -71,6 +71,10 @@ impl Encoder {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);
                 }
+            }
+            // Before a name is asked for: reading for a file selects cam programs.
+            Action::AskSave if self.asks_for_standstill() && !self.is_stopped() => {
+                services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
             }
             Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),

@@ -80,7 +80,11 @@ impl Reviewed for Interbus {
 
     fn is_worn(prepared: &Prepared) -> bool {
         // Beyond what the maker names, somebody has to say once more that it is wanted; so where it is refused otherwise.
-        matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_)))
+        matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
+    }
+
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
     }
 
     fn written(written: &Written) -> Text {

@@ -144,7 +144,7 @@ impl Listed {
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list(&key.kind, &key.serial_number);
         let (writes, cycles) = match store.logbook_path() {
-            path if !path.exists() => (Ok(Vec::new()), Some(0)),
+            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0)),
             path => match Logbook::open(&path) {
                 Ok(logbook) => (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok()),
                 Err(error) => (Err(error), None),

@@ -51,7 +51,7 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     }
     agree(output, consent, &shown(&prepared).text)?;
     let granted = Consent::to(prepared.plan.id());
-    let commit = Commit { prepared, consent: granted };
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
     let committed = match runner.run(HiperdriveJob::Commit(Box::new(commit)))? {
         HiperdriveOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),

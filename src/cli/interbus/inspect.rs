@@ -124,7 +124,7 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let mut runner = Runner::open(common)?;
     let disturbs =
         if item.parameter().is_some() || !item.is_writable() { Disturbs::Reading } else { Disturbs::Programs };
-    disturbs.say(output);
+    disturbs.begin(common, output, None)?;
     let value = match runner.run(InterbusJob::Read(item))? {
         InterbusOutput::Item(value) => value,
         other => return Err(unexpected(&other)),

@@ -12,10 +12,13 @@ mod simulate;
 mod value;
 mod write;
 
+use super::args::{Common, Consenting};
+use super::consent::{ask, can_ask};
 use super::kind::{Kind, lacking};
 use super::output::Output;
 use super::{Failure, Result};
 use crate::app::Text;
+use crate::link::Scheme;
 use crate::profile::interbus::{Item, ItemError};
 use crate::protocol::interbus::KIND;
 
@@ -58,6 +61,21 @@ enum Disturbs {
 }
 
 impl Disturbs {
+    /// Says it before it happens. What switches live outputs is asked for on a terminal, where nothing has consented to a
+    /// write and the encoder is no virtual one; without a terminal it goes on.
+    fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
+        self.say(output);
+        let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
+        let consented = consent.is_some_and(|consent| consent.yes);
+        if !matches!(self, Disturbs::Programs) || is_virtual || consented || !can_ask() {
+            return Ok(());
+        }
+        if ask("Does the machine stand still? [y/N] ") {
+            return Ok(());
+        }
+        Err(Failure::Failed(vec!["Not confirmed; no cam program was selected.".to_owned()]))
+    }
+
     /// Says it before it happens.
     fn say(self, output: &Output) {
         let id = match self {

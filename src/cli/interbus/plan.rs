@@ -48,10 +48,13 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         return Ok(Spent::default());
     }
     let wear = prepared.wear();
-    if let (Some(Wear::Worn(_)), false) = (wear, consent.force_wear) {
-        let (seen, cost) = (prepared.cycles_seen.unwrap_or(0), prepared.plan.write_cycles());
-        let worn = JobError::NotBegun(NotBegun::Worn { seen, cost, limit: WEAR_LIMIT });
-        return Err(Ended::<Interbus>::Job(Box::new(worn)).into_failure());
+    if let (Some(Wear::Worn(_) | Wear::Unknown), false) = (wear, consent.force_wear) {
+        let cost = prepared.plan.write_cycles();
+        let refused = match prepared.cycles_seen {
+            Some(seen) => NotBegun::Worn { seen, cost, limit: WEAR_LIMIT },
+            None => NotBegun::WearUnknown { cost },
+        };
+        return Err(Ended::<Interbus>::Job(Box::new(JobError::NotBegun(refused))).into_failure());
     }
     let said = explain::interbus::wear(&prepared).map(|text| text.terminal());
     if let Some(said) = &said {
@@ -59,7 +62,7 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     }
     let stop = Text::new("ib_disturbs.writing").terminal();
     agree(output, consent, &format!("{}{stop}", shown(&prepared).text))?;
-    if let (Some(Wear::Ask(_) | Wear::Worn(_)), Some(said)) = (wear, &said) {
+    if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(said)) = (wear, &said) {
         // More than the maker names: once more.
         agree(output, consent, said)?;
     }

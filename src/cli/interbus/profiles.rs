@@ -37,7 +37,7 @@ pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) 
 
 fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
     let mut runner = Runner::open(common)?;
-    Disturbs::Programs.say(output);
+    Disturbs::Programs.begin(common, output, None)?;
     match runner.run(InterbusJob::Save { programs: true })? {
         InterbusOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
@@ -47,7 +47,8 @@ fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
 fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
     let needed = programs_needed(profile);
     let mut runner = Runner::open(common)?;
-    if needed.is_empty() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
+    let disturbs = if needed.is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, None)?;
     let survey = survey(&mut runner)?;
     let mut image = Image::of(survey.parameters);
     if !needed.is_empty() {
@@ -82,7 +83,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     let options =
         RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
     let mut runner = Runner::open(common)?;
-    if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
+    let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, Some(&restore.consent))?;
     let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));

@@ -16,7 +16,8 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let value = value(item, &write.value)?;
     require_consent(&write.consent)?;
     let mut runner = Runner::open(common)?;
-    if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs }.say(output);
+    let disturbs = if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, Some(&write.consent))?;
     let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
     let operations = operations(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &write.consent)?;

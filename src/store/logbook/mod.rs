@@ -3,7 +3,7 @@
 //! trace. It is SQLite, so that two windows can share it and any tool can read it.
 //!
 //! It never learns an access code: `what` and a failure's text are words for people, made from what was planned, not from
-//! frames. It never decides whether a device may be written: it may fail, and the caller warns and goes on.
+//! frames. It never decides whether a device may be written: where it fails, the caller refuses what is not forced.
 
 mod error;
 mod schema;

@@ -18,8 +18,8 @@ pub(super) fn commit(
     let plan = &prepared.plan;
     let store = desk.store.clone();
     let key = device_key(&prepared.identity, desk.is_virtual);
-    // Nobody knows a limit (`U`): saves are counted and told, and none is refused.
-    let terms = Terms::of(key, plan, Op::note, (prepared.cycles_seen, u64::MAX), true);
+    // No limit is known (`U`): saves are counted and told, and refused only where they cannot be.
+    let terms = Terms::of(key, plan, Op::note, (prepared.cycles_seen, u64::MAX), commit.force_wear);
     let told = &mut |progress| tell(Tell::Progress(progress));
     let mut write = DeviceWrite { master: device.master(desk), commit, told };
     carry_through(&store, &terms, prepared.kind, &mut write)
@@ -38,7 +38,7 @@ impl<'w> Write for DeviceWrite<'w, '_> {
     type Interrupted = Interrupted;
 
     fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
-        let Commit { prepared, consent } = self.commit;
+        let Commit { prepared, consent, .. } = self.commit;
         confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
     }
 

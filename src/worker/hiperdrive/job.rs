@@ -145,6 +145,8 @@ pub struct Commit {
     pub prepared: Prepared,
     /// The consent to it.
     pub consent: Consent,
+    /// Write although it is not known how many saves there were.
+    pub force_wear: bool,
 }
 
 /// What a commit did.

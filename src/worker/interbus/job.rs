@@ -138,13 +138,16 @@ pub enum Wear {
     Ask(u64),
     /// So many stores after this: refused, unless it is forced.
     Worn(u64),
+    /// How many there were is not known: refused, unless it is forced.
+    Unknown,
 }
 
 impl Prepared {
     /// How much of the EEPROM's life the plan leaves; `None` where nobody needs to know.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
-        let after = self.cycles_seen.unwrap_or(0).saturating_add(cost);
+        let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
+        let after = seen.saturating_add(cost);
         match after {
             _ if cost == 0 => None,
             WEAR_LIMIT.. => Some(Wear::Worn(after)),
@@ -277,7 +280,9 @@ mod tests {
         };
         let cases = [
             (Some(0), 1, None),
-            (None, 1, None),
+            // Issue 22.4.
+            (None, 1, Some(Wear::Unknown)),
+            (None, 0, None),
             (Some(148), 1, None),
             (Some(149), 1, Some(Wear::Known(150))),
             (Some(199), 1, Some(Wear::Known(200))),

@@ -172,6 +172,23 @@ fn a_consent_covers_one_plan() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
+/// Issue 22.4: write cycles that are not known are not 0.
+#[test]
+fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
+    let mut bench = Bench::new(Way::ConfigPin, "");
+    std::fs::create_dir_all(bench.store().logbook_path()).unwrap();
+    let prepared = bench.prepare(filter()).unwrap();
+    let (seen, before) = (prepared.cycles_seen, bench.flash_cycles());
+    let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
+    assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { .. })), "{error}");
+    assert_eq!((seen, bench.flash_cycles()), (None, before));
+    let consent = Consent::to(prepared.plan.id());
+    let attendance =
+        Attendance::Nobody(encoder_studio::device::biss::procedure::Unattended { patience: Duration::ZERO });
+    bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
+    assert_eq!(bench.flash_cycles() - before, 1);
+}
+
 /// Manual 6.1: 1000 write cycles. The logbook counts; what a plan would exceed is refused, and done where that is wished.
 #[test]
 fn a_worn_encoder_is_written_only_where_that_is_wished() {

@@ -87,7 +87,7 @@ impl Stand {
 
     pub(crate) fn commit(&mut self, prepared: Prepared) -> Result<Committed, JobError> {
         let consent = Consent::to(prepared.plan.id());
-        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent })))? {
+        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })))? {
             HiperdriveOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),
         }

@@ -174,7 +174,11 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         (None, ChangeKind::Filter) => Text::new("biss_write.filter"),
         (None, ChangeKind::Preset) => Text::new("biss_write.preset"),
     };
-    texts.push(what_next.with("backup", backup.display()));
+    let what_next = what_next.with("backup", backup.display());
+    texts.push(match &interrupted.left {
+        Left::Operation => what_next,
+        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+    });
     texts
 }
 
@@ -183,6 +187,7 @@ pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,
         "biss_left.at"
+        | "write.after_lead_back"
         | "write.backup"
         | "write.backup_calibration"
         | "write.untouched"
@@ -332,6 +337,22 @@ mod tests {
         let mut mode = Possible::known(modes[0]);
         modes[1..].iter().for_each(|own| mode.or(*own));
         Left::Unknown(Standing { mode, password: Possible::known(password), activity })
+    }
+
+    /// Issue 22.5: whatever completes it comes behind leading the encoder back.
+    #[test]
+    fn what_completes_a_write_comes_after_leading_back() {
+        for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
+            let last = |left| {
+                let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
+                interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+            };
+            let found = last(Left::Operation);
+            let unknown = last(standing(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
+            assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
+            assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+            assert_eq!(weight(&unknown), weight(&found));
+        }
     }
 
     #[test]

@@ -165,6 +165,31 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
 
+/// Issue 22.5: whatever completes it comes behind leading the encoder back.
+#[test]
+fn what_completes_a_write_comes_after_leading_back() {
+    let standing = Standing { out: 0, parameterising: true, found: None, is: None };
+    for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
+        let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
+        let last = |left| {
+            let interrupted = Interrupted { done: done.clone(), unclear: vec![], cause: Error::NeverSilent, left };
+            write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+        };
+        let (found, unknown) = (last(Left::AsFound), last(Left::Unknown(standing)));
+        assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
+        assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+        assert_eq!(write::weight(&unknown), write::weight(&found));
+    }
+}
+
+/// Issue 22.4: a count that is not known is told with what opens it.
+#[test]
+fn a_write_that_cannot_be_counted_says_what_opens_it() {
+    let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));
+    says(&refused[0], &["2"]);
+    assert!(refused[0].terminal().contains("--force-wear"), "{refused:?}");
+}
+
 #[test]
 fn operations_are_told_one_by_one() {
     use crate::profile::interbus::{CamChange, ParameterChange, ProgramChange};

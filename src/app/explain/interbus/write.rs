@@ -102,6 +102,7 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
         Wear::Known(after) => ("ib_stores.known", after),
         Wear::Ask(after) => ("ib_stores.ask", after),
         Wear::Worn(after) => ("ib_stores.worn", after),
+        Wear::Unknown => return Some(Text::new("ib_stores.unknown")),
     };
     Some(Text::new(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
@@ -112,7 +113,7 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
         NotBegun::Worn { seen, cost, .. } => {
             Text::new("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
-        NotBegun::NotKept(_) => explain::not_begun(why),
+        NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
     }
 }
 
@@ -150,7 +151,11 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         ChangeKind::Preset => Text::new("ib_left.preset"),
         ChangeKind::Default => Text::new("ib_left.default"),
     };
-    texts.push(what_next.with("backup", backup.display()));
+    let what_next = what_next.with("backup", backup.display());
+    texts.push(match left {
+        Left::AsFound => what_next,
+        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+    });
     texts
 }
 
@@ -158,7 +163,12 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "ib_left.as_found" => Severity::Good,
-        "write.backup" | "write.untouched" | "ib_left.edits" | "ib_left.preset" | "ib_left.default" => Severity::Note,
+        "write.after_lead_back"
+        | "write.backup"
+        | "write.untouched"
+        | "ib_left.edits"
+        | "ib_left.preset"
+        | "ib_left.default" => Severity::Note,
         "write.cancelled" | "ib_left.both" => Severity::Warning,
         _ => Severity::Error,
     }
