@@ -266,7 +266,7 @@ pub(super) struct Consenting {
     /// Write without asking.
     #[arg(long)]
     pub(super) yes: bool,
-    /// Write although the device counts as worn.
+    /// Write although the device counts as worn, or the logbook cannot tell its write cycles.
     #[arg(long)]
     pub(super) force_wear: bool,
 }

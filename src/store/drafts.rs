@@ -47,6 +47,11 @@ impl Drafts {
         }
     }
 
+    /// There is a draft for some device of this kind.
+    pub fn has_any(&self, device: &str) -> bool {
+        fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
+    }
+
     /// Claims a draft; `None` where it is claimed already, in this program or another.
     ///
     /// # Errors

@@ -92,6 +92,11 @@ impl Store {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
+    /// Modes in which devices were found that a job has sent into others: a text each, until they are led back.
+    pub fn excursions(&self) -> Drafts {
+        Drafts::in_folder(self.data.join("excursions"))
+    }
+
     /// The file of the program's settings; it need not exist.
     pub fn settings_path(&self) -> PathBuf {
         self.config.join("settings.ron")

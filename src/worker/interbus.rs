@@ -2,6 +2,7 @@
 
 mod commit;
 mod job;
+mod journal;
 mod open;
 mod prepare;
 
@@ -14,6 +15,8 @@ pub use job::{
     WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key,
 };
 pub use open::{check, open};
+
+use journal::Notes;
 
 use super::commit::cycles_seen;
 use super::{Desk, Device, Progress, Session, Tell, Watched};
@@ -46,7 +49,8 @@ type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
 impl Interbus {
     /// The host's side of the process data; each step of the handshake is told.
     fn master<'a>(&'a mut self, desk: &'a mut Desk, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told)
+        let notes = Notes::of(desk.store.clone(), desk.is_virtual);
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told).noting(notes)
     }
 }
 

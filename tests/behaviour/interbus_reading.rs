@@ -217,7 +217,8 @@ fn cam_programs_are_read_once_the_machine_stands_still() {
     for command in commands {
         // Without a terminal.
         let ran = bench.run(command);
-        assert!(ran.status == Some(0) && ran.err.contains("outputs are switched"), "{ran:?}");
+        // Other programs are only in the encoder: `diff` tells them.
+        assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("outputs are switched"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert!(bench.run(&[command[0], "--help"]).out.contains("switches its live outputs"), "{command:?}");
         let ran = asked(&bench, command, "n\n");

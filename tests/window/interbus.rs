@@ -89,12 +89,13 @@ fn write(desk: &mut Desk) -> String {
 
 #[test]
 fn a_virtual_encoder_is_read_by_itself() {
-    let desk = read(CAMS);
+    let mut desk = read(CAMS);
+    // Issue 22.3: each of the eight programs may have been stored when it was left.
+    desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(8));
     let own = encoder(&desk);
     let parameters = own.staged.device().unwrap().parameters;
     assert_eq!((parameters.steps, parameters.revolutions), (3600, 1));
     assert!(own.position().is_some() && !own.is_dirty());
-    assert_eq!(own.stores(), Some(0), "reading stores nothing");
     assert!(desk.told(Severity::Warning).is_empty());
 }
 
@@ -109,11 +110,13 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     wish(&mut desk, Wish::Redo);
     // One parameterisation and one program.
     let cost = write(&mut desk);
-    assert!(cost.starts_with("EEPROM stores: 2. This computer has seen 0 of"), "{cost}");
+    assert!(cost.starts_with("EEPROM stores: 2. This computer has seen 9 of"), "{cost}");
     let own = encoder(&desk);
-    assert!(!own.is_dirty() && own.stores() == Some(2), "{:?}", own.stores());
+    assert!(!own.is_dirty());
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
+    // Read for the window, the plan, the write and after it: 8 + 1 + 1 + 1; written: 2.
+    desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(13));
     // Refused where it stands, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());

@@ -7,7 +7,7 @@ use super::trace::Meaning;
 use crate::app::action::{Attempt, Done, Opened};
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
-use crate::app::session::{Cut, Kind, OnLine, WithMemory};
+use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
 use crate::app::{Severity, Text, explain};
 use crate::device::interbus::Reading;
 use crate::link::TraceEntry;
@@ -128,6 +128,8 @@ impl OnLine for Encoder {
             }
             InterbusOutput::Programs(programs, shift) => {
                 self.staged.refresh_programs(&programs, Some(shift));
+                // Reading them may have cost stores.
+                self.list_backups(services);
                 self.see_a_word(services);
             }
             InterbusOutput::Position(reading) => self.record.add(vec![reading], 0),

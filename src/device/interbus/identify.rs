@@ -266,6 +266,8 @@ pub(super) fn programs(
     wanted: &[ProgramNumber],
     told: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
+    let selects_first = wanted.is_empty() && !matches!(master.mode(), Some(StartupMode::Cams(_)));
+    master.will_read(wanted.len() + usize::from(selects_first))?;
     let total = wanted.len() as u64;
     let mut read = Vec::new();
     for (done, number) in (0..).zip(wanted) {
@@ -273,7 +275,7 @@ pub(super) fn programs(
         master.go(StartupMode::Cams(*number))?;
         read.push((*number, read_program(master)?));
     }
-    if wanted.is_empty() && !matches!(master.mode(), Some(StartupMode::Cams(_))) {
+    if selects_first {
         // Every program gives it.
         if let Some(first) = ProgramNumber::new(1) {
             master.go(StartupMode::Cams(first))?;

@@ -4,10 +4,12 @@
 mod acknowledge;
 mod held;
 mod modes;
+mod notes;
 
 use std::time::Duration;
 
 use held::{Held, LEAST_PATIENCE, Look};
+use notes::Notes;
 
 use super::data::ProcessData;
 use super::error::{Asked, Awaited};
@@ -50,6 +52,8 @@ pub struct Master<'a> {
     /// When it was seen last to do what it did before this job, with nothing asked of it.
     rested: Option<Moment>,
     told: Option<(u32, Says)>,
+    /// What outlasts this job.
+    notes: Notes<'a>,
 }
 
 impl<'a> Master<'a> {
@@ -84,6 +88,7 @@ impl<'a> Master<'a> {
             input: 0,
             rested: None,
             told: None,
+            notes: Notes::default(),
         }
     }
 
@@ -176,7 +181,11 @@ impl<'a> Master<'a> {
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
     pub(super) fn read_out(&mut self, read_out: ReadOut) -> Result<Value, Error> {
-        self.ask(Command::ReadOut(read_out))
+        let value = self.ask(Command::ReadOut(read_out))?;
+        if read_out == ReadOut::SERIAL_NUMBER {
+            self.said_serial_number(value.get());
+        }
+        Ok(value)
     }
 
     /// `80000000`, until the encoder runs.

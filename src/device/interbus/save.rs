@@ -74,6 +74,7 @@ pub fn read_state(
 pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
     master.guarded(|master| {
         if let Some(program) = item.program() {
+            master.will_read(1)?;
             master.go(StartupMode::Cams(program))?;
         }
         if let Some(parameter) = item.parameter() {

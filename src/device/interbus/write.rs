@@ -81,6 +81,7 @@ pub fn confirm<'p>(
                 return changed(row.name.to_owned());
             }
         }
+        master.will_read(plan.base.programs.len())?;
         for (number, program) in &plan.base.programs {
             master.go(StartupMode::Cams(*number))?;
             if read_program(master)? != *program {

@@ -56,7 +56,7 @@ pub enum InterbusJob {
     /// Carries a plan out.
     Commit(Box<Commit>),
     /// Ends a parameterisation, an error or a read-out that somebody has left. What was set and not stored is stored by
-    /// that; whose store it is nobody knows, so that the logbook does not count it.
+    /// that, and counted.
     LeadBack,
 }
 
@@ -242,12 +242,13 @@ impl From<PlanError> for JobError {
 
 /// How backups and the logbook know an encoder: there is one maker, and one type.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    DeviceKey {
-        kind: KIND.to_owned(),
-        device_type: "K3".to_owned(),
-        serial_number: identity.serial_number.clone(),
-        is_virtual,
-    }
+    key_of(&identity.serial_number, is_virtual)
+}
+
+/// The same by the serial number alone.
+pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
+    let serial_number = serial_number.to_owned();
+    DeviceKey { kind: KIND.to_owned(), device_type: "K3".to_owned(), serial_number, is_virtual }
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub(crate) struct Stand {
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
     /// Backups and the logbook lie in it.
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
     pub(crate) session: Session<Hiperdrive>,
 }
 
@@ -60,7 +60,7 @@ impl Stand {
         let station = Station::new(MARGIN);
         let way = Way { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
         let session = Session::to_target(way, clock.clone(), store);
-        Stand { target, clock, tap, _folder: folder, session }
+        Stand { target, clock, tap, folder, session }
     }
 
     pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {
@@ -86,8 +86,12 @@ impl Stand {
     }
 
     pub(crate) fn commit(&mut self, prepared: Prepared) -> Result<Committed, JobError> {
+        self.commit_with(prepared, false)
+    }
+
+    pub(crate) fn commit_with(&mut self, prepared: Prepared, force_wear: bool) -> Result<Committed, JobError> {
         let consent = Consent::to(prepared.plan.id());
-        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear: false })))? {
+        match self.run(HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear })))? {
             HiperdriveOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),
         }
@@ -97,6 +101,11 @@ impl Stand {
     pub(crate) fn change(&mut self, change: Change) -> Result<Committed, JobError> {
         let prepared = self.prepare(change)?;
         self.commit(prepared)
+    }
+
+    /// What is in the way of the logbook.
+    pub(crate) fn block_logbook(&self) {
+        std::fs::create_dir_all(Store::at(self.folder.path()).logbook_path()).unwrap();
     }
 
     /// A parameter as the device has it.

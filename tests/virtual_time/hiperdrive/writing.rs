@@ -7,6 +7,7 @@ use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
 use encoder_studio::protocol::hiperdrive::{ErrorCode, Range, Value};
 use encoder_studio::store::read_text;
+use encoder_studio::worker::NotBegun;
 use encoder_studio::worker::hiperdrive::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 
 use super::support::{Stand, drive, image, number};
@@ -38,6 +39,19 @@ fn what_differs_is_written_read_back_and_saved_once() {
     assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");
     let prepared = stand.prepare(Change::Write(image(&[(24, 8)]))).unwrap();
     assert_eq!((prepared.cycles_seen, prepared.wear()), (Some(1), None), "saves are counted by the device's number");
+}
+
+/// Issue 22.4: no limit of saves is known, and yet they are counted: where they cannot be, only force writes.
+#[test]
+fn a_device_whose_saves_cannot_be_counted_is_written_only_by_force() {
+    let mut stand = Stand::new("serial=42");
+    stand.block_logbook();
+    let prepared = stand.prepare(Change::Write(image(&[(24, 7)]))).unwrap();
+    let error = stand.commit(prepared.clone()).unwrap_err();
+    assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })), "{error}");
+    assert!(stand.sets().is_empty());
+    let done = stand.commit_with(prepared, true).unwrap();
+    assert!(done.logbook_warning.is_some() && stand.value(24) == 7);
 }
 
 #[test]

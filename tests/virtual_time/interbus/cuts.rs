@@ -158,3 +158,59 @@ fn a_bad_gateway_is_got_along_with() {
     let mut stand = Stand::new(&format!("{QUERY}&exception=0.05&seed=3"));
     assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
 }
+
+/// Issue 22.6: reading is cut off while a cam program is selected, and nothing can be sent any more. The next run leads the
+/// encoder back to what it did before, not to the program in which it was left.
+#[test]
+fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
+    let save = || InterbusJob::Save { programs: true };
+    for (query, found) in [
+        ("steps=3600&revolutions=1&serial=77&cams=demo", StartupMode::K3),
+        ("steps=3600&revolutions=1&serial=77&cams=demo&program=7&selection=output", StartupMode::Cams(program(7))),
+    ] {
+        let mut whole = Stand::new(query);
+        whole.run(save()).unwrap();
+        let count = whole.tap().sent.len();
+        let mut away = 0;
+        for at in (0..count).step_by(41) {
+            let mut stand = Stand::new(query);
+            LOST(&mut stand.tap(), at);
+            stand.run(save()).unwrap_err();
+            away += usize::from(stand.left().1 != found);
+            stand.run_again();
+            match stand.run(InterbusJob::Identify) {
+                // Left in the echo of a selection: somebody has to say that it is nobody else's.
+                Err(JobError::Device(Error::NotRunning { .. })) => {
+                    stand.run(InterbusJob::LeadBack).unwrap();
+                }
+                ended => assert!(ended.is_ok(), "{at}: {ended:?}"),
+            }
+            assert_eq!(stand.left(), (0, found), "{at}");
+            // Only once: a program that is selected from then on is somebody's choice.
+            let chosen = StartupMode::Cams(program(4));
+            stand.run(InterbusJob::Select(chosen)).unwrap();
+            stand.run_again();
+            stand.run(InterbusJob::Identify).unwrap();
+            assert_eq!(stand.left(), (0, chosen), "{at}");
+        }
+        assert!(away > 5, "{away}");
+    }
+}
+
+/// Issue 22.6: a mode into which no run has sent it is another master's choice.
+#[test]
+fn a_mode_that_somebody_has_chosen_since_stays() {
+    let query = "steps=3600&revolutions=1&serial=77&cams=demo";
+    let mut whole = Stand::new(query);
+    whole.run(InterbusJob::Save { programs: false }).unwrap();
+    let cut = whole.tap().sent.len() + 60;
+    let mut stand = Stand::new(query);
+    LOST(&mut stand.tap(), cut);
+    stand.run(InterbusJob::Save { programs: true }).unwrap_err();
+    assert!(matches!(stand.left().1, StartupMode::Cams(_)));
+    let now = encoder_studio::link::Clock::now(&*stand.clock);
+    stand.gateway.with_encoder(|encoder| [0x2080_0008, 0x8000_0000, 0].map(|word| encoder.write(now, word)));
+    stand.run_again();
+    stand.run(InterbusJob::Identify).unwrap();
+    assert_eq!(stand.left(), (0, StartupMode::Cams(program(8))));
+}

@@ -8,7 +8,7 @@ use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
 use encoder_studio::profile::Consent;
 use encoder_studio::protocol::interbus::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
 use encoder_studio::sim::interbus::{Config, Gateway};
-use encoder_studio::store::Store;
+use encoder_studio::store::{DeviceKey, Logbook, Store};
 use encoder_studio::worker::interbus::{
     Change, Commit, Committed, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, Remark,
 };
@@ -54,6 +54,26 @@ impl Stand {
         let watched = trace.clone();
         session.watch(move |entry| watched.lock().unwrap().push(entry.clone()));
         Stand { gateway, clock, tap, trace, folder, session }
+    }
+
+    /// Another run of the program on the same gateway, with what the one before kept on disk.
+    pub(crate) fn run_again(&mut self) {
+        self.tap = Arc::default();
+        let link = TestLink::new(Arc::new(Mutex::new(self.gateway.connection())), self.clock.clone(), self.tap.clone());
+        let (store, motor) = (Store::at(self.folder.path()), Some(self.gateway.shaft()));
+        self.session = Session::to_gateway(Box::new(link), self.clock.clone(), station(""), store, motor);
+    }
+
+    /// Stores that the logbook has counted of encoder 77.
+    pub(crate) fn counted(&self) -> u64 {
+        let logbook = Logbook::open(&Store::at(self.folder.path()).logbook_path()).unwrap();
+        let device = DeviceKey {
+            kind: "interbus".to_owned(),
+            device_type: "K3".to_owned(),
+            serial_number: "77".to_owned(),
+            is_virtual: true,
+        };
+        logbook.write_cycles(&device).unwrap()
     }
 
     pub(crate) fn tap(&self) -> MutexGuard<'_, Tap> {

@@ -274,6 +274,37 @@ fn the_logbook_counts_stores_by_serial_number() {
     assert!(history.iter().all(|entry| entry.planned_cycles == 1 && entry.backup.as_deref().is_some_and(Path::exists)));
 }
 
+/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), changed or not. Each that was selected to be
+/// read counts once; a changed one's store is the write's.
+#[test]
+fn programs_that_are_read_count_as_stores() {
+    let mut stand = Stand::new(SCALED);
+    stand.run(InterbusJob::Survey).unwrap();
+    stand.run(InterbusJob::Check).unwrap();
+    assert_eq!(stand.counted(), 0);
+    stand.programs(&[1, 3, 8]);
+    assert_eq!(stand.counted(), 3);
+    stand.run(InterbusJob::Read("cam:2:0".parse().unwrap())).unwrap();
+    assert_eq!(stand.counted(), 4);
+    // Read for the plan, and once more before it is written, which stores.
+    let before = stand.stores();
+    let prepared = stand.prepare(Change::Item(Item::CamMask(program(6)), ItemValue::Mask(0x5A)));
+    assert_eq!(prepared.cycles_seen, Some(5));
+    let done = stand.commit(prepared).unwrap();
+    assert_eq!((done.written.write_cycles, stand.stores() - before, stand.counted()), (1, 1, 7));
+    // The program in which it was found is left as well.
+    let mut stand = Stand::new(&format!("{SCALED}&program=4"));
+    stand.programs(&[6]);
+    assert_eq!(stand.counted(), 2);
+    stand.programs(&[4]);
+    assert_eq!(stand.counted(), 2);
+    // What another master has left half set is stored by leading back.
+    let now = stand.clock.now();
+    stand.gateway.with_encoder(|encoder| encoder.write(now, 0x2040_0011));
+    stand.run(InterbusJob::LeadBack).unwrap();
+    assert_eq!(stand.counted(), 3);
+}
+
 /// Less one: the encoder's 3599 are 3600 steps.
 #[test]
 fn steps_less_one_are_read_and_written_as_they_are() {

@@ -53,6 +53,7 @@ impl Master<'_> {
         self.ensure_legal(command)?;
         self.leave_value()?;
         self.parameterising = true;
+        self.sets_program();
         self.acknowledged(command, tried, false)
     }
 

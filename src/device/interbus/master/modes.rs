@@ -29,6 +29,8 @@ impl Master<'_> {
             Err(error @ Error::Link(_)) => Err(error.clone()),
             _ => self.shielded(Self::lead_back),
         };
+        let is_back = led.is_ok() || self.is_as_found();
+        self.conclude_notes(is_back);
         let Err(why) = led else {
             self.rested = self.is_as_found().then(|| self.data.now());
             return ended;
@@ -41,7 +43,7 @@ impl Master<'_> {
     }
 
     /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then. What was
-    /// set and not stored is stored by it: one store, of which nobody knows whether it was due. An error that stays is left
+    /// set and not stored is stored by it: one store, which is counted. An error that stays is left
     /// to whoever looks at the IN word: the encoder can be asked and set all the same.
     ///
     /// # Errors
@@ -49,6 +51,7 @@ impl Master<'_> {
     pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
         let ended = self.shielded(|master| {
             master.let_go_of_run()?;
+            let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
             match master.run() {
                 Err(Error::Refused { error, .. }) => {
                     (master.found_error, master.parameterising) = (Some(Reply::Error(error).emit()), false);
@@ -58,9 +61,14 @@ impl Master<'_> {
             master.normal()?;
             let mode = master.ask_mode()?;
             master.found = Some(mode);
+            if was_set {
+                master.note_store()?;
+            }
+            master.resume(mode)?;
             master.lead_back()?;
-            Ok(mode)
+            Ok(master.is.unwrap_or(mode))
         });
+        self.conclude_notes(ended.is_ok());
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
@@ -124,6 +132,7 @@ impl Master<'_> {
         }
         let mode = self.ask_mode()?;
         self.found = Some(mode);
+        self.resume(mode)?;
         let keeps = match mode {
             StartupMode::Cams(_) => Command::Run,
             StartupMode::Velocity => Command::Velocity(true),
@@ -161,6 +170,7 @@ impl Master<'_> {
         let keeps = if of_cams { Command::Run } else { command };
         let known = self.known.hold.is_some_and(|(mode, _)| mode == wanted);
         let mut is = wanted;
+        self.note_switch(wanted)?;
         for held in [false, true].into_iter().skip(usize::from(known)) {
             (self.unsure, self.switched) = (true, true);
             self.tell_to(command)?;
@@ -275,7 +285,7 @@ impl Master<'_> {
 }
 
 /// Both give the position, or they are the same.
-fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
+pub(super) fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)
 }
