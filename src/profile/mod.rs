@@ -10,7 +10,9 @@ pub mod interbus;
 mod mounting;
 mod plan;
 mod restore;
+mod rewrite;
 mod ron_text;
+mod source;
 pub mod ssi;
 mod unique_names;
 
@@ -19,4 +21,6 @@ pub use document::{Body, Document, ProfileError, SCHEMA};
 pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};
 pub use restore::{Restore, RestoreOptions};
+pub use rewrite::{Changed, divergence};
 pub use ron_text::Unknown;
+pub use source::{Carried, Change, Step};

@@ -1,0 +1,71 @@
+//! A profile written over a text that a person keeps, and profiles of two people brought together.
+
+use super::source::{Carried, Change, applied, carry, changes, lost};
+use super::{Document, ProfileError};
+
+impl Document {
+    /// Its text where `text` stood: what says the same stays as it is written, with comments, order and line ends.
+    pub fn emit_over(&self, text: &str) -> Carried {
+        let own = self.emit();
+        let before = Document::parse(text).map(|before| before.emit());
+        let carried = before.as_ref().ok().and_then(|before| carry(text, before, &own));
+        let says_the_same = |text: &str| Document::parse(text).is_ok_and(|read| read.emit() == own);
+        match carried {
+            Some(carried) if says_the_same(&carried.text) => carried,
+            _ => {
+                let lost = lost(text, &own, before.as_deref().unwrap_or_default());
+                let text = if text.contains("\r\n") { own.replace('\n', "\r\n") } else { own };
+                Carried { text, lost }
+            }
+        }
+    }
+
+    /// What makes `other` of it, entry by entry.
+    pub fn changes_to(&self, other: &Document) -> Vec<Change> {
+        changes(&self.emit(), &other.emit()).unwrap_or_default()
+    }
+
+    /// It with these changes.
+    ///
+    /// # Errors
+    /// What comes of them is no profile; `None`: one of them has no place in it.
+    pub fn changed(&self, changes: &[Change]) -> Result<Document, Option<ProfileError>> {
+        Document::parse(&applied(&self.emit(), changes).ok_or(None)?).map_err(Some)
+    }
+}
+
+/// Who changed an entry since both had the same profile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Changed {
+    /// The other one alone.
+    There,
+    /// This one alone.
+    Here,
+    /// Both.
+    Both,
+}
+
+/// What differs between two profiles that were one: what makes `mine` of `theirs`, and who changed it.
+pub fn divergence(base: &Document, theirs: &Document, mine: &Document) -> Vec<(Change, Changed)> {
+    let (there, here) = (base.changes_to(theirs), base.changes_to(mine));
+    let touches = |own: &[Change], change: &Change| {
+        let shares = |other: &Change| other.path.iter().zip(&change.path).all(|(one, other)| one == other);
+        own.iter().any(shares)
+    };
+    let changed = |change: &Change| match (touches(&there, change), touches(&here, change)) {
+        (true, false) => Changed::There,
+        (false, true) => Changed::Here,
+        _ => Changed::Both,
+    };
+    theirs
+        .changes_to(mine)
+        .into_iter()
+        .map(|change| {
+            let who = changed(&change);
+            (change, who)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

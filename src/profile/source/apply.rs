@@ -1,0 +1,186 @@
+//! A change put into a text, with everything else in it as it stands.
+
+use std::ops::Range;
+
+use super::changes::{Change, Step, means_the_same, steps};
+use super::tree::{Kind, Node, Part, comment_behind, read};
+
+/// All changes put into a text, one after the other; `None` where one of them has no place there.
+pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
+    changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
+}
+
+/// A change put into a text; `None` where it has no place there.
+pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
+    let root = read(text)?;
+    let (last, way) = match change.path.split_last() {
+        Some(split) => split,
+        None => {
+            let to = change.to.as_deref()?;
+            return replaced(text, &root.span, to);
+        }
+    };
+    let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
+    match (part_at(text, within, last), &change.to) {
+        (Some(part), Some(to)) => {
+            let own = text.get(part.value.span.clone())?;
+            // By their place alone, elements are the same only where they say the same.
+            if let (Step::At(_), Some(from)) = (last, &change.from)
+                && !means_the_same(own, from)
+            {
+                return None;
+            }
+            let text = with_comment(text, part.end, &change.comments)?;
+            replaced(&text, &part.value.span, &indented(to, indent_at(&text, part.start()), line_end(&text)))
+        }
+        (Some(part), None) => without(text, part),
+        (None, Some(to)) => with(text, within, change, last, to),
+        (None, None) => Some(text.to_owned()),
+    }
+}
+
+/// What stands at a place of a text, and the steps to what stands before it, the nearest first.
+pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)> {
+    let root = read(text)?;
+    let (last, way) = path.split_last()?;
+    let within = way.iter().try_fold(&root, |node, step| part_at(text, node, step).map(|part| &part.value))?;
+    let part = part_at(text, within, last)?;
+    let behind = steps(text, within).into_iter().take_while(|step| step != last);
+    let mut behind: Vec<Step> = behind.collect();
+    behind.reverse();
+    Some((text.get(part.value.span.clone())?.to_owned(), behind))
+}
+
+fn part_at<'n>(text: &str, node: &'n Node, step: &Step) -> Option<&'n Part> {
+    if let Step::At(at) = step {
+        // An element with a name is no element by its place.
+        return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
+    }
+    steps(text, node).iter().position(|own| own == step).and_then(|at| node.parts().get(at))
+}
+
+fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
+    Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
+}
+
+/// The comment that this program wrote behind an entry goes with its value; a person's own stays.
+fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
+    let found = comment_behind(text, at);
+    match (found, comments) {
+        (Some((place, own)), (Some(from), to)) if own == from => match to {
+            Some(to) => replaced(text, &place, &format!("// {to}")),
+            None => replaced(text, &(at..place.end), ""),
+        },
+        _ => Some(text.to_owned()),
+    }
+}
+
+/// The text without an entry: with its line, where it has one of its own.
+fn without(text: &str, part: &Part) -> Option<String> {
+    let before = text.get(..part.start())?;
+    let after = part.end;
+    let line = before.rfind('\n').map_or(0, |at| at + 1);
+    let behind = comment_behind(text, after).map_or(after, |(place, _)| place.end);
+    let rest = text.get(behind..)?;
+    let ends = rest.trim_start_matches([' ', '\t', '\r']);
+    if before.get(line..)?.trim().is_empty() && ends.starts_with('\n') {
+        return replaced(text, &(line..text.len() - ends.len() + 1), "");
+    }
+    let blanks = text.get(after..)?.len() - text.get(after..)?.trim_start_matches([' ', '\t']).len();
+    if part.comma {
+        return replaced(text, &(part.start()..after + blanks), "");
+    }
+    // The last one on a line, with the comma that stands before it.
+    let start = before.trim_end().len();
+    let start = if before.get(..start)?.ends_with(',') { start - 1 } else { part.start() };
+    replaced(text, &(start..after), "")
+}
+
+/// The text with another entry, behind the one before it.
+fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Option<String> {
+    if matches!(within.kind, Kind::Plain) || matches!(last, Step::At(_)) {
+        return None;
+    }
+    let key = match last {
+        Step::Entry(name) => format!("{name}: "),
+        _ => String::new(),
+    };
+    let (end, parts) = (line_end(text), within.parts());
+    let anchor = change.behind.iter().find_map(|step| part_at(text, within, step));
+    let open = within.span.start + text.get(within.span.clone())?.find(['(', '[', '{'])? + 1;
+    let first_line = text.get(open..parts.first().map_or(within.span.end, Part::start))?;
+    let stands_in_lines = first_line.contains('\n') || parts.is_empty();
+    let comma_before = anchor.is_some_and(|part| !part.comma);
+    if !stands_in_lines {
+        let more = format!("{key}{}", one_line(to)?);
+        return match anchor {
+            Some(part) if comma_before => replaced(text, &(part.end..part.end), &format!(", {more}")),
+            Some(part) => replaced(text, &(part.end..part.end), &format!(" {more},")),
+            None => replaced(text, &(open..open), &format!("{more}, ")),
+        };
+    }
+    let indent = match parts.first() {
+        Some(first) => indent_at(text, first.start()).to_owned(),
+        None => format!("{}    ", indent_at(text, within.span.start)),
+    };
+    let heading: String = change.heading.iter().map(|line| format!("{end}{indent}// {line}")).collect();
+    let comment = change.comments.1.as_ref().map(|comment| format!(" // {comment}")).unwrap_or_default();
+    let line = format!("{heading}{end}{indent}{key}{},{comment}", indented(to, &indent, end));
+    let place = match anchor {
+        Some(part) => comment_behind(text, part.end).map_or(part.end, |(place, _)| place.end),
+        None => open + text.get(open..)?.len() - after_comment(text.get(open..)?).len(),
+    };
+    // A comment reaches to the end of its line, where a carriage return may stand.
+    let place = text.get(..place)?.trim_end_matches('\r').len().max(open);
+    let follows = text.get(place..)?.lines().next().unwrap_or_default();
+    let close = match follows.trim() {
+        "" => String::new(),
+        // The comment behind the new line must not swallow it.
+        _ if parts.is_empty() => format!("{end}{}", indent_at(text, within.span.start)),
+        _ => format!("{end}{indent}"),
+    };
+    let text = replaced(text, &(place..place), &format!("{line}{close}"))?;
+    match anchor.filter(|_| comma_before) {
+        Some(part) => replaced(&text, &(part.end..part.end), ","),
+        None => Some(text),
+    }
+}
+
+/// Behind an opening bracket: what follows the comment on the same line.
+fn after_comment(text: &str) -> &str {
+    match comment_behind(text, 0) {
+        Some((place, _)) => text.get(place.end..).unwrap_or_default(),
+        None => text,
+    }
+}
+
+/// The blanks with which the line of a place begins.
+fn indent_at(text: &str, at: usize) -> &str {
+    let line = text.get(..at).unwrap_or_default().rfind('\n').map_or(0, |at| at + 1);
+    let line = text.get(line..).unwrap_or_default();
+    line.get(..line.len() - line.trim_start_matches([' ', '\t']).len()).unwrap_or_default()
+}
+
+/// A value of several lines, which was written elsewhere, where it is to stand.
+fn indented(value: &str, indent: &str, end: &str) -> String {
+    let mut lines = value.lines();
+    let first = lines.next().unwrap_or_default().to_owned();
+    let rest: Vec<&str> = lines.collect();
+    // Its last line holds the bracket that closes it, which stands as far in as its first.
+    let own = rest.last().map_or(0, |line| line.len() - line.trim_start().len());
+    rest.into_iter().fold(first, |all, line| format!("{all}{end}{indent}{}", line.get(own..).unwrap_or(line.trim())))
+}
+
+/// A value of several lines on one; `None` where a comment stands in it.
+fn one_line(value: &str) -> Option<String> {
+    if !value.contains('\n') {
+        return Some(value.to_owned());
+    }
+    let plain = super::tree::comments(value).is_empty();
+    plain.then(|| value.lines().map(str::trim).collect::<Vec<_>>().join(" "))
+}
+
+/// How the lines of a text end.
+fn line_end(text: &str) -> &'static str {
+    if text.contains("\r\n") { "\r\n" } else { "\n" }
+}

@@ -1,0 +1,51 @@
+//! What changed between two texts of this program, carried into the text of a person.
+
+use super::apply::{apply, value_at};
+use super::changes::{Change, changes};
+use super::tree::comments;
+
+/// A text with other content.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Carried {
+    /// The text.
+    pub text: String,
+    /// Comments of a person that have no place in it.
+    pub lost: Vec<String>,
+}
+
+/// A person's text that holds what the program wrote as `before`, with what it wrote as `after`; `None` where it cannot be
+/// followed. Whether it says the same as `after` its reader has to look.
+pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
+    let mut carried = text.to_owned();
+    for change in changes(before, after)? {
+        carried = apply(&carried, &change).or_else(|| as_a_whole(&carried, &change, after))?;
+    }
+    let lost = lost(text, &carried, before);
+    Some(Carried { text: carried, lost })
+}
+
+/// What has no place by itself is put there with what it stands in.
+fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
+    (1..change.path.len()).rev().find_map(|length| {
+        let path = change.path.get(..length)?.to_vec();
+        let (to, behind) = value_at(after, &path)?;
+        let (comments, heading) = ((None, None), Vec::new());
+        apply(text, &Change { path, from: None, to: Some(to), behind, comments, heading })
+    })
+}
+
+/// Comments of a person that are not there any more.
+pub(in crate::profile) fn lost(text: &str, now: &str, generated: &str) -> Vec<String> {
+    let (mut there, own) = (comments(now), comments(generated));
+    let mut lost = Vec::new();
+    for comment in comments(text) {
+        match there.iter().position(|other| *other == comment) {
+            Some(at) => {
+                there.swap_remove(at);
+            }
+            None if own.contains(&comment) || comment.is_empty() => {}
+            None => lost.push(comment.to_owned()),
+        }
+    }
+    lost
+}

@@ -1,0 +1,195 @@
+//! What differs between two texts that this program wrote, entry by entry.
+
+use std::fmt;
+
+use ron::Value;
+use serde::{Deserialize, Serialize};
+
+use super::tree::{Kind, Node, Part, comment_behind, read};
+
+/// Entries that tell the elements of a list apart, the first that there is.
+const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
+
+/// One step on the way to an entry.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Step {
+    /// An entry of a structure, by its name as it is written.
+    Entry(String),
+    /// An element of a list, by the entry that tells it apart: its name and its value.
+    Named(String, String),
+    /// An element of a list, by its place.
+    At(usize),
+}
+
+/// Something that is not the same in two texts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Change {
+    /// Where.
+    pub path: Vec<Step>,
+    /// What stands there on the left, as it is written; `None`: nothing does.
+    pub from: Option<String>,
+    /// What stands there on the right; `None`: nothing does.
+    pub to: Option<String>,
+    /// What stands before it in the same structure or list on the right, the nearest first.
+    pub behind: Vec<Step>,
+    /// The comment behind it, on the left and on the right.
+    #[serde(default)]
+    pub comments: (Option<String>, Option<String>),
+    /// Comments on lines of their own before it, on the right.
+    #[serde(default)]
+    pub heading: Vec<String>,
+}
+
+impl Change {
+    /// Its place as messages name it: `fields[number: 2].status`.
+    pub fn place(&self) -> String {
+        self.path.iter().enumerate().fold(String::new(), |place, (at, step)| match step {
+            Step::Entry(name) if at == 0 => name.clone(),
+            Step::Entry(name) => format!("{place}.{name}"),
+            step => format!("{place}[{step}]"),
+        })
+    }
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Step::Entry(name) => f.write_str(name),
+            Step::Named(name, value) => write!(f, "{name}: {value}"),
+            Step::At(at) => write!(f, "{at}"),
+        }
+    }
+}
+
+/// What is to be changed in `left` to make it `right`; `None` where one of them cannot be followed.
+pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>> {
+    let (from, to) = (read(left)?, read(right)?);
+    let mut walk = Walk { left, right, path: Vec::new(), found: Vec::new() };
+    walk.both(&from, &to, (None, None), &[]);
+    Some(walk.found)
+}
+
+/// Two texts of plain values mean the same: `0x10` and `16`.
+pub(super) fn means_the_same(one: &str, other: &str) -> bool {
+    let value = |text| ron::from_str::<Value>(text).ok();
+    one == other || value(one).is_some_and(|own| Some(own) == value(other))
+}
+
+/// The step to each part of a list or structure. Elements without a name of their own, or with the same, go by their place.
+pub(super) fn steps(text: &str, node: &Node) -> Vec<Step> {
+    let slice = |part: &Part| part.key.as_ref().and_then(|key| text.get(key.clone()));
+    let parts = node.parts();
+    if matches!(node.kind, Kind::Entries(_)) {
+        return parts.iter().map(|part| Step::Entry(slice(part).unwrap_or_default().to_owned())).collect();
+    }
+    let named: Option<Vec<Step>> = parts.iter().map(|part| name_of(text, &part.value)).collect();
+    let by_place = || (0..parts.len()).map(Step::At).collect();
+    match named {
+        Some(named) if named.iter().enumerate().all(|(at, step)| !named.iter().skip(at + 1).any(|own| own == step)) => {
+            named
+        }
+        _ => by_place(),
+    }
+}
+
+fn name_of(text: &str, element: &Node) -> Option<Step> {
+    let entry = |name: &str| {
+        let is_it = |part: &&Part| part.key.as_ref().and_then(|key| text.get(key.clone())) == Some(name);
+        let part = element.parts().iter().find(is_it)?;
+        let value = text.get(part.value.span.clone())?;
+        Some(Step::Named(name.to_owned(), plain(value)))
+    };
+    matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
+}
+
+/// A value in one notation, so that `0x10` and `16` are one name.
+fn plain(value: &str) -> String {
+    ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
+}
+
+struct Walk<'t> {
+    left: &'t str,
+    right: &'t str,
+    path: Vec<Step>,
+    found: Vec<Change>,
+}
+
+impl Walk<'_> {
+    fn both(&mut self, from: &Node, to: &Node, parts: (Option<&Part>, Option<&Part>), behind: &[Step]) {
+        let (own, other) = (steps(self.left, from), steps(self.right, to));
+        let same_kind = match (&from.kind, &to.kind) {
+            (Kind::Entries(_), Kind::Entries(_)) => true,
+            (Kind::List(_), Kind::List(_)) => is_one_order(&own, &other),
+            _ => false,
+        };
+        let (left, right) = (self.left.get(from.span.clone()), self.right.get(to.span.clone()));
+        if same_kind {
+            self.inside(from, to, &own, &other);
+        } else if left != right {
+            self.note(parts, (left, right), behind);
+        }
+    }
+
+    fn inside(&mut self, from: &Node, to: &Node, own: &[Step], other: &[Step]) {
+        for (step, part) in own.iter().zip(from.parts()).filter(|(step, _)| !other.contains(step)) {
+            self.path.push(step.clone());
+            self.note((Some(part), None), (self.left.get(part.value.span.clone()), None), &[]);
+            self.path.pop();
+        }
+        for (at, (step, part)) in other.iter().zip(to.parts()).enumerate() {
+            let behind: Vec<Step> = other.iter().take(at).rev().cloned().collect();
+            let before = own.iter().zip(from.parts()).find(|(own, _)| *own == step).map(|(_, part)| part);
+            self.path.push(step.clone());
+            match before {
+                Some(before) => self.both(&before.value, &part.value, (Some(before), Some(part)), &behind),
+                None => self.note((None, Some(part)), (None, self.right.get(part.value.span.clone())), &behind),
+            }
+            self.path.pop();
+        }
+    }
+
+    fn note(
+        &mut self,
+        (left, right): (Option<&Part>, Option<&Part>),
+        (from, to): (Option<&str>, Option<&str>),
+        behind: &[Step],
+    ) {
+        let comment = |text: &str, part: Option<&Part>| {
+            part.and_then(|part| comment_behind(text, part.end)).map(|(_, comment)| comment.to_owned())
+        };
+        self.found.push(Change {
+            path: self.path.clone(),
+            from: from.map(ToOwned::to_owned),
+            to: to.map(ToOwned::to_owned),
+            behind: behind.to_vec(),
+            comments: (comment(self.left, left), comment(self.right, right)),
+            heading: right.map(|part| heading(self.right, part.start())).unwrap_or_default(),
+        });
+    }
+}
+
+/// Elements with names may come and go as long as the rest keeps its order; those without keep their number.
+fn is_one_order(own: &[Step], other: &[Step]) -> bool {
+    let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
+        these.iter().filter(|step| those.contains(step)).cloned().collect()
+    };
+    let by_place = |steps: &[Step]| steps.iter().any(|step| matches!(step, Step::At(_)));
+    let is_same = common(own, other) == common(other, own);
+    is_same && (!by_place(own) && !by_place(other) || own.len() == other.len())
+}
+
+/// Comments on the lines right above a place.
+fn heading(text: &str, at: usize) -> Vec<String> {
+    let before = text.get(..at).unwrap_or_default();
+    let own_line = before.rfind('\n').map_or(0, |at| at + 1);
+    let above = before.get(..own_line).unwrap_or_default();
+    let mut lines: Vec<String> = above
+        .lines()
+        .rev()
+        .map(str::trim)
+        .take_while(|line| line.starts_with("//"))
+        .map(|line| line.trim_start_matches('/').trim().to_owned())
+        .collect();
+    lines.reverse();
+    lines
+}

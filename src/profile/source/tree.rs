@@ -1,0 +1,287 @@
+//! RON with the places of its parts. It takes what the `ron` crate has read already, and gives nothing where it cannot
+//! follow: then the text is written anew.
+
+use std::ops::Range;
+
+/// A value in a text.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Node {
+    /// From its first to behind its last character; what stands in `Some(…)` without that.
+    pub(super) span: Range<usize>,
+    pub(super) kind: Kind,
+}
+
+/// What a value is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// A number, a text, a word; also a tuple.
+    Plain,
+    /// `[…]`.
+    List(Vec<Part>),
+    /// `(name: …)` or `{key: …}`.
+    Entries(Vec<Part>),
+}
+
+/// An element of a list, or an entry of a structure.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    /// What stands before the colon.
+    pub(super) key: Option<Range<usize>>,
+    pub(super) value: Node,
+    /// Behind its value, or behind the comma where there is one.
+    pub(super) end: usize,
+    /// There is a comma.
+    pub(super) comma: bool,
+}
+
+impl Part {
+    /// Where it begins.
+    pub(super) fn start(&self) -> usize {
+        self.key.as_ref().map_or(self.value.span.start, |key| key.start)
+    }
+}
+
+impl Node {
+    /// The elements or entries.
+    pub(super) fn parts(&self) -> &[Part] {
+        match &self.kind {
+            Kind::Plain => &[],
+            Kind::List(parts) | Kind::Entries(parts) => parts,
+        }
+    }
+}
+
+/// Reads a text; `None` where it cannot be followed.
+pub(super) fn read(text: &str) -> Option<Node> {
+    let mut reader = Reader { text, at: 0 };
+    reader.skip();
+    while reader.takes("#!") {
+        reader.at += reader.rest().find(']')? + 1;
+        reader.skip();
+    }
+    let node = reader.value()?;
+    reader.skip();
+    reader.rest().is_empty().then_some(node)
+}
+
+/// All comments of a text, without the signs that begin them.
+pub(super) fn comments(text: &str) -> Vec<&str> {
+    let mut reader = Reader { text, at: 0 };
+    let mut found = Vec::new();
+    while !reader.rest().is_empty() {
+        let before = reader.at;
+        if let Some(comment) = reader.comment() {
+            found.push(comment);
+        } else if reader.quoted().is_none() {
+            reader.at = before + reader.rest().chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    found
+}
+
+/// The comment that stands on the same line behind a place, with its place.
+pub(super) fn comment_behind(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
+    let rest = text.get(at..)?;
+    let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+    let mut reader = Reader { text, at: at + blanks };
+    if !reader.rest().starts_with("//") {
+        return None;
+    }
+    let comment = reader.comment()?;
+    Some((at + blanks..reader.at, comment))
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    at: usize,
+}
+
+impl<'t> Reader<'t> {
+    fn rest(&self) -> &'t str {
+        self.text.get(self.at..).unwrap_or_default()
+    }
+
+    fn takes(&mut self, sign: &str) -> bool {
+        let takes = self.rest().starts_with(sign);
+        if takes {
+            self.at += sign.len();
+        }
+        takes
+    }
+
+    /// Blanks and comments.
+    fn skip(&mut self) {
+        loop {
+            self.at += self.rest().len() - self.rest().trim_start().len();
+            if self.comment().is_none() {
+                return;
+            }
+        }
+    }
+
+    fn comment(&mut self) -> Option<&'t str> {
+        let rest = self.rest();
+        if let Some(line) = rest.strip_prefix("//") {
+            let length = line.find('\n').unwrap_or(line.len());
+            self.at += 2 + length;
+            return line.get(..length).map(str::trim);
+        }
+        rest.strip_prefix("/*")?;
+        let (mut depth, mut at) = (1, 2);
+        while depth > 0 {
+            let inside = rest.get(at..).filter(|inside| !inside.is_empty())?;
+            let (step, deeper) = match inside {
+                _ if inside.starts_with("/*") => (2, 1),
+                _ if inside.starts_with("*/") => (2, -1),
+                _ => (inside.chars().next().map_or(1, char::len_utf8), 0),
+            };
+            at += step;
+            depth += deeper;
+        }
+        self.at += at;
+        rest.get(2..at.saturating_sub(2)).map(str::trim)
+    }
+
+    /// A text or a character, whose quotes may hold anything.
+    fn quoted(&mut self) -> Option<()> {
+        let rest = self.rest();
+        let plain = rest.strip_prefix('b').unwrap_or(rest);
+        if let Some(raw) = plain.strip_prefix('r') {
+            let hashes = raw.len() - raw.trim_start_matches('#').len();
+            let inside = raw.get(hashes..)?.strip_prefix('"')?;
+            let end = format!("\"{}", "#".repeat(hashes));
+            let length = inside.find(&end)? + end.len();
+            self.at += rest.len() - inside.len() + length;
+            return Some(());
+        }
+        let quote = plain.chars().next().filter(|quote| matches!(quote, '"' | '\''))?;
+        let mut escaped = false;
+        for (at, sign) in plain.char_indices().skip(1) {
+            if !escaped && sign == quote {
+                self.at += rest.len() - plain.len() + at + 1;
+                return Some(());
+            }
+            escaped = !escaped && sign == '\\';
+        }
+        None
+    }
+
+    /// A number or a name.
+    fn word(&mut self) -> Option<&'t str> {
+        let rest = self.rest();
+        let ends = |c: char| c.is_whitespace() || "()[]{},:\"'".contains(c) || c == '/';
+        let length = rest.find(ends).unwrap_or(rest.len());
+        self.at += length;
+        rest.get(..length).filter(|word| !word.is_empty())
+    }
+
+    fn value(&mut self) -> Option<Node> {
+        let start = self.at;
+        let kind = match self.rest().chars().next()? {
+            '[' => Kind::List(self.parts('[', ']')?.0),
+            '{' => Kind::Entries(self.parts('{', '}')?.0),
+            '(' => self.bracket()?,
+            _ if self.quoted().is_some() => Kind::Plain,
+            _ => {
+                let word = self.word()?;
+                let before = self.at;
+                self.skip();
+                match self.rest().starts_with('(') {
+                    true if word == "Some" => return self.wrapped(),
+                    true => self.bracket()?,
+                    false => {
+                        self.at = before;
+                        Kind::Plain
+                    }
+                }
+            }
+        };
+        Some(Node { span: start..self.at, kind })
+    }
+
+    /// A structure, or a tuple, which counts as a whole.
+    fn bracket(&mut self) -> Option<Kind> {
+        let (parts, named) = self.parts('(', ')')?;
+        Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })
+    }
+
+    /// What stands in `Some(…)`.
+    fn wrapped(&mut self) -> Option<Node> {
+        self.takes("(");
+        self.skip();
+        let node = self.value()?;
+        self.skip();
+        if self.takes(",") {
+            self.skip();
+        }
+        self.takes(")").then_some(node)
+    }
+
+    /// What stands between brackets, and whether it has keys.
+    fn parts(&mut self, open: char, close: char) -> Option<(Vec<Part>, bool)> {
+        self.at += open.len_utf8();
+        let (mut parts, mut named) = (Vec::new(), false);
+        loop {
+            self.skip();
+            if self.rest().starts_with(close) {
+                self.at += close.len_utf8();
+                return Some((parts, named));
+            }
+            let first = self.value()?;
+            let behind = self.at;
+            self.skip();
+            let (key, value) = if self.takes(":") {
+                named = true;
+                self.skip();
+                (Some(first.span), self.value()?)
+            } else {
+                self.at = behind;
+                (None, first)
+            };
+            let mut end = self.at;
+            self.skip();
+            let comma = self.takes(",");
+            if comma {
+                end = self.at;
+            } else if !self.rest().starts_with(close) {
+                return None;
+            }
+            parts.push(Part { key, value, end, comma });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn slices(text: &str) -> Vec<(String, String)> {
+        let node = read(text).unwrap();
+        let slice = |range: &Range<usize>| text.get(range.clone()).unwrap().to_owned();
+        let key = |part: &Part| part.key.as_ref().map(slice).unwrap_or_default();
+        node.parts().iter().map(|part| (key(part), slice(&part.value.span))).collect()
+    }
+
+    #[test]
+    fn entries_have_their_places_whatever_stands_between_them() {
+        let text = "#![enable(implicit_some)]\n// head\n( a: 1, // \"one\n /* b: /* 2 */ */ b : \"x, \\\" y\", c: r#\"(\"#,\r\n d: Some(( e: 'x' )), f: (1, 2), g: [1, 2,], h: {158: -5})\n// end";
+        let own = [
+            ("a", "1"),
+            ("b", "\"x, \\\" y\""),
+            ("c", "r#\"(\"#"),
+            ("d", "( e: 'x' )"),
+            ("f", "(1, 2)"),
+            ("g", "[1, 2,]"),
+            ("h", "{158: -5}"),
+        ];
+        assert_eq!(slices(text), own.map(|(key, value)| (key.to_owned(), value.to_owned())));
+        assert_eq!(comments(text), ["head", "\"one", "b: /* 2 */", "end"]);
+    }
+
+    #[test]
+    fn what_cannot_be_followed_is_nothing() {
+        for text in ["", "(a: 1", "(a: )", "(a 1)", "(a: 1) b", "(a: \"x)", "[1 2]"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+    }
+}
