@@ -219,6 +219,9 @@ pub(super) struct Save {
     /// The profile to write.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub(super) file: PathBuf,
+    /// Replace a file that exists without asking.
+    #[arg(long)]
+    pub(super) force: bool,
     /// hiperface: fail when a data field cannot be read because its access code is not known.
     #[arg(long)]
     pub(super) complete: bool,

@@ -1,6 +1,7 @@
 //! Consent to a write: given with --yes, or on a terminal after the plan was shown.
 
 use std::io::{IsTerminal, stderr, stdin};
+use std::path::Path;
 
 use super::args::Consenting;
 use super::output::{Output, say};
@@ -31,6 +32,38 @@ pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
         return Ok(());
     }
     Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))
+}
+
+/// A file that is to be written may stand there already: on a terminal that is asked, before any device is. Without one it is
+/// replaced, as other tools do, which [`Replaces::said`] tells.
+pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
+    // A pipe or a device is written to, and keeps nothing.
+    let is_there = path.metadata().is_ok_and(|found| found.is_file());
+    if !is_there || force {
+        return Ok(Replaces { says: None });
+    }
+    let name = path.display();
+    if !can_ask() {
+        return Ok(Replaces { says: Some(format!("{name} existed and was replaced.")) });
+    }
+    if ask(&format!("{name} exists already. Replace it? [y/N] ")) {
+        return Ok(Replaces { says: None });
+    }
+    Err(Failure::Failed(vec![format!("Not confirmed; {name} is left as it is.")]))
+}
+
+/// What is to be said once a file was written.
+pub(super) struct Replaces {
+    says: Option<String>,
+}
+
+impl Replaces {
+    /// Says that a file was replaced, where nobody was asked.
+    pub(super) fn said(&self, output: &Output) {
+        if let Some(says) = &self.says {
+            output.remark(says);
+        }
+    }
 }
 
 /// Asks for a yes.

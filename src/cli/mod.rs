@@ -157,7 +157,10 @@ fn dispatch(common: &Common, command: Command) -> Result {
         }
         Command::Save(save) => {
             no_layout(save.layout.as_ref(), save.device)?;
-            (kind::of(save.device).save)(common, &output, &save)
+            let replaces = consent::replaces(&save.file, save.force)?;
+            let done = (kind::of(save.device).save)(common, &output, &save)?;
+            replaces.said(&output);
+            Ok(done)
         }
         Command::Write(write) => {
             no_drive(&write.of, write.device)?;

@@ -64,3 +64,41 @@ fn two_writes_in_a_second_keep_two_before_images() {
         assert!(text.contains(&format!("\"{byte} FF")), "{backup}: {text}");
     }
 }
+
+/// Issue 22.28: a file that is there is replaced on a terminal only when that is agreed to; without one it is, and that is said.
+#[test]
+fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
+    let bench = Bench::new();
+    let file = bench.file("layout.ron");
+    let save = ["save", "ssi", "--layout", "ahm36", "-o", file.as_str()];
+    let ran = bench.run(&save);
+    assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""), "a new file");
+    let written = bench.read("layout.ron");
+
+    std::fs::write(&file, "dear").unwrap();
+    let ran = bench.run(&save);
+    assert_eq!(ran.status, Some(0));
+    assert!(ran.err.contains("layout.ron existed and was replaced"), "{ran:?}");
+    assert_eq!(bench.read("layout.ron"), written);
+
+    std::fs::write(&file, "dear").unwrap();
+    let ran = bench.run(&[&save[..], &["--force"]].concat());
+    assert_eq!((ran.status, ran.err.as_str()), (Some(0), ""));
+    assert_eq!(bench.read("layout.ron"), written);
+    if python("master.py").is_none() {
+        return;
+    }
+    std::fs::write(&file, "dear").unwrap();
+    for no in ["n\n", "\n"] {
+        let ran = asked(&bench, &save, no);
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        assert!(ran.out.contains("exists already") && ran.out.contains("left as it is"), "{ran:?}");
+        assert_eq!(bench.read("layout.ron"), "dear");
+    }
+    assert_eq!(asked(&bench, &save, "y\n").status, Some(0));
+    assert_eq!(bench.read("layout.ron"), written);
+    // An answer given before is not asked for.
+    std::fs::write(&file, "dear").unwrap();
+    assert_eq!(asked(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
+    assert_eq!(bench.read("layout.ron"), written);
+}
