@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use super::biss;
 use super::connect;
+use super::diverged::{Diverged, Resolve};
 use super::hiperdrive;
 use super::hiperface;
 use super::interbus;
 use super::keep::{SettingsRead, SettingsWritten};
 use super::recorder::{self, Exported};
 use super::review::Permit;
-use super::session::{DraftDone, Kind, Listed};
+use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
 use super::signals;
 use super::ssi;
 use super::studio::SessionId;
@@ -66,6 +67,10 @@ pub enum Action {
     Connect(connect::Action),
     /// Connect the virtual device of the open tab.
     OpenVirtual,
+    /// Save a profile: into the file that is open, else into one that is asked for.
+    Save(SessionId),
+    /// What becomes of a profile that others have changed meanwhile.
+    Resolve(Resolve),
     /// Ask for a file to open: a capture in the Signals tab, else a profile.
     AskOpen,
     /// Open a capture (`.csv`), or else a profile.
@@ -163,30 +168,26 @@ pub enum Done {
     Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
     Read {
-        /// The file.
-        path: PathBuf,
-        /// The same for every way that leads to it.
-        key: String,
+        /// The file, with what it says.
+        file: ProfileFile,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
         /// What is known of encoders.
         known: Known,
     },
-    /// A file was written.
+    /// A profile was written.
     Written {
-        /// Whose content it is.
-        session: SessionId,
-        /// The file.
-        path: PathBuf,
-        /// The same for every way that leads to it.
-        key: String,
-        /// What was to be in it.
-        document: Box<Document>,
-        /// What is not in it.
-        remarks: Vec<Text>,
+        /// What was to be written.
+        saving: Box<Saving>,
+        /// The file, with what it is to say.
+        file: ProfileFile,
         /// How it went.
         result: Result<(), FileError>,
     },
+    /// The file of a profile is not what was opened, and was not written.
+    Diverged(Box<Diverged>),
+    /// Comments of a person would be lost, and the file was not written: which.
+    WouldLose(Box<Saving>, Vec<String>),
     /// A table was written, or not.
     TableWritten(Desk, Exported),
     /// A picture was saved, or not.
@@ -416,7 +417,7 @@ impl FileQuestion {
 }
 
 /// A question that has to be answered before something is done.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// What would be lost or interrupted.
     pub text: Text,
@@ -426,10 +427,11 @@ pub struct Question {
 }
 
 /// What a confirmed question leads to.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Then {
     CloseWindow,
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
     Forget(Desk),
+    Save(Box<Saving>),
 }

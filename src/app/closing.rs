@@ -124,6 +124,7 @@ impl Studio {
             }
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
+            Some(Then::Save(saving)) => self.services.tasks.run("save", move || saving.run()),
             Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
             None => {}
         }

@@ -20,7 +20,9 @@ use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
 use super::services::{JobEnd, Services};
-use super::session::{DraftDone, Drafted, Listed, OnLine, Opening, Phase, Saved, Source, WithMemory};
+use super::session::{
+    DraftDone, Drafted, Listed, OnLine, Opening, Phase, ProfileFile, Saved, Saving, Source, WithMemory,
+};
 use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
@@ -85,7 +87,7 @@ impl AnyDevice {
     /// A profile.
     pub(super) fn in_file(
         id: SessionId,
-        file: (PathBuf, String),
+        file: ProfileFile,
         document: Document,
         known: Known,
         services: &mut Services,
@@ -384,20 +386,24 @@ impl AnyDevice {
     }
 
     /// A profile was read again from its file; edits stay.
-    pub(super) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        each!(self, own => own.take_document(path, key, document))
+    pub(super) fn take_document(&mut self, file: ProfileFile, document: Document) {
+        each!(self, own => own.take_document(file, document))
+    }
+
+    /// All edits are taken back, as one step.
+    pub(super) fn revert_edits(&mut self) {
+        each!(self, own => own.revert_edits())
     }
 
     /// A profile was written, or not.
     pub(super) fn written(
         &mut self,
-        file: (PathBuf, String),
-        document: Document,
-        remarks: Vec<Text>,
+        saving: Saving,
+        file: ProfileFile,
         result: Result<(), FileError>,
         services: &mut Services,
     ) {
-        each!(self, own => own.written(file, document, remarks, result, services))
+        each!(self, own => own.written(saving, file, result, services))
     }
 
     /// Backups and writes were listed; those of another device than the one that is connected by now are dropped.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 
 use super::action::{Action, Done, Known, ReadError};
-use super::session::{Source, file_key};
-use super::studio::Studio;
+use super::session::{DraftDone, ProfileFile, Source, file_key};
+use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
 use crate::profile::{Body, Document};
 use crate::protocol::biss::Descriptions;
@@ -15,20 +15,20 @@ use crate::store::{Store, read_file};
 
 impl Studio {
     /// A profile was read, or not.
-    pub(super) fn read(&mut self, path: PathBuf, key: String, result: Result<Box<Document>, ReadError>, known: Known) {
+    pub(super) fn read(&mut self, file: ProfileFile, result: Result<Box<Document>, ReadError>, known: Known) {
         let opening = &mut self.services.opening_files;
-        if let Some(at) = opening.iter().position(|own| *own == path) {
+        if let Some(at) = opening.iter().position(|own| *own == file.path) {
             opening.remove(at);
         }
         match result {
             Ok(document) => {
-                let own = |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == key);
+                let own =
+                    |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
                 let open = self.devices.iter().find(own).map(AnyDevice::id);
                 let id = open.unwrap_or_else(|| self.new_id());
                 if open.is_some() {
-                    self.with_device(id, |device, _| device.take_document(path, key, *document));
+                    self.with_device(id, |device, _| device.take_document(file, *document));
                 } else {
-                    let file = (path, key);
                     let device = AnyDevice::in_file(id, file, *document, known, &mut self.services);
                     self.devices.push(device);
                 }
@@ -36,8 +36,22 @@ impl Studio {
                     self.show(tab, id);
                 }
             }
-            Err(error) => self.services.tell(Severity::Error, vec![read_error(&path, &error)], None),
+            Err(error) => self.services.tell(Severity::Error, vec![read_error(&file.path, &error)], None),
         }
+    }
+
+    /// The draft of a session was looked for, kept or removed.
+    pub(super) fn draft_done(&mut self, id: SessionId, done: DraftDone) {
+        if let DraftDone::Kept { result, .. } = &done {
+            self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
+            if let Err(error) = result
+                && self.device(id).is_none()
+            {
+                let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
+                self.services.tell(Severity::Warning, vec![text], None);
+            }
+        }
+        self.with_device(id, |device, services| device.take_draft(done, services));
     }
 }
 
@@ -55,20 +69,28 @@ pub(super) fn document_of(body: Body) -> Document {
 
 /// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
-    let result = read_profile(&path).map(Box::new);
-    let key = file_key(&path);
+    let (text, result) = match read_text_and_profile(&path) {
+        Ok((text, document)) => (text, Ok(Box::new(document))),
+        Err(error) => (String::new(), Err(error)),
+    };
+    let file = ProfileFile { key: file_key(&path), path, text };
     // Where there is no profile, nobody waits for the tables.
     let known = if result.is_ok() {
         Known { hiperface: store.encoder_types(), biss: store.biss_descriptions().0 }
     } else {
         Known { hiperface: Ok(EncoderTypes::built_in()), biss: Descriptions::built_in() }
     };
-    Action::Done(Done::Read { path, key, result, known })
+    Action::Done(Done::Read { file, result, known })
 }
 
 pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
+    read_text_and_profile(path).map(|(_, document)| document)
+}
+
+fn read_text_and_profile(path: &Path) -> Result<(String, Document), ReadError> {
     let text = read_file(path).map_err(ReadError::File)?;
-    Document::parse(&text).map_err(ReadError::Profile)
+    let document = Document::parse(&text).map_err(ReadError::Profile)?;
+    Ok((text, document))
 }
 
 pub(super) fn read_error(path: &Path, error: &ReadError) -> Text {

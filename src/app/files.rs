@@ -82,7 +82,7 @@ impl Studio {
         }
     }
 
-    fn save(&mut self, session: SessionId, path: PathBuf) {
+    pub(super) fn save(&mut self, session: SessionId, path: PathBuf) {
         self.with_device(session, |device, services| device.save(path, services));
     }
 

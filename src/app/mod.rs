@@ -8,6 +8,7 @@ pub mod check;
 mod closing;
 pub mod connect;
 mod devices;
+pub mod diverged;
 mod documents;
 mod edits;
 pub mod explain;

@@ -6,11 +6,11 @@ use super::action::{Action, Done, FileQuestion, Question, Then, Waited};
 use super::biss;
 use super::connect::{self, Connect};
 use super::devices::{AnyDevice, Shown};
+use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
 use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
 use super::services::{Services, World};
-use super::session::DraftDone;
 use super::signals::{self, Signals};
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
@@ -30,6 +30,8 @@ pub struct Studio {
     pub connect: Option<Connect>,
     /// A question that has to be answered.
     pub question: Option<Question>,
+    /// A profile that others have changed in its file since it was opened.
+    pub diverged: Option<Diverged>,
     /// The log, the jobs.
     pub services: Services,
     /// The Signals tab.
@@ -53,6 +55,7 @@ impl Studio {
             settings,
             connect: None,
             question: None,
+            diverged: None,
             services,
             devices: Vec::new(),
             shown: Shown::default(),
@@ -113,6 +116,8 @@ impl Studio {
                 let tab = self.settings.tab;
                 self.open_link(tab, tab.virtual_link());
             }
+            Action::Save(id) => self.save_in_place(id),
+            Action::Resolve(resolve) => self.resolve(resolve),
             Action::AskOpen => {
                 self.services.file_question = Some(match self.settings.tab {
                     Tab::Signals => FileQuestion::OpenCapture,
@@ -363,7 +368,7 @@ impl Studio {
                     connect.ports = Some(ports.map_err(|error| explain::link(&error)));
                 }
             }
-            Done::Read { path, key, result, known } => self.read(path, key, result, known),
+            Done::Read { file, result, known } => self.read(file, result, known),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
@@ -376,11 +381,11 @@ impl Studio {
             Done::ReportSaved(path, result) => self.report_saved(&path, result),
             // That was to be looked at.
             Done::Left => {}
-            Done::Written { session, path, key, document, remarks, result } => {
-                self.with_device(session, |device, services| {
-                    device.written((path, key), *document, remarks, result, services);
-                })
-            }
+            Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
+                device.written(*saving, file, result, services);
+            }),
+            Done::Diverged(diverged) => self.has_diverged(*diverged),
+            Done::WouldLose(saving, lost) => self.ask_to_lose(*saving, &lost),
             Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => self.keeper.kept(result, &mut self.settings, &mut self.services),
             Done::SettingsSeen(Ok(found)) => self.saw_settings(found.map(|found| *found)),
@@ -392,19 +397,6 @@ impl Studio {
             }
             Done::Signals(done) => self.signals.done(done, &mut self.services),
         }
-    }
-
-    fn draft_done(&mut self, id: SessionId, done: DraftDone) {
-        if let DraftDone::Kept { result, .. } = &done {
-            self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
-            if let Err(error) = result
-                && self.device(id).is_none()
-            {
-                let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
-                self.services.tell(Severity::Warning, vec![text], None);
-            }
-        }
-        self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
     pub(super) fn stop(&mut self) {
@@ -422,7 +414,7 @@ impl Studio {
         if self.moves_by_hand() {
             return self.stop_motion();
         }
-        if self.question.take().is_some() {
+        if self.question.take().is_some() || self.diverged.take().is_some() {
             return;
         }
         // Watching is no work: whoever closes a dialog, or has drives in hand, goes on seeing them.

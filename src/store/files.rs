@@ -15,6 +15,9 @@ use super::file_error::{FileError, FileProblem, FileTask};
 /// Most bytes that [`read_text`] reads: 16 MiB. The largest profile is a hundredth of it.
 pub const MAX_TEXT: u64 = 16 << 20;
 
+/// The byte order mark, as some editors write it before a text.
+const MARK: &str = "\u{FEFF}";
+
 /// Writes a file so that a crash or a full disk leaves either the old content or the new one.
 ///
 /// A file that exists keeps its permissions; a link stays a link, and the file behind it is replaced. A device or a pipe
@@ -27,6 +30,17 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
         return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
     }
     write_by(path, |file| file.write_all(content))
+}
+
+/// Writes a text as [`write_atomically`] does. A byte order mark that the file has stays: its editor put it there.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
+    let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
+    let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == MARK.as_bytes());
+    let mark = if has_mark && !text.starts_with(MARK) { MARK } else { "" };
+    write_atomically(path, [mark, text].concat().as_bytes())
 }
 
 /// Writes a file as [`write_atomically`] does, with content that comes bit by bit. When `write` fails, there is the old
@@ -113,7 +127,7 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
     }
     let text = String::from_utf8(bytes)
         .map_err(|error| failed(FileProblem::NotUtf8 { offset: error.utf8_error().valid_up_to() }))?;
-    Ok(text.strip_prefix('\u{FEFF}').map(str::to_owned).unwrap_or(text))
+    Ok(text.strip_prefix(MARK).map(str::to_owned).unwrap_or(text))
 }
 
 fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {

@@ -23,7 +23,7 @@ pub use captures::{OnProgress, ReadCaptureError, capture_head, read_capture};
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use file_lock::update_text;
-pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder};
+pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder, write_text_over};
 pub use folders::Folders;
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};

@@ -27,6 +27,9 @@ fn profile(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
         paragraph(ui, skin.label(skin.say("profile_card.words")));
         ui.horizontal(|ui| {
             if enabled_button(ui, savable, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                actions.push(Action::Save(device.id()));
+            }
+            if enabled_button(ui, savable, "", &skin.say("profile_card.save_as")).clicked() {
                 actions.push(device.wish(Wish::AskSave));
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {

@@ -32,7 +32,7 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if *device.phase() == Phase::Offline {
                 if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                    actions.push(device.wish(Wish::AskSave));
+                    actions.push(Action::Save(device.id()));
                 }
                 write_into(ui, skin, studio, device, actions);
             } else {

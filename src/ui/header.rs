@@ -9,7 +9,7 @@ use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperdrive::Unit;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme, Wish};
+use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
@@ -60,7 +60,7 @@ fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: 
     }
     let savable = studio.shown().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(skin.say("shell.save_hint")).clicked() {
-        actions.extend(studio.shown().map(|own| own.wish(Wish::AskSave)));
+        actions.extend(studio.shown().map(|own| Action::Save(own.id())));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::Action::Open));

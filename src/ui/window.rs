@@ -213,6 +213,7 @@ impl Window {
         if self.views.help && dialogs::help_ui(ctx, skin, page) {
             self.views.help = false;
         }
+        dialogs::diverged_ui(ctx, skin, &self.studio, actions);
         dialogs::question_ui(ctx, skin, &self.studio, actions);
     }
 
@@ -318,7 +319,9 @@ impl Window {
         ];
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
             keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
-            keys.push((Modifiers::COMMAND, Key::S, device.wish(Wish::AskSave)));
+            // The one with more keys first: it would be taken for the other.
+            keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::S, device.wish(Wish::AskSave)));
+            keys.push((Modifiers::COMMAND, Key::S, Action::Save(device.id())));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
             // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
             if matches!(device.tab(), Tab::Ssi | Tab::Interbus | Tab::Hiperdrive) && !ctx.text_edit_focused() {
@@ -342,7 +345,8 @@ impl Window {
 
     /// A consent is asked for.
     fn asks(&self) -> bool {
-        self.studio.question.is_some() || self.studio.shown().is_some_and(AnyDevice::is_reviewing)
+        let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
+        asks || self.studio.shown().is_some_and(AnyDevice::is_reviewing)
     }
 
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half

@@ -32,6 +32,7 @@ mod pressing;
 mod profiles;
 mod recording;
 mod remembering;
+mod saving;
 mod screen;
 mod served;
 mod signals;

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use encoder_studio::app::diverged::Resolve;
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Severity};
@@ -130,7 +131,11 @@ fn a_profile_read_again_keeps_its_edits() {
     desk.ask(Hiperface::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
     assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
+    // Nor is it replaced without a question.
     desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is asked", |studio| studio.diverged.is_some());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "(");
+    desk.act(Action::Resolve(Resolve::KeepMine));
     desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
     let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");

@@ -1,9 +1,7 @@
 //! Edits of an encoder's plain data, kept over a crash: global address and byte.
 
-use std::path::PathBuf;
-
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, OnDesk, Saved, Session};
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::profile::Document;
 use crate::worker::biss::Biss;
 
@@ -35,9 +33,13 @@ impl Drafted for Encoder {
         self.memory.take_draft(edits);
     }
 
-    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+    fn revert_edits(&mut self) {
+        self.memory.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.biss() else { return };
         self.take_profile(profile);
-        self.session.take_document(path, key, document);
+        self.session.take_document(file, document);
     }
 }

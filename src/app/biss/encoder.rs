@@ -1,7 +1,6 @@
 //! A BiSS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::guide::Guide;
@@ -12,7 +11,7 @@ use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source};
+use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::biss::{Identity, Status, Survey};
@@ -85,12 +84,12 @@ impl Encoder {
     /// A profile of an encoder.
     pub(in crate::app) fn in_file(
         id: SessionId,
-        (path, key): (PathBuf, String),
+        file: ProfileFile,
         document: Document,
         types: &Descriptions,
         services: &Services,
     ) -> Self {
-        let mut encoder = Encoder::with(Session::in_file(id, (path, key), document.clone()));
+        let mut encoder = Encoder::with(Session::in_file(id, file, document.clone()));
         if let Body::Biss(profile) = &document.body {
             let described = types.named(&profile.identity.description).or_else(|| types.iter().last()).cloned();
             encoder.describe(described.map(Arc::new));

@@ -1,10 +1,8 @@
 //! Edits of a device's parameters, kept over a crash.
 
-use std::path::PathBuf;
-
 use super::staged::Kept;
 use super::unit::Unit;
-use crate::app::session::{Drafted, OnDesk, Saved, Session};
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::profile::Document;
 use crate::worker::hiperdrive::Hiperdrive;
 
@@ -36,9 +34,13 @@ impl Drafted for Unit {
         self.staged.take_draft(edits);
     }
 
-    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+    fn revert_edits(&mut self) {
+        self.staged.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.hiperdrive() else { return };
         self.staged.saved(profile.image.clone());
-        self.session.take_document(path, key, document);
+        self.session.take_document(file, document);
     }
 }

@@ -83,9 +83,18 @@ impl Staged {
         self.families = families;
     }
 
-    /// The profile was saved and says this now. What is wanted stays, and so do the steps that led to it.
+    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
+    /// wrote it, and only what was edited here stays as it is wanted.
     pub fn saved(&mut self, image: Image) {
-        self.base = Some(image);
+        if self.wanted.as_ref() == Some(&image) {
+            self.base = Some(image);
+            return;
+        }
+        let edits = self.kept();
+        self.waiting.clear();
+        self.history.forget();
+        (self.base, self.wanted) = (Some(image.clone()), Some(image));
+        self.take_draft(edits);
     }
 
     /// Takes what was read from the device: all of it. Edits stay, and so does the way back through them.

@@ -2,7 +2,6 @@
 //! what runs on its line, and the drives as they are moved.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use jiff::Zoned;
 
@@ -19,7 +18,7 @@ use crate::app::check::CheckLine;
 use crate::app::line::Line;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::hiperdrive::{DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey};
 use crate::link::LinkUrl;
@@ -125,12 +124,7 @@ impl Unit {
     }
 
     /// A profile of a device.
-    pub(in crate::app) fn in_file(
-        id: SessionId,
-        (path, key): (PathBuf, String),
-        document: Document,
-        services: &Services,
-    ) -> Self {
+    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
         let staged = match &document.body {
             Body::Hiperdrive(profile) => {
                 let mut staged = Staged::of_profile(profile.image.clone());
@@ -140,7 +134,7 @@ impl Unit {
             }
             _ => Staged::default(),
         };
-        let mut unit = Unit::with(Session::in_file(id, (path, key), document), staged);
+        let mut unit = Unit::with(Session::in_file(id, file, document), staged);
         unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
         unit.load_draft(services);
         unit

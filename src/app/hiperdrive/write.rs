@@ -2,8 +2,9 @@
 
 use super::review::Review;
 use super::unit::Unit;
+use super::words;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Saved, WithMemory};
+use crate::app::session::{Agreed, Saved, WithMemory, some};
 use crate::app::{Severity, Text};
 use crate::profile::hiperdrive::{HiperdriveProfile, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
@@ -88,6 +89,10 @@ impl Saved for Unit {
 
     fn wanted_body(&self) -> Option<Body> {
         Some(Body::Hiperdrive(Box::new(self.wanted_profile()?)))
+    }
+
+    fn remarks(&self) -> Vec<Text> {
+        some(&self.marks(), words::mark)
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

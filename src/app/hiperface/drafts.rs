@@ -1,9 +1,7 @@
 //! Edits of an encoder's memory, kept over a crash: field, address, byte.
 
-use std::path::PathBuf;
-
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, OnDesk, Session};
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Session};
 use crate::profile::Document;
 use crate::worker::hiperface::Hiperface;
 
@@ -36,9 +34,13 @@ impl Drafted for Encoder {
         self.staged.take_draft(edits);
     }
 
-    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+    fn revert_edits(&mut self) {
+        self.staged.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.hiperface() else { return };
         self.staged.refresh(profile.fields.clone());
-        self.session.take_document(path, key, document);
+        self.session.take_document(file, document);
     }
 }

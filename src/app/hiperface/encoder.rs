@@ -1,7 +1,6 @@
 //! An encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use super::Staged;
 use super::commutation::Commutation;
@@ -10,7 +9,7 @@ use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source};
+use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
@@ -91,7 +90,7 @@ impl Encoder {
     /// A profile of an encoder.
     pub(in crate::app) fn in_file(
         id: SessionId,
-        file: (PathBuf, String),
+        file: ProfileFile,
         document: Document,
         types: &EncoderTypes,
         services: &Services,

@@ -2,18 +2,18 @@
 //! line.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::path::PathBuf;
 
+use super::cams;
 use super::preview::Preview;
 use super::record::Record;
 use super::review::Review;
-use super::staged::{Place, Staged, Wanted};
+use super::staged::{Mark, Place, Staged, Wanted};
 use super::table::Import;
 use super::trace::Meaning;
 use super::words;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Saved, Session, Source};
+use crate::app::session::{Drafted, Phase, ProfileFile, Saved, Session, Source, some};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::interbus::{Handshake, Identity, Reading, Survey};
@@ -96,19 +96,26 @@ impl Encoder {
     }
 
     /// A profile of an encoder.
-    pub(in crate::app) fn in_file(
-        id: SessionId,
-        (path, key): (PathBuf, String),
-        document: Document,
-        services: &Services,
-    ) -> Self {
+    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
         let staged = match &document.body {
             Body::Interbus(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
             _ => Staged::default(),
         };
-        let mut encoder = Encoder::with(Session::in_file(id, (path, key), document), staged);
+        let mut encoder = Encoder::with(Session::in_file(id, file, document), staged);
         encoder.load_draft(services);
         encoder
+    }
+
+    /// What is not right in what is wanted.
+    pub fn marks(&self) -> Vec<Mark> {
+        self.staged.wanted().map(Wanted::marks).unwrap_or_default()
+    }
+
+    /// The same for the eye, on every page but where a program is shown with its own.
+    pub fn marks_beside(&self, program: Option<ProgramNumber>) -> Vec<Text> {
+        let other = |mark: &Mark| program.is_none() || mark.program() != program;
+        let marks: Vec<Mark> = self.marks().into_iter().filter(other).collect();
+        some(&marks, cams::words::mark)
     }
 
     /// The profile, where this is one.

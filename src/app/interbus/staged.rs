@@ -91,9 +91,19 @@ impl Staged {
         Staged { ground: Ground::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
-    /// The profile was saved and says this now. What is wanted stays, and so do the steps that led to it.
+    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
+    /// wrote it, and only what was edited here stays as it is wanted.
     pub fn saved(&mut self, image: Image, names: Names) {
-        self.base = Some(Wanted { image, names });
+        let now = Wanted { image, names };
+        if self.wanted.as_ref() == Some(&now) {
+            self.base = Some(now);
+            return;
+        }
+        let edits = self.edits();
+        self.waiting.clear();
+        self.history.forget();
+        (self.base, self.wanted) = (Some(now.clone()), Some(now));
+        self.take_draft(edits);
     }
 
     /// Takes what was read from the encoder. What it does not have stays as it was known; edits stay, and so does the way

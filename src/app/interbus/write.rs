@@ -1,9 +1,10 @@
 //! What is written into an encoder: the edits or a profile as a wish, its jobs, and what is read again after it.
 
+use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Saved, WithMemory};
+use crate::app::session::{Agreed, Saved, WithMemory, some};
 use crate::app::{Severity, Text};
 use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
@@ -95,6 +96,10 @@ impl Saved for Encoder {
 
     fn wanted_body(&self) -> Option<Body> {
         Some(Body::Interbus(Box::new(self.wanted_profile()?)))
+    }
+
+    fn remarks(&self) -> Vec<Text> {
+        some(&self.marks(), words::mark)
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

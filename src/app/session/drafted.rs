@@ -1,13 +1,15 @@
 //! A device, or a profile of one, whose edits are kept over a crash. A kind says what an edit is and whose it is; when a
 //! draft is looked for, kept and forgotten is the same for all.
 
-use std::path::PathBuf;
-
-use super::{DraftDone, DraftEdits, DraftKey, Kind, OnDesk, Phase, Source};
-use crate::app::Text;
+use super::drafts::DRAFT_BACK;
+use super::{DraftDone, DraftEdits, DraftKey, Kind, OnDesk, Phase, ProfileFile, Saving, Source};
 use crate::app::services::Services;
+use crate::app::{Severity, Text, explain};
 use crate::profile::Document;
 use crate::store::FileError;
+
+/// What is told where a profile could not be saved.
+const NOT_SAVED: &str = "session.not_saved";
 
 /// What is kept of a device's edits.
 type Edits<T> = <<T as OnDesk>::Device as Kind>::Edits;
@@ -25,7 +27,10 @@ pub(in crate::app) trait Drafted: OnDesk {
     fn take_edits(&mut self, edits: Edits<Self>);
 
     /// A profile was read again from its file; edits stay.
-    fn take_document(&mut self, path: PathBuf, key: String, document: Document);
+    fn take_document(&mut self, file: ProfileFile, document: Document);
+
+    /// All edits are taken back, as one step.
+    fn revert_edits(&mut self);
 
     /// A profile of a connected device was written.
     fn written_beside(&mut self, _document: Document) {}
@@ -84,27 +89,38 @@ pub(in crate::app) trait Drafted: OnDesk {
     }
 
     /// A profile was written, or not. In another file than before it has no draft of an earlier time, and leaves none.
-    fn written(
-        &mut self,
-        (path, key): (PathBuf, String),
-        document: Document,
-        remarks: Vec<Text>,
-        result: Result<(), FileError>,
-        services: &mut Services,
-    ) {
-        let is_well = self.session_mut().tell_of_profile(&path, remarks, result, services);
-        if !is_well {
-            return;
+    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
+        let name = self.session().name();
+        if let Err(error) = result {
+            let texts = vec![explain::file(&error), Text::new(NOT_SAVED)];
+            return services.tell(Severity::Error, texts, Some(&name));
         }
+        let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
+        let saved = Text::new("session.saved").with("path", saving.path.display());
         if self.session().phase != Phase::Offline {
-            return self.written_beside(document);
+            self.written_beside(*saving.document);
+        } else {
+            if saving.is_merged {
+                self.revert_edits();
+            }
+            self.take_written(file, *saving.document, services);
         }
-        let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == key);
+        // What was told of this document until now is over.
+        services.log.settle(NOT_SAVED, Some(&name));
+        if self.edited().is_nothing() {
+            services.log.settle(DRAFT_BACK, Some(&name));
+        }
+        services.tell(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
+    }
+
+    /// The profile stands in this file now.
+    fn take_written(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
+        let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {
             let before = self.draft_key();
             self.session_mut().drafting.forget(before, services);
         }
-        self.take_document(path, key, document);
+        self.take_document(file, document);
         if moves && let Some(key) = self.draft_key() {
             self.session_mut().drafting.begin(key, services);
         }

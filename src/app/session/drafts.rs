@@ -15,6 +15,9 @@ use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::store::{Claim, Drafts, FileError};
 
+/// What is told where edits of an earlier time stand again.
+pub(super) const DRAFT_BACK: &str = "session.draft_back";
+
 /// How long another session may take to give up its claim: one that was closed still writes.
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
@@ -190,7 +193,7 @@ impl<E: DraftEdits> Drafting<E> {
     /// The edits of an earlier time stand again; `edits` are those that still make sense.
     pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
-            services.tell(Severity::Warning, vec![Text::new("session.draft_back")], Some(name));
+            services.tell(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
         }
         self.kept = edits;
     }

@@ -9,6 +9,7 @@ mod on_desk;
 mod on_line;
 mod profiles;
 mod saved;
+mod saving;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,7 +22,9 @@ pub(in crate::app) use memory::{Agreed, WithMemory};
 pub(in crate::app) use on_desk::OnDesk;
 pub(in crate::app) use on_line::{Cut, OnLine, first};
 pub use profiles::Listed;
-pub(in crate::app) use saved::Saved;
+pub(in crate::app) use saved::{Saved, some};
+pub(in crate::app) use saving::Found;
+pub use saving::{Guard, ProfileFile, Saving};
 
 use super::action::Opened;
 use super::leaving::Leaver;
@@ -48,6 +51,8 @@ pub enum Source {
         key: String,
         /// What is in it, without the edits.
         document: Box<Document>,
+        /// As it is written there: comments, order and line ends are its person's.
+        text: String,
     },
     /// Made here, and in no file yet.
     New {
@@ -129,8 +134,8 @@ impl<D: Kind> Session<D> {
     }
 
     /// With a profile.
-    pub(in crate::app) fn in_file(id: SessionId, (path, key): (PathBuf, String), document: Document) -> Self {
-        Session::new(id, Source::File { path, key, document: Box::new(document) }, Phase::Offline)
+    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
+        Session::new(id, file.source(document), Phase::Offline)
     }
 
     /// With what is in no file yet.

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use super::{Kind, Session, Source, file_key};
+use super::{Guard, Kind, ProfileFile, Saving, Session, Source};
 use crate::app::action::{Done, FileQuestion};
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
-use crate::app::{Action, Severity, Text, explain};
+use crate::app::{Action, Text, explain};
 use crate::profile::{Body, Document};
-use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store, write_atomically};
+use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
 
 impl<D: Kind> Session<D> {
     /// A name for a profile of it.
@@ -43,8 +43,8 @@ impl<D: Kind> Session<D> {
     }
 
     /// A profile was read again from its file, or saved into another one.
-    pub(in crate::app) fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
-        self.source = Source::File { path, key, document: Box::new(document) };
+    pub(in crate::app) fn take_document(&mut self, file: ProfileFile, document: Document) {
+        self.source = file.source(document);
     }
 
     /// Reads the profile again, as a task. False: it is none.
@@ -64,36 +64,13 @@ impl<D: Kind> Session<D> {
         remarks: Vec<Text>,
         services: &Services,
     ) {
-        let session = self.id;
-        services.tasks.run("save", move || {
-            let result = write_atomically(&path, document.emit().as_bytes());
-            let key = file_key(&path);
-            let document = Box::new(document);
-            Action::Done(Done::Written { session, path, key, document, remarks, result })
-        });
-    }
-
-    /// A profile was written, or not; true where it was.
-    pub(in crate::app) fn tell_of_profile(
-        &self,
-        path: &std::path::Path,
-        remarks: Vec<Text>,
-        result: Result<(), FileError>,
-        services: &mut Services,
-    ) -> bool {
-        match result {
-            Ok(()) => {
-                let severity = if remarks.is_empty() { Severity::Good } else { Severity::Warning };
-                let mut texts = vec![Text::new("session.saved").with("path", path.display())];
-                texts.extend(remarks);
-                services.tell(severity, texts, Some(&self.name()));
-                true
-            }
-            Err(error) => {
-                services.tell(Severity::Error, vec![explain::file(&error)], Some(&self.name()));
-                false
-            }
-        }
+        let opened = match &self.source {
+            Source::File { key, text, .. } => Some(Guard { key: key.clone(), text: text.clone() }),
+            Source::Link(_) | Source::New { .. } => None,
+        };
+        let (document, may_lose, is_merged) = (Box::new(document), false, false);
+        let saving = Saving { session: self.id, path, document, remarks, opened, may_lose, is_merged };
+        services.tasks.run("save", move || saving.run());
     }
 
     /// Lists backups and writes of a device, as a task.

@@ -30,6 +30,11 @@ pub(in crate::app) trait Saved: WithMemory {
     /// It is of another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
+    /// What is to be said of the profile as it is edited when it is saved.
+    fn remarks(&self) -> Vec<Text> {
+        Vec::new()
+    }
+
     /// A connected device is read again for it; a profile is written as it is edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Source::File { document, .. } = &self.session().source {
@@ -37,7 +42,8 @@ pub(in crate::app) trait Saved: WithMemory {
             if let Some(body) = self.wanted_body() {
                 document.body = body;
             }
-            self.session().write_document(path, document, Vec::new(), services);
+            let remarks = self.remarks();
+            self.session().write_document(path, document, remarks, services);
         } else if self.try_submit(Self::read_all(), services) {
             self.session_mut().save_to = Some(path);
         }
@@ -65,4 +71,14 @@ pub(in crate::app) trait Saved: WithMemory {
             self.session().list_backups(key, services);
         }
     }
+}
+
+/// Most remarks of one kind that are said one by one.
+const SAID: usize = 3;
+
+/// Some things in words, the first of many with how many more there are.
+pub(in crate::app) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
+    let more = things.len().saturating_sub(SAID);
+    let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
+    things.iter().take(SAID).map(words).chain(rest).collect()
 }

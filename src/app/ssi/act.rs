@@ -106,6 +106,11 @@ impl Encoder {
         }
     }
 
+    /// All changes are taken back, as one step.
+    pub(super) fn act_revert(&mut self) {
+        self.step(&Action::RevertAll);
+    }
+
     fn step(&mut self, action: &Action) {
         let before = self.designer.layout().clone();
         let has_changed = match action {

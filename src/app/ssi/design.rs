@@ -176,6 +176,11 @@ impl Designer {
         self.problem.as_ref()
     }
 
+    /// As it was saved.
+    pub(super) fn saved(&self) -> &SsiProfile {
+        &self.saved
+    }
+
     /// It is not as it was saved.
     pub fn is_dirty(&self) -> bool {
         self.now.profile != self.saved

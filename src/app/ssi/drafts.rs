@@ -1,14 +1,15 @@
-//! Changes of a layout, kept over a crash: the whole of it as a profile.
-
-use std::path::PathBuf;
+//! Changes of a layout, kept over a crash: entry by entry, so that what others change in the file meanwhile stays.
 
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, OnDesk, Session, Source};
-use crate::profile::{Body, Document};
+use crate::app::Text;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
+use crate::profile::ssi::SsiProfile;
+use crate::profile::{Body, Change, Document};
 use crate::worker::ssi::Ssi;
 
-/// The layout as a profile's text; none where it is as it was saved.
+/// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
+/// text of a profile.
 pub(in crate::app) type Drafts = Vec<String>;
 
 impl OnDesk for Encoder {
@@ -37,31 +38,43 @@ impl Drafted for Encoder {
     }
 
     fn edited(&self) -> Drafts {
-        if !self.designer.is_dirty() {
-            return Vec::new();
-        }
-        let document = Document { saved: None, ..Document::new(String::new(), Body::Ssi(self.wanted_profile())) };
-        vec![document.emit()]
+        let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.wanted_profile()));
+        changes.iter().filter_map(|change| ron::to_string(change).ok()).collect()
     }
 
     fn take_edits(&mut self, edits: Drafts) {
         let mut profiles = edits.iter().filter_map(|text| Document::parse(text).ok()?.body.into_ssi().ok());
-        if let Some(profile) = profiles.next_back() {
-            self.edit(Edit::Whole(Box::new(profile)));
+        let whole = profiles.next_back().or_else(|| {
+            let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
+            let all = changes.len() == edits.len();
+            let changed = document_of(self.designer.saved()).changed(&changes).ok().filter(|_| all)?;
+            changed.body.into_ssi().ok()
+        });
+        match whole {
+            Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
+            None if edits.is_empty() => {}
+            // What the file says by now and what was changed make no frame together.
+            None => self.designer.refuse(Text::new("ssi.draft_unfit")),
         }
     }
 
-    fn take_document(&mut self, path: PathBuf, key: String, document: Document) {
+    fn revert_edits(&mut self) {
+        self.act_revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Body::Ssi(profile) = &document.body else { return };
         let before = self.designer.layout().clone();
-        // What was done and undone stays, unless the file holds something else by now.
-        if self.designer.is_dirty() || self.designer.design().profile == *profile {
+        // What was done and undone stays, unless the file holds something else by now: then what was changed stays changed.
+        if self.designer.design().profile == *profile {
             self.designer.saved_as(profile.clone());
         } else {
+            let edits = self.edited();
             self.designer.open(profile.clone());
+            self.take_edits(edits);
         }
         self.follow_layout(&before);
-        self.session.take_document(path, key, document);
+        self.session.take_document(file, document);
     }
 
     fn written_beside(&mut self, document: Document) {
@@ -69,4 +82,9 @@ impl Drafted for Encoder {
             self.designer.saved_as(profile);
         }
     }
+}
+
+/// A layout as a profile of no file.
+fn document_of(profile: &SsiProfile) -> Document {
+    Document { saved: None, ..Document::new(String::new(), Body::Ssi(profile.clone())) }
 }

@@ -11,7 +11,7 @@ use super::trial::{Decoded, Trial};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Session, Source};
+use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::ssi::{Asking, Identity};
 use crate::link::LinkUrl;
@@ -68,7 +68,7 @@ impl Encoder {
     /// A layout in a file.
     pub(in crate::app) fn in_file(
         id: SessionId,
-        (path, key): (PathBuf, String),
+        file: ProfileFile,
         document: Document,
         services: &mut Services,
     ) -> Self {
@@ -77,7 +77,7 @@ impl Encoder {
         if let Body::Ssi(profile) = &document.body {
             designer.open(profile.clone());
         }
-        let mut encoder = Encoder::with(Session::in_file(id, (path, key), document), designer);
+        let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);
         encoder.load_draft(services);
         encoder
     }

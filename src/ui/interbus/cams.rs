@@ -27,8 +27,16 @@ pub(super) struct View {
     bar: bar::View,
 }
 
+impl View {
+    /// The program that is open.
+    pub(super) fn shown(&self) -> ProgramNumber {
+        self.program.unwrap_or(ProgramNumber::FIRST)
+    }
+}
+
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    let program = *view.program.get_or_insert(ProgramNumber::FIRST);
+    let program = view.shown();
+    view.program = Some(program);
     bar::bar_ui(ui, skin, encoder, program, view, actions);
     import::pasted(ui, encoder, program, actions);
     if let Some(table) = &encoder.import {

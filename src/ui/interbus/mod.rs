@@ -3,6 +3,7 @@
 mod cams;
 mod encoder;
 mod lamps;
+mod marks;
 mod parameters;
 mod read_outs;
 mod reader;
@@ -115,6 +116,8 @@ pub(super) fn page_ui(
         if view.page != Page::Backups {
             standstill::bar_ui(ui, skin, encoder, actions);
         }
+        let shown = (view.page == Page::Cams).then(|| view.cams.shown());
+        marks::marks_ui(ui, skin, encoder, shown);
         match view.page {
             Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
             Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),

@@ -52,8 +52,13 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     ui.add_space(skin.space.groups);
     card(ui, skin, "ssi_export.profile", |ui| {
         paragraph(ui, skin.label(skin.say("ssi_export.profile_words")));
-        if button(ui, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-            actions.push(Action::Ssi(id, Ssi::AskSave));
-        }
+        ui.horizontal(|ui| {
+            if button(ui, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                actions.push(Action::Save(id));
+            }
+            if button(ui, "", &skin.say("profile_card.save_as")).clicked() {
+                actions.push(Action::Ssi(id, Ssi::AskSave));
+            }
+        });
     });
 }

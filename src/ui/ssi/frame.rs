@@ -240,7 +240,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: 
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if primary(ui, skin, true, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
-                actions.push(device.wish(Wish::AskSave));
+                actions.push(Action::Save(device.id()));
             }
             take_for(ui, skin, studio, device, actions);
             if is_dirty {

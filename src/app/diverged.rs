@@ -1,0 +1,234 @@
+//! A profile that others have changed in its file since it was opened here: what differs, entry by entry, and what becomes
+//! of it.
+
+use super::action::{Question, ReadError, Then};
+use super::documents::read_error;
+use super::session::{Found, Guard, ProfileFile, Saving, Source};
+use super::studio::{SessionId, Studio};
+use super::{AnyDevice, Text, Wish};
+use crate::profile::{Change, Changed, Document, ProfileError, divergence};
+
+/// One profile in two versions.
+#[derive(Debug)]
+pub struct Diverged {
+    /// What was to be written.
+    saving: Saving,
+    /// What the file says now.
+    theirs: Result<Box<Document>, ReadError>,
+    /// As it is written there.
+    text: String,
+    /// What differs.
+    rows: Vec<Row>,
+    /// Why what was chosen cannot be.
+    problem: Option<Text>,
+}
+
+/// An entry that differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    change: Change,
+    /// Who changed it.
+    pub changed: Changed,
+    /// Which version is taken; `None`: that has to be said.
+    pub take: Option<Side>,
+}
+
+/// One of both versions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// What the file says now.
+    Theirs,
+    /// What was to be written.
+    Mine,
+}
+
+/// What becomes of a profile in two versions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resolve {
+    /// What the file says; the edits are given up.
+    Reload,
+    /// What was to be written, whatever the file says.
+    KeepMine,
+    /// Which version an entry is taken from.
+    Take(usize, Side),
+    /// Each entry from the version that was chosen.
+    Merge,
+    /// Nothing is written; the edits stay.
+    Close,
+}
+
+impl Row {
+    /// Where it stands in the profile.
+    pub fn place(&self) -> String {
+        self.change.place()
+    }
+
+    /// What a version says there; `None`: nothing.
+    pub fn says(&self, side: Side) -> Option<&str> {
+        match side {
+            Side::Theirs => self.change.from.as_deref(),
+            Side::Mine => self.change.to.as_deref(),
+        }
+    }
+}
+
+impl Diverged {
+    /// What differs between what a file says and what is to be written there.
+    pub(super) fn new(saving: Saving, Found { text, document }: Found) -> Self {
+        let kind = saving.document.body.kind();
+        let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {
+            true => Ok(found),
+            false => Err(ReadError::Profile(found.body.is_not(kind))),
+        };
+        let document = document.and_then(is_of_kind);
+        let base = saving.opened.as_ref().and_then(|opened| Document::parse(&opened.text).ok());
+        let rows = match (&base, &document) {
+            (Some(base), Ok(theirs)) => divergence(base, theirs, &saving.document),
+            _ => Vec::new(),
+        };
+        let take = |changed| match changed {
+            Changed::There => Some(Side::Theirs),
+            Changed::Here => Some(Side::Mine),
+            Changed::Both => None,
+        };
+        let row = |(change, changed)| Row { change, changed, take: take(changed) };
+        let rows = rows.into_iter().map(row).collect();
+        Diverged { saving, theirs: document, text, rows, problem: None }
+    }
+
+    /// Whose it is.
+    pub fn session(&self) -> SessionId {
+        self.saving.session
+    }
+
+    /// The file.
+    pub fn path(&self) -> &std::path::Path {
+        &self.saving.path
+    }
+
+    /// What differs.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Why the file cannot be read again, or why what was chosen cannot be.
+    pub fn problem(&self) -> Option<Text> {
+        match &self.theirs {
+            Err(error) => Some(read_error(&self.saving.path, error)),
+            Ok(_) => self.problem.clone(),
+        }
+    }
+
+    /// The file can be taken as it is.
+    pub fn can_reload(&self) -> bool {
+        self.theirs.is_ok()
+    }
+
+    /// The file can be written as if nobody else had. What a newer version of the program wrote is not: that would lose what
+    /// this one does not know.
+    pub fn can_keep_mine(&self) -> bool {
+        !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
+    }
+
+    /// Of each entry it is known which version is taken.
+    pub fn can_merge(&self) -> bool {
+        self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
+    }
+
+    /// The versions brought together.
+    fn merged(&self) -> Result<Document, Text> {
+        let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
+        let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
+        let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
+        theirs.changed(&changes).map_err(|error| match error {
+            Some(error) => read_error(&self.saving.path, &ReadError::Profile(error)),
+            None => Text::new("diverged.unfit"),
+        })
+    }
+
+    /// What is to be written over what the file says now, and nothing else.
+    fn over_theirs(self, document: Option<Document>) -> Saving {
+        let Diverged { mut saving, theirs, text, .. } = self;
+        // Of what is no profile any more nothing can be kept, which was said.
+        saving.may_lose = theirs.is_err();
+        saving.opened = saving.opened.map(|opened| Guard { text, ..opened });
+        if let Some(document) = document {
+            (saving.document, saving.is_merged) = (Box::new(document), true);
+        }
+        saving
+    }
+}
+
+impl Studio {
+    /// Saves into the file that is open, else asks for one.
+    pub(super) fn save_in_place(&mut self, id: SessionId) {
+        let Some(device) = self.device(id) else { return };
+        match device.source() {
+            Source::File { path, .. } => {
+                let path = path.clone();
+                self.save(id, path);
+            }
+            Source::Link(_) | Source::New { .. } => {
+                let ask = device.wish(Wish::AskSave);
+                self.act(ask);
+            }
+        }
+    }
+
+    /// The file of a profile is not what was opened: that is asked about where the session is shown.
+    pub(super) fn has_diverged(&mut self, diverged: Diverged) {
+        if let Some(tab) = self.device(diverged.session()).map(AnyDevice::tab) {
+            self.show(tab, diverged.session());
+            self.diverged = Some(diverged);
+        }
+    }
+
+    /// Comments would be lost: that is said before.
+    pub(super) fn ask_to_lose(&mut self, mut saving: Saving, lost: &[String]) {
+        saving.may_lose = true;
+        let text =
+            Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));
+        let confirm = Text::new("question.comments_go");
+        self.question = Some(Question { text, confirm, then: Then::Save(Box::new(saving)) });
+    }
+
+    pub(super) fn resolve(&mut self, resolve: Resolve) {
+        let Some(mut diverged) = self.diverged.take() else { return };
+        let saving = match resolve {
+            Resolve::Close => return,
+            Resolve::Take(at, side) => {
+                if let Some(row) = diverged.rows.get_mut(at) {
+                    row.take = Some(side);
+                }
+                diverged.problem = None;
+                self.diverged = Some(diverged);
+                return;
+            }
+            Resolve::Reload => return self.reload(diverged),
+            Resolve::KeepMine if diverged.can_keep_mine() => diverged.over_theirs(None),
+            Resolve::Merge if diverged.can_merge() => match diverged.merged() {
+                Ok(document) => diverged.over_theirs(Some(document)),
+                Err(why) => {
+                    diverged.problem = Some(why);
+                    self.diverged = Some(diverged);
+                    return;
+                }
+            },
+            Resolve::KeepMine | Resolve::Merge => {
+                self.diverged = Some(diverged);
+                return;
+            }
+        };
+        self.services.tasks.run("save", move || saving.run());
+    }
+
+    fn reload(&mut self, diverged: Diverged) {
+        let Diverged { saving, theirs, text, .. } = diverged;
+        let (Ok(document), Some(opened)) = (theirs, saving.opened) else { return };
+        let file = ProfileFile { path: saving.path, key: opened.key, text };
+        self.with_device(saving.session, |device, _| {
+            device.revert_edits();
+            device.take_document(file, *document);
+        });
+    }
+}

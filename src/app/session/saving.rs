@@ -1,0 +1,111 @@
+//! A profile on its way into a file. What others have written there since it was opened is not replaced without a question,
+//! and what a person wrote between the entries stays.
+
+use std::path::PathBuf;
+
+use super::{Source, file_key};
+use crate::app::Text;
+use crate::app::action::{Action, Done, ReadError};
+use crate::app::diverged::Diverged;
+use crate::app::studio::SessionId;
+use crate::profile::Document;
+use crate::store::{FileError, FileProblem, read_file, write_text_over};
+
+/// A file with a profile, as it was read or written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileFile {
+    /// The file.
+    pub path: PathBuf,
+    /// The same for every way that leads to it.
+    pub key: String,
+    /// As it is written there.
+    pub text: String,
+}
+
+impl ProfileFile {
+    pub(in crate::app) fn source(self, document: Document) -> Source {
+        let ProfileFile { path, key, text } = self;
+        Source::File { path, key, document: Box::new(document), text }
+    }
+}
+
+/// What a file has to say before it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guard {
+    /// Which file, whatever way leads to it.
+    pub key: String,
+    /// What it said when it was opened.
+    pub text: String,
+}
+
+/// A profile on its way into a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Saving {
+    /// Whose it is.
+    pub session: SessionId,
+    /// The file.
+    pub path: PathBuf,
+    /// What is to be in it.
+    pub document: Box<Document>,
+    /// What is not in it.
+    pub remarks: Vec<Text>,
+    /// The file that is open; another one is replaced as it is.
+    pub opened: Option<Guard>,
+    /// A person knows that comments go.
+    pub may_lose: bool,
+    /// What is edited is what others and this one agreed upon, and no edit any more.
+    pub is_merged: bool,
+}
+
+impl Saving {
+    /// Writes the file, as a task, or tells why it is not written yet.
+    pub(in crate::app) fn run(mut self) -> Action {
+        let key = file_key(&self.path);
+        if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
+            match changed(&self.path, &guard.text) {
+                Ok(text) => self.opened = Some(Guard { key: key.clone(), text }),
+                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found)))),
+            }
+        }
+        let (text, lost) = match &self.opened {
+            Some(opened) => {
+                let carried = self.document.emit_over(&opened.text);
+                (carried.text, carried.lost)
+            }
+            None => (self.document.emit(), Vec::new()),
+        };
+        if !lost.is_empty() && !self.may_lose {
+            return Action::Done(Done::WouldLose(Box::new(self), lost));
+        }
+        let result: Result<(), FileError> = write_text_over(&self.path, &text);
+        // A link may lead elsewhere by now, and a new file has a name only now.
+        let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };
+        Action::Done(Done::Written { saving: Box::new(self), file, result })
+    }
+}
+
+/// What stands in a file that is not what was opened.
+#[derive(Debug)]
+pub(in crate::app) struct Found {
+    /// As it is written; empty where it cannot be read.
+    pub(in crate::app) text: String,
+    /// As a profile.
+    pub(in crate::app) document: Result<Box<Document>, ReadError>,
+}
+
+/// The text over which is written; or what stands there where it says something else than was opened. A file that is gone
+/// says nothing else.
+fn changed(path: &std::path::Path, opened: &str) -> Result<String, Box<Found>> {
+    let text = match read_file(path) {
+        Ok(text) => text,
+        Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(opened.to_owned()),
+        Err(error) => return Err(Box::new(Found { text: String::new(), document: Err(ReadError::File(error)) })),
+    };
+    let says = |text: &str| Document::parse(text).map(|document| document.emit());
+    // Somebody may have changed comments alone: those are kept like any others.
+    if text == opened || says(&text).is_ok_and(|found| Ok(found) == says(opened)) {
+        return Ok(text);
+    }
+    let document = Document::parse(&text).map(Box::new).map_err(ReadError::Profile);
+    Err(Box::new(Found { text, document }))
+}

@@ -1,0 +1,354 @@
+//! Saving into a file that is open: what others wrote there meanwhile is asked about, and what a person wrote between the
+//! entries stays.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use encoder_studio::app::diverged::{Resolve, Side};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as HiperdriveEdit};
+use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::interbus::{Action as Interbus, Edit};
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::ssi::{Action as Ssi, Edit as SsiEdit};
+use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
+use encoder_studio::profile::Changed;
+use encoder_studio::protocol::interbus::ProgramNumber;
+
+use crate::support::Desk;
+
+/// A profile as a person keeps it, with what the program would not have written.
+const OWN: &str = "// bench 3\r\n(schema: 1, device: \"hiperface\",\r\n  note: \"as wired\", // ours\r\n  identity: (serial_number: \"A1\", encoder_type: 0x37),\r\n  interface: (settings: 0xE4, address: 0x40),\r\n  fields: [(number: 0, status: 0xC8, // the motor\r\n    bytes: [\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"])], // end\r\n)\r\n";
+
+fn opened(text: &str) -> (Desk, PathBuf) {
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("own.ron");
+    fs::write(&path, text).unwrap();
+    desk.studio.begin(None, Some(path.clone()));
+    desk.until("it is open", |studio| studio.hiperface().is_some());
+    desk.settle();
+    (desk, path)
+}
+
+fn says(path: &Path) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+fn save(desk: &mut Desk) {
+    let id = desk.studio.shown().map(AnyDevice::id).unwrap();
+    desk.act(Action::Save(id));
+}
+
+/// Edits of what is shown are on disk.
+fn until_kept(desk: &mut Desk) {
+    desk.until("the draft is kept", |studio| studio.shown().is_some_and(AnyDevice::is_draft_kept));
+    desk.settle();
+}
+
+fn is_saved(studio: &Studio) -> bool {
+    !studio.hiperface().unwrap().staged.is_dirty()
+}
+
+fn is_asked(studio: &Studio) -> bool {
+    studio.diverged.is_some()
+}
+
+/// Issue 22.25: the open file is written without a question, another one is asked for.
+#[test]
+fn saving_writes_the_open_file_and_asks_for_another() {
+    let (mut desk, path) = opened(OWN);
+    desk.put(0, 0, b"X");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert!(desk.studio.question.is_none() && desk.studio.diverged.is_none());
+    assert_eq!(desk.studio.take_file_question(), None);
+    // Issue 22.26: one byte is one place.
+    assert_eq!(says(&path), OWN.replace("\"00 01", "\"58 01"));
+    desk.ask(Hiperface::AskSave);
+    assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
+
+    // An encoder is in no file.
+    let mut desk = Desk::begun("");
+    save(&mut desk);
+    assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
+}
+
+/// Issue 22.25: what an editor wrote meanwhile is not replaced without a question, and each way out of it does what it says.
+#[test]
+fn what_others_wrote_meanwhile_is_asked_about() {
+    let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
+    let begun = || {
+        let (mut desk, path) = opened(OWN);
+        desk.put(0, 0, b"X");
+        fs::write(&path, &theirs).unwrap();
+        save(&mut desk);
+        desk.until("it is asked", is_asked);
+        assert_eq!(says(&path), theirs, "nothing was written");
+        (desk, path)
+    };
+    let (mut desk, path) = begun();
+    let rows = desk.studio.diverged.as_ref().unwrap().rows().to_vec();
+    let told: Vec<(String, Changed, Option<Side>)> =
+        rows.iter().map(|row| (row.place(), row.changed, row.take)).collect();
+    let expected = [
+        ("note".to_owned(), Changed::There, Some(Side::Theirs)),
+        ("fields[number: 0].bytes[0]".to_owned(), Changed::Both, None),
+    ];
+    assert_eq!(told, expected);
+    assert!(rows[1].says(Side::Theirs).unwrap().starts_with("\"00 AA"));
+    assert!(rows[1].says(Side::Mine).unwrap().starts_with("\"58 01"));
+    assert!(!desk.studio.diverged.as_ref().unwrap().can_merge(), "who decides what both changed?");
+    desk.act(Action::Resolve(Resolve::Merge));
+    assert!(desk.studio.diverged.is_some());
+    desk.act(Action::Escape);
+    assert!(desk.studio.diverged.is_none() && says(&path) == theirs && desk.encoder().staged.is_dirty());
+
+    let (mut desk, path) = begun();
+    desk.act(Action::Resolve(Resolve::Reload));
+    desk.settle();
+    assert_eq!(says(&path), theirs);
+    assert!(!desk.encoder().staged.is_dirty());
+    assert_eq!(desk.encoder().staged.on_device(0, 1), Some(0xAA));
+
+    let (mut desk, path) = begun();
+    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.until("it is saved", is_saved);
+    assert_eq!(says(&path), OWN.replace("\"00 01", "\"58 01").replace("// end", "// theirs"));
+
+    let (mut desk, path) = begun();
+    desk.act(Action::Resolve(Resolve::Take(1, Side::Mine)));
+    desk.act(Action::Resolve(Resolve::Merge));
+    desk.until("it is saved", is_saved);
+    assert_eq!(says(&path), theirs.replace("\"00 AA", "\"58 01"));
+    // What was saved is what is open: the next save finds nothing else.
+    desk.put(0, 2, b"Z");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert!(desk.studio.diverged.is_none() && says(&path).contains("58 01 5A"));
+
+    let (mut desk, path) = begun();
+    desk.act(Action::Resolve(Resolve::Take(1, Side::Theirs)));
+    desk.act(Action::Resolve(Resolve::Merge));
+    desk.until("the edit is none any more", is_saved);
+    assert_eq!(says(&path), theirs);
+}
+
+/// Issue 22.25: comments alone are no difference, and stay; a file that is gone is written anew; one that is broken by now is
+/// said to be.
+#[test]
+fn only_what_a_file_says_is_a_difference() {
+    let (mut desk, path) = opened(OWN);
+    let commented = OWN.replace("// the motor", "// the motor of axis 2");
+    fs::write(&path, &commented).unwrap();
+    desk.put(0, 0, b"X");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert_eq!(says(&path), commented.replace("\"00 01", "\"58 01"));
+
+    fs::remove_file(&path).unwrap();
+    desk.put(0, 1, b"Y");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert_eq!(says(&path), commented.replace("\"00 01", "\"58 59"));
+
+    fs::write(&path, "(schema: 1, ").unwrap();
+    desk.put(0, 2, b"Z");
+    save(&mut desk);
+    desk.until("it is asked", is_asked);
+    let diverged = desk.studio.diverged.as_ref().unwrap();
+    assert_eq!(diverged.problem().unwrap().id(), "profile.invalid");
+    assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_keep_mine());
+    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.until("it is saved", is_saved);
+    assert!(says(&path).contains("58 59 5A"));
+
+    // What a newer version of the program wrote is never replaced by an older form of it.
+    let newer = says(&path).replace("schema: 1", "schema: 2");
+    fs::write(&path, &newer).unwrap();
+    desk.put(0, 3, b"W");
+    save(&mut desk);
+    desk.until("it is asked", is_asked);
+    desk.act(Action::Resolve(Resolve::KeepMine));
+    desk.settle();
+    assert!(desk.studio.diverged.as_ref().is_some_and(|own| !own.can_keep_mine()));
+    assert_eq!(says(&path), newer);
+}
+
+/// Issue 22.26: comments that have no place in what is saved are named before it is saved.
+#[test]
+fn comments_that_would_go_are_asked_about() {
+    let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
+    let text = OWN.replace("\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"", rows);
+    let (mut desk, path) = opened(&text);
+    desk.put(0, 0, b"X");
+    save(&mut desk);
+    desk.until("it is asked", |studio| studio.question.is_some());
+    let question = desk.studio.question.as_ref().unwrap();
+    assert_eq!(question.text.id(), "question.comments");
+    let words = question.text.words(encoder_studio::app::Language::English);
+    assert!(words.contains("name plate") && !words.contains("the motor"), "{words}");
+    assert_eq!(says(&path), text);
+    desk.act(Action::Escape);
+    assert!(desk.encoder().staged.is_dirty());
+    save(&mut desk);
+    desk.until("it is asked", |studio| studio.question.is_some());
+    desk.act(Action::Confirm);
+    desk.until("it is saved", is_saved);
+    assert!(says(&path).starts_with("// bench 3\r\n") && says(&path).contains("// the motor\r\n"));
+}
+
+/// Issue 22.26: the mark with which an editor begins a file stays.
+#[test]
+fn a_byte_order_mark_stays() {
+    let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
+    desk.put(0, 0, b"X");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert_eq!(says(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
+}
+
+/// Issue 22.28: what was told of a document until it was saved is over then, and what is told of another one is not.
+#[test]
+fn a_save_settles_the_notices_of_its_own_document() {
+    let (mut desk, path) = opened(OWN);
+    desk.put(0, 0, b"X");
+    desk.until_kept();
+    let mut desk = desk.crash();
+    desk.studio.begin(None, Some(path.clone()));
+    let stands = |studio: &Studio, id: &str| {
+        studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == id))
+    };
+    desk.until("the edits are back", |studio| stands(studio, "session.draft_back"));
+    save(&mut desk);
+    desk.until("it is saved", |studio| stands(studio, "session.saved"));
+
+    desk.put(0, 1, b"Y");
+    let session = desk.encoder().session.id;
+    let suggested = "x.ron".into();
+    let nowhere = desk.outside.path("no/where.ron");
+    desk.act(Action::Chosen(FileQuestion::Save { session, suggested }, nowhere));
+    desk.until("it is told", |studio| stands(studio, "session.not_saved"));
+    assert_eq!(desk.studio.services.log.standing().unwrap().severity, Severity::Error);
+    assert_eq!(desk.studio.services.log.standing().unwrap().texts[0].id(), "file.no_folder");
+    save(&mut desk);
+    desk.until("it is saved", |studio| stands(studio, "session.saved"));
+
+    // Another document's notice stands.
+    desk.act(Action::Open(desk.outside.path("none.ron")));
+    desk.until("it is told", |studio| stands(studio, "file.not_found"));
+    desk.put(0, 2, b"Z");
+    save(&mut desk);
+    desk.until("it is saved", is_saved);
+    assert!(stands(&desk.studio, "file.not_found"));
+    assert_eq!(*desk.phase(), Phase::Offline);
+}
+
+/// Issue 22.28: a measuring range below the cams of a profile is told on every page, and again with a save.
+#[test]
+fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("cams.ron");
+    let text = "(schema: 1, device: \"interbus\",\n\
+        parameters: (steps: 3600, revolutions: 1, direction: \"cw\", preset: 0, zero_shift: 0),\n\
+        programs: [(program: 1, mask: 1, cams: [(cam: 0, start: 3000, stop: 3500)])],\n)\n";
+    fs::write(&path, text).unwrap();
+    desk.studio.begin(None, Some(path.clone()));
+    desk.until("it is open", |studio| studio.interbus().is_some());
+    desk.settle();
+    let own = |desk: &Desk| desk.studio.interbus().unwrap().session.id;
+    assert!(desk.studio.interbus().unwrap().marks_beside(None).is_empty());
+    let steps = Interbus::Edit(Box::new(Edit::Steps(1800)));
+    let id = own(&desk);
+    desk.act(Action::Interbus(id, steps));
+    let told: Vec<_> = desk.studio.interbus().unwrap().marks_beside(None).iter().map(|text| text.id()).collect();
+    assert_eq!(told, ["cams.mark_beyond"]);
+    let shown = ProgramNumber::FIRST;
+    assert!(desk.studio.interbus().unwrap().marks_beside(Some(shown)).is_empty(), "they stand beside the program");
+    save(&mut desk);
+    desk.until("it is saved", |studio| !studio.shown().unwrap().is_dirty());
+    let standing = desk.studio.services.log.standing().unwrap();
+    let ids: Vec<_> = standing.texts.iter().map(|text| text.id()).collect();
+    assert_eq!((standing.severity, ids), (Severity::Warning, vec!["session.saved", "cams.mark_beyond"]));
+    assert_eq!(says(&path), text.replace("steps: 3600", "steps: 1800"));
+}
+
+/// Issue 22.27: what a colleague changed in a file while it was closed stays, and so do the edits of an earlier time, for a
+/// layout, parameters and cams alike; also when the file is only read again.
+#[test]
+fn edits_of_an_earlier_time_leave_what_others_changed() {
+    let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
+    let drive = "(schema: 1, device: \"hiperdrive\",\n  drives: [(number: 1, parameters: {\n    166: 50,\n    186: 5,\n  })],\n)\n";
+    let cams = "(schema: 1, device: \"interbus\",\n\
+        parameters: (steps: 3600, revolutions: 1, direction: \"cw\", preset: 0, zero_shift: 0),\n\
+        programs: [(program: 1, mask: 1, cams: [(cam: 0, start: 3000, stop: 3500)])],\n)\n";
+    let interbus = |desk: &mut Desk, id| desk.act(Action::Interbus(id, Interbus::Edit(Box::new(Edit::Preset(9)))));
+    let hiperdrive = |desk: &mut Desk, id| {
+        let number = encoder_studio::protocol::hiperdrive::ParameterNumber::new(166).unwrap();
+        desk.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(HiperdriveEdit::Set(number, 40)))));
+    };
+    let layout = |desk: &mut Desk, id| desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
+    type Make<'m> = &'m dyn Fn(&mut Desk, SessionId);
+    type Change = (&'static str, &'static str);
+    let cases: [(&str, Make, Change, Change); 3] = [
+        (ssi, &layout, ("preset: 7", "preset: 9"), ("singleturn: 12)", "singleturn: 12, code: \"gray\")")),
+        (drive, &hiperdrive, ("166: 50", "166: 40"), ("186: 5", "186: 8")),
+        (cams, &interbus, ("preset: 0", "preset: 9"), ("start: 3000", "start: 3100")),
+    ];
+    for (text, make, (from, to), (was, is)) in cases {
+        for crashes in [true, false] {
+            let mut desk = Desk::fresh("");
+            let path = desk.outside.path("own.ron");
+            fs::write(&path, text).unwrap();
+            let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
+            desk.studio.begin(None, Some(path.clone()));
+            desk.until("it is open", is_open);
+            desk.settle();
+            let id = desk.studio.shown().unwrap().id();
+            make(&mut desk, id);
+            assert!(desk.studio.shown().unwrap().is_dirty(), "{text}");
+            let theirs = text.replace(was, is);
+            until_kept(&mut desk);
+            if crashes {
+                desk = desk.crash();
+                fs::write(&path, &theirs).unwrap();
+                desk.studio.begin(None, Some(path.clone()));
+            } else {
+                fs::write(&path, &theirs).unwrap();
+                desk.act(Action::Open(path.clone()));
+            }
+            desk.until("the edits are there", |studio| {
+                is_open(studio) && studio.opening_files().is_empty() && studio.shown().unwrap().is_dirty()
+            });
+            desk.settle();
+            save(&mut desk);
+            desk.until("it is saved", |studio| !studio.shown().unwrap().is_dirty());
+            assert!(desk.studio.diverged.is_none());
+            assert_eq!(says(&path), theirs.replace(from, to), "{crashes}");
+        }
+    }
+}
+
+/// Issue 22.27: a draft of an earlier version, which held the layout as a whole, still opens.
+#[test]
+fn a_draft_of_a_whole_layout_still_opens() {
+    let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("own.ron");
+    fs::write(&path, text).unwrap();
+    let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
+    desk.studio.begin(None, Some(path.clone()));
+    desk.until("it is open", is_open);
+    let id = desk.studio.shown().unwrap().id();
+    desk.settle();
+    desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
+    until_kept(&mut desk);
+    let folder = desk.outside.path("data/drafts/ssi-files");
+    let draft = fs::read_dir(folder).unwrap().next().unwrap().unwrap().path();
+    let desk = desk.crash();
+    // As version 1 wrote it.
+    let whole = text.replace("preset: 7", "preset: 11").replace('"', "\\\"").replace('\n', "");
+    fs::write(draft, format!("[\"{whole}\"]")).unwrap();
+    let mut desk = desk;
+    desk.studio.begin(None, Some(path));
+    desk.until("the edit is back", |studio| studio.shown().is_some_and(AnyDevice::is_dirty));
+    assert_eq!(desk.studio.ssi().unwrap().design().profile.preset, 11);
+}
