@@ -64,6 +64,7 @@ impl Studio {
             device.leave_draft(services);
             device.let_go(JobEnd::Cancelled, services);
         });
+        self.diverged.take_if(|diverged| diverged.session() == id);
         self.devices.retain(|device| device.id() != id);
         self.shown.remove(&self.devices, id);
     }

@@ -390,6 +390,11 @@ impl AnyDevice {
         each!(self, own => own.take_document(file, document))
     }
 
+    /// A save has come to a question: another one may begin.
+    pub(super) fn save_waits(&mut self) {
+        each!(self, own => own.session.is_saving = false)
+    }
+
     /// All edits are taken back, as one step.
     pub(super) fn revert_edits(&mut self) {
         each!(self, own => own.revert_edits())

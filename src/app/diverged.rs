@@ -177,6 +177,7 @@ impl Studio {
 
     /// The file of a profile is not what was opened: that is asked about where the session is shown.
     pub(super) fn has_diverged(&mut self, diverged: Diverged) {
+        self.with_device(diverged.session(), |device, _| device.save_waits());
         if let Some(tab) = self.device(diverged.session()).map(AnyDevice::tab) {
             self.show(tab, diverged.session());
             self.diverged = Some(diverged);
@@ -185,6 +186,7 @@ impl Studio {
 
     /// Comments would be lost: that is said before.
     pub(super) fn ask_to_lose(&mut self, mut saving: Saving, lost: &[String]) {
+        self.with_device(saving.session, |device, _| device.save_waits());
         saving.may_lose = true;
         let text =
             Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));

@@ -22,6 +22,7 @@ impl Studio {
         }
         match result {
             Ok(document) => {
+                self.services.log.settle_file(&file.path);
                 let own =
                     |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
                 let open = self.devices.iter().find(own).map(AnyDevice::id);

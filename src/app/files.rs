@@ -174,13 +174,19 @@ impl Studio {
         if lost > 0 {
             texts.push(Text::new("recorder.lost").with("count", lost));
         }
+        if is_written {
+            self.services.log.settle_file(&exported.path);
+        }
         let severity = if lost > 0 { severity.max(Severity::Warning) } else { severity };
         self.services.tell(severity, texts, None);
     }
 
     pub(super) fn report_saved(&mut self, path: &Path, result: Result<(), FileError>) {
         let (severity, text) = match result {
-            Ok(()) => (Severity::Good, Text::new("report.saved").with("path", path.display())),
+            Ok(()) => {
+                self.services.log.settle_file(path);
+                (Severity::Good, Text::new("report.saved").with("path", path.display()))
+            }
             Err(error) => (Severity::Error, explain::file(&error)),
         };
         self.services.tell(severity, vec![text], None);
@@ -189,6 +195,7 @@ impl Studio {
     pub(super) fn picture_saved(&mut self, path: &Path, result: Result<(), FileError>) {
         match result {
             Ok(()) => {
+                self.services.log.settle_file(path);
                 let text = Text::new("picture.saved").with("path", path.display());
                 self.services.tell(Severity::Good, vec![text], None);
             }

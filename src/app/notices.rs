@@ -1,6 +1,7 @@
 //! What happened, in words for a person: the latest stands in the window until it is read, all stand in the log.
 
 use std::collections::VecDeque;
+use std::path::Path;
 
 use jiff::Zoned;
 
@@ -97,6 +98,14 @@ impl Log {
         }
     }
 
+    /// A file was read or written: that it could not be is true no more.
+    pub(super) fn settle_file(&mut self, path: &Path) {
+        let is_it = |notice: &Notice| {
+            notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
+        };
+        self.standing.take_if(|notice| is_it(notice));
+    }
+
     /// It has been read.
     pub fn dismiss(&mut self) {
         self.standing = None;
@@ -136,6 +145,19 @@ mod tests {
             );
             assert_eq!(log.notices().len(), 2);
         }
+    }
+
+    /// Issue 22.28: what stood in the way of a file is over with that file, and with no other.
+    #[test]
+    fn a_file_settles_what_stood_in_its_way() {
+        let mut log = Log::default();
+        let full = Text::new("file.disk_full").with("path", "/a/b.csv");
+        let texts = vec![full, Text::new("session.not_saved")];
+        log.add(Notice { at: Zoned::now(), severity: Severity::Error, texts, about: None, part: None });
+        log.settle_file(Path::new("/a/c.csv"));
+        assert!(log.standing().is_some());
+        log.settle_file(Path::new("/a/b.csv"));
+        assert!(log.standing().is_none() && log.notices().len() == 1);
     }
 
     #[test]

@@ -150,6 +150,7 @@ impl Studio {
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
+                self.devices.iter_mut().for_each(AnyDevice::save_waits);
                 let text = Text::new("session.no_thread").with("why", why);
                 self.services.tell(Severity::Error, vec![text], None);
             }

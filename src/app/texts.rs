@@ -1,6 +1,7 @@
 //! Texts in English and German from one table (`assets/texts.ron`).
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
@@ -128,6 +129,15 @@ impl Text {
             (template, rest) = (behind, remaining);
         }
         (template == rest).then_some(text)
+    }
+
+    /// It is about this file.
+    pub(super) fn is_about(&self, path: &Path) -> bool {
+        let name = path.display().to_string();
+        let is_it = |(argument, value): &(&str, Argument)| {
+            *argument == "path" && matches!(value, Argument::Words(words) if *words == name)
+        };
+        self.arguments.iter().any(is_it)
     }
 
     /// The text's name in the table.

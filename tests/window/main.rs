@@ -52,6 +52,7 @@ mod widgets_idle;
 mod widgets_interbus;
 mod widgets_pages;
 mod widgets_plot;
+mod widgets_saving;
 mod widgets_ssi;
 mod widgets_writing;
 mod wire;

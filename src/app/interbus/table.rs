@@ -87,6 +87,7 @@ impl Encoder {
                 self.read_table(explain::plain(name), text, self.table_program);
             }
             Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
             }

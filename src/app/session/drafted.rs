@@ -91,6 +91,7 @@ pub(in crate::app) trait Drafted: OnDesk {
     /// A profile was written, or not. In another file than before it has no draft of an earlier time, and leaves none.
     fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
         let name = self.session().name();
+        self.session_mut().is_saving = false;
         if let Err(error) = result {
             let texts = vec![explain::file(&error), Text::new(NOT_SAVED)];
             return services.tell(Severity::Error, texts, Some(&name));
@@ -107,6 +108,7 @@ pub(in crate::app) trait Drafted: OnDesk {
         }
         // What was told of this document until now is over.
         services.log.settle(NOT_SAVED, Some(&name));
+        services.log.settle_file(&saving.path);
         if self.edited().is_nothing() {
             services.log.settle(DRAFT_BACK, Some(&name));
         }

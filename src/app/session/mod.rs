@@ -116,6 +116,8 @@ pub struct Session<D: Kind> {
     pub(in crate::app) just_connected: bool,
     /// Where the profile goes that is being read.
     pub(in crate::app) save_to: Option<PathBuf>,
+    /// A profile is on its way into a file: what that says next is not known before it is there.
+    pub(in crate::app) is_saving: bool,
     /// How it stands with the draft of its edits.
     pub(in crate::app) drafting: Drafting<D::Edits>,
 }
@@ -157,6 +159,7 @@ impl<D: Kind> Session<D> {
             cycles: None,
             just_connected: false,
             save_to: None,
+            is_saving: false,
             drafting: Drafting::new(id),
         }
     }

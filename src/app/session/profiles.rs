@@ -6,7 +6,7 @@ use super::{Guard, Kind, ProfileFile, Saving, Session, Source};
 use crate::app::action::{Done, FileQuestion};
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
-use crate::app::{Action, Text, explain};
+use crate::app::{Action, Severity, Text, explain};
 use crate::profile::{Body, Document};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
 
@@ -34,7 +34,7 @@ impl<D: Kind> Session<D> {
         body: Body,
         edits: Option<usize>,
         remarks: Vec<Text>,
-        services: &Services,
+        services: &mut Services,
     ) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
@@ -58,12 +58,16 @@ impl<D: Kind> Session<D> {
 
     /// Writes a profile on a thread; `remarks` say what is not in it.
     pub(in crate::app) fn write_document(
-        &self,
+        &mut self,
         path: PathBuf,
         document: Document,
         remarks: Vec<Text>,
-        services: &Services,
+        services: &mut Services,
     ) {
+        if self.is_saving {
+            return services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&self.name()));
+        }
+        self.is_saving = true;
         let opened = match &self.source {
             Source::File { key, text, .. } => Some(Guard { key: key.clone(), text: text.clone() }),
             Source::Link(_) | Source::New { .. } => None,

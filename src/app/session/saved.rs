@@ -43,7 +43,7 @@ pub(in crate::app) trait Saved: WithMemory {
                 document.body = body;
             }
             let remarks = self.remarks();
-            self.session().write_document(path, document, remarks, services);
+            self.session_mut().write_document(path, document, remarks, services);
         } else if self.try_submit(Self::read_all(), services) {
             self.session_mut().save_to = Some(path);
         }

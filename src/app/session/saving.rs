@@ -1,7 +1,7 @@
 //! A profile on its way into a file. What others have written there since it was opened is not replaced without a question,
 //! and what a person wrote between the entries stays.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Source, file_key};
 use crate::app::Text;
@@ -62,7 +62,7 @@ impl Saving {
     pub(in crate::app) fn run(mut self) -> Action {
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
-            match changed(&self.path, &guard.text) {
+            match changed(&self.path, &guard.text, &self.document) {
                 Ok(text) => self.opened = Some(Guard { key: key.clone(), text }),
                 Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found)))),
             }
@@ -93,17 +93,18 @@ pub(in crate::app) struct Found {
     pub(in crate::app) document: Result<Box<Document>, ReadError>,
 }
 
-/// The text over which is written; or what stands there where it says something else than was opened. A file that is gone
-/// says nothing else.
-fn changed(path: &std::path::Path, opened: &str) -> Result<String, Box<Found>> {
+/// The text over which is written; or what stands there where it says something else than was opened, or is to be said. A
+/// file that is gone says nothing else.
+fn changed(path: &Path, opened: &str, wanted: &Document) -> Result<String, Box<Found>> {
     let text = match read_file(path) {
         Ok(text) => text,
         Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(opened.to_owned()),
         Err(error) => return Err(Box::new(Found { text: String::new(), document: Err(ReadError::File(error)) })),
     };
-    let says = |text: &str| Document::parse(text).map(|document| document.emit());
+    let says = |text: &str| Document::parse(text).ok().map(|document| document.emit());
+    let found = says(&text);
     // Somebody may have changed comments alone: those are kept like any others.
-    if text == opened || says(&text).is_ok_and(|found| Ok(found) == says(opened)) {
+    if text == opened || found.is_some() && (found == says(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }
     let document = Document::parse(&text).map(Box::new).map_err(ReadError::Profile);

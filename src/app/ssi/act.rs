@@ -209,6 +209,7 @@ impl Encoder {
                 }
             }
             Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
             }

@@ -1,3 +1,5 @@
+//! Profiles over texts of a person, of every kind.
+
 use super::*;
 use crate::profile::Body;
 use crate::protocol::hiperdrive::ParameterNumber;
@@ -185,4 +187,44 @@ fn who_changed_what_is_told_entry_by_entry() {
     let merged = theirs.changed(&here).unwrap();
     let expected = INTERBUS.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1");
     assert_eq!(merged, Document::parse(&expected.replace("stop: 200", "stop: 222")).unwrap());
+}
+
+/// The ready-made profiles, by their kinds.
+fn ready_made() -> Vec<(&'static str, String)> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+    let mut found = Vec::new();
+    for kind in Body::KINDS {
+        for file in std::fs::read_dir(root.join(kind)).unwrap() {
+            found.push((kind, std::fs::read_to_string(file.unwrap().path()).unwrap()));
+        }
+    }
+    assert!(found.len() > 20, "{}", found.len());
+    found
+}
+
+/// Issue 22.26: whatever a profile becomes, it says that and nothing else, and each comment of a person stays or is named.
+#[test]
+fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
+    let all = ready_made();
+    for (kind, text) in &all {
+        for line_end in ["\n", "\r\n"] {
+            let lines = text.lines().enumerate().map(|(at, line)| format!("{line}{line_end}// own {at}.{line_end}"));
+            let commented: String = lines.collect();
+            for (_, other) in all.iter().filter(|(own, _)| own == kind) {
+                let document = Document::parse(other).unwrap();
+                let carried = document.emit_over(&commented);
+                assert_eq!(Document::parse(&carried.text).unwrap().emit(), document.emit());
+                for at in 0..text.lines().count() {
+                    let own = format!("own {at}.");
+                    let stays = carried.text.contains(&format!("// {own}"));
+                    assert_eq!(stays, !carried.lost.contains(&own), "{own}");
+                }
+                if line_end == "\r\n" {
+                    assert!(!carried.text.replace("\r\n", "").contains('\n'));
+                }
+            }
+            let own = Document::parse(text).unwrap().emit_over(&commented);
+            assert_eq!(own, Carried { text: commented, lost: Vec::new() });
+        }
+    }
 }

@@ -130,8 +130,6 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
         Some(part) => comment_behind(text, part.end).map_or(part.end, |(place, _)| place.end),
         None => open + text.get(open..)?.len() - after_comment(text.get(open..)?).len(),
     };
-    // A comment reaches to the end of its line, where a carriage return may stand.
-    let place = text.get(..place)?.trim_end_matches('\r').len().max(open);
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
     let close = match follows.trim() {
         "" => String::new(),

@@ -122,9 +122,10 @@ impl<'t> Reader<'t> {
     fn comment(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if let Some(line) = rest.strip_prefix("//") {
-            let length = line.find('\n').unwrap_or(line.len());
-            self.at += 2 + length;
-            return line.get(..length).map(str::trim);
+            // A carriage return belongs to the end of the line.
+            let line = line.lines().next().unwrap_or_default();
+            self.at += 2 + line.len();
+            return Some(line.trim());
         }
         rest.strip_prefix("/*")?;
         let (mut depth, mut at) = (1, 2);
