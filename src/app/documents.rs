@@ -23,6 +23,10 @@ impl Studio {
         match result {
             Ok(document) => {
                 self.services.log.settle_file(&file.path);
+                let remarks = explain::profile_remarks(&file.path, &document);
+                if !remarks.is_empty() {
+                    self.services.tell(Severity::Warning, remarks, None);
+                }
                 let own =
                     |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
                 let open = self.devices.iter().find(own).map(AnyDevice::id);
@@ -54,6 +58,20 @@ impl Studio {
         }
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
+
+    /// A profile of a newer schema is neither saved nor written into a device; true, and told, where this is one.
+    pub(super) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
+        let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
+        let Some(refusal) = refusal else { return false };
+        self.services.tell(Severity::Error, vec![refusal], None);
+        true
+    }
+}
+
+/// Why a profile is neither saved nor written into a device: it is of a newer schema.
+pub(super) fn only_looked_at(source: &Source) -> Option<Text> {
+    let Source::File { path, document, .. } = source else { return None };
+    document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
 /// A table, and no profile.

@@ -283,6 +283,7 @@ impl Studio {
     pub(super) fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
         match action {
             hiperface::Action::Reconnect => self.reconnect(id),
+            hiperface::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
             hiperface::Action::WriteInto(target) => {
                 let profile = self.device(id).and_then(AnyDevice::hiperface).and_then(Encoder::wanted_profile);
                 let Some(profile) = profile else { return };
@@ -302,6 +303,8 @@ impl Studio {
     fn act_biss(&mut self, id: SessionId, action: biss::Action) {
         match action {
             biss::Action::Reconnect => self.reconnect(id),
+            biss::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
+            biss::Action::PlanMounting { data: Some(data), .. } if self.is_only_looked_at(data) => {}
             biss::Action::WriteInto(target) => {
                 let profile = self.device(id).and_then(AnyDevice::biss).and_then(biss::Encoder::wanted_profile);
                 let Some(profile) = profile else { return };

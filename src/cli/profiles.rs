@@ -16,14 +16,31 @@ use crate::app::explain;
 use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
 
-/// Reads a profile of any kind.
+/// Reads a profile of any kind, to look at it or to compare it.
 pub(super) fn load(path: &Path) -> Result<Body> {
-    let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
-    let document = Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))?;
+    let document = read_document(path)?;
+    remark(path, &document);
+    Ok(document.body)
+}
+
+/// Reads a profile that is to be written into a device: all of it has to be known.
+pub(super) fn load_to_write(path: &Path) -> Result<Body> {
+    let document = read_document(path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
+    remark(path, &document);
+    Ok(document.body)
+}
+
+/// Says what is to be known of it.
+fn remark(path: &Path, document: &Document) {
+    explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
     if let Some(words) = document.body.biss().and_then(explain::biss::profile_unsaved) {
         say(&format!("{}: {}\n", path.display(), words.terminal()));
     }
-    Ok(document.body)
+}
+
+fn read_document(path: &Path) -> Result<Document> {
+    let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
+    Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))
 }
 
 /// Writes a profile that was read just now.
@@ -64,7 +81,7 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
-    let profile = load(&restore.file)?;
+    let profile = load_to_write(&restore.file)?;
     (kind::of_profile(&profile).restore)(common, output, restore, profile)
 }
 

@@ -1,16 +1,20 @@
 //! A profile document: schema version, kind of device, and what is saved of it.
 
+use std::rc::Rc;
+
 use ron::Value;
 use ron::error::SpannedError;
 
 use super::biss::BissProfile;
+use super::error::ProfileError;
 use super::hiperdrive::HiperdriveProfile;
 use super::hiperface::HiperfaceProfile;
 use super::interbus::InterbusProfile;
+use super::misspelt::Reading;
+use super::place::place_of;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::ssi::SsiProfile;
 use super::unique_names::UniqueNames;
-use crate::protocol::ssi::LayoutError;
 use crate::protocol::{biss, hiperdrive, hiperface, interbus, ssi};
 
 /// The version of the profile's form that this program writes.
@@ -27,6 +31,11 @@ pub struct Document {
     pub body: Body,
     /// Entries that this program does not know.
     pub unknown: Unknown,
+    /// The version of its form. One that is newer than [`SCHEMA`] is only looked at: what this program does not know of it
+    /// would be lost with a save.
+    pub schema: u32,
+    /// Places of entries that the schema does not have: of an older file they are taken into `extra`.
+    pub beyond: Vec<String>,
 }
 
 /// What is saved, by kind of device.
@@ -44,77 +53,10 @@ pub enum Body {
     Hiperdrive(Box<HiperdriveProfile>),
 }
 
-/// Why a text is not a profile.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ProfileError {
-    /// Not RON.
-    #[error("line {line}, column {column}: {what}")]
-    Syntax {
-        /// Counted from 1.
-        line: usize,
-        /// Counted from 1.
-        column: usize,
-        /// What the parser says.
-        what: String,
-    },
-    /// From a later version of the program.
-    #[error("schema {found}; this program knows schema 1 to {known}")]
-    Schema {
-        /// What the file says.
-        found: u32,
-        /// The newest that is known.
-        known: u32,
-    },
-    /// Not a kind of device that this program saves.
-    #[error("device {found:?}; this program knows {}", quoted_kinds())]
-    Device {
-        /// What the file says.
-        found: String,
-    },
-    /// A kind of device that this program saves, and not the one that is asked for.
-    #[error("a profile of a {found} device where one of a {wanted} device is needed")]
-    OtherKind {
-        /// What the file says.
-        found: &'static str,
-        /// What is needed.
-        wanted: &'static str,
-    },
-    /// Something has to be there and is not.
-    #[error("{path} is missing")]
-    Missing {
-        /// Where: `fields[2].status`.
-        path: String,
-    },
-    /// Something is of another kind.
-    #[error("{path} must be {expected}")]
-    Shape {
-        /// Where.
-        path: String,
-        /// What belongs there.
-        expected: &'static str,
-    },
-    /// A value that cannot be.
-    #[error("{path}: {what}")]
-    Value {
-        /// Where.
-        path: String,
-        /// What is wrong, and what is allowed.
-        what: String,
-    },
-    /// An SSI frame that cannot work.
-    #[error("{path}: {cause}")]
-    Frame {
-        /// Where.
-        path: String,
-        /// Why not.
-        cause: LayoutError,
-    },
-}
-
 impl Document {
     /// A document of now.
     pub fn new(saved: String, body: Body) -> Self {
-        Document { saved: Some(saved), note: None, body, unknown: Unknown::new() }
+        Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
     }
 
     /// Reads a profile.
@@ -133,10 +75,24 @@ impl Document {
         };
         let value: Value = ron::from_str(text).map_err(syntax)?;
         ron::from_str::<UniqueNames>(text).map_err(syntax)?;
-        let mut entries = Entries::open("", value)?;
+        let reading = Rc::new(Reading::default());
+        Self::read(value, &reading).map_err(|error| match reading.told(error) {
+            ProfileError::Misspelt { path, meant, .. } => {
+                let (line, column) = place_of(text, &path).unwrap_or((1, 1));
+                ProfileError::Misspelt { line, column, path, meant }
+            }
+            error => error,
+        })
+    }
+
+    fn read(value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
+        let mut entries = Entries::open("", value, reading)?;
         let schema: u32 = entries.required("schema", "a whole number")?;
-        if schema == 0 || schema > SCHEMA {
+        if schema == 0 {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
+        }
+        if schema > SCHEMA {
+            reading.set_newer();
         }
         let device: String = entries.required("device", "a text")?;
         let saved = entries.optional("saved", "a text")?;
@@ -149,14 +105,28 @@ impl Document {
             hiperdrive::KIND => Body::Hiperdrive(Box::new(HiperdriveProfile::read(&mut entries)?)),
             _ => return Err(ProfileError::Device { found: device }),
         };
-        Ok(Document { saved, note, body, unknown: entries.rest() })
+        let unknown = entries.rest()?;
+        Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
+    }
+
+    /// It is of a newer schema: it is looked at, compared, and neither saved nor written into a device.
+    pub fn is_newer(&self) -> bool {
+        self.schema > SCHEMA
+    }
+
+    /// The same, where all of it is known.
+    ///
+    /// # Errors
+    /// [`ProfileError::Schema`] of a newer schema.
+    pub fn known(self) -> Result<Self, ProfileError> {
+        if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
     /// The profile's text.
     pub fn emit(&self) -> String {
         let mut writer = Writer::default();
         writer.open("", '(');
-        writer.entry("schema", &SCHEMA.to_string(), "");
+        writer.entry("schema", &self.schema.to_string(), "");
         writer.text("device", self.device());
         if let Some(saved) = &self.saved {
             writer.text("saved", saved);
@@ -298,13 +268,6 @@ impl Body {
     }
 }
 
-fn quoted_kinds() -> String {
-    let kinds = Body::KINDS.map(|kind| format!("{kind:?}"));
-    let [first, between @ .., last] = &kinds;
-    let between: String = between.iter().map(|kind| format!(", {kind}")).collect();
-    format!("{first}{between} and {last}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -346,22 +309,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_kept() {
-        let text = SHORT
-            .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
-            .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
-            .replace("fields: [", "mounting: [(item: \"field:0@0+4\", by: \"CK\")], fields: [")
-            .replace("number: 0,", "number: 0, label: \"motor\",");
-        let document = Document::parse(&text).unwrap();
-        let written = document.emit();
-        for kept in ["by: \"CK\"", "owner: (floors: [1, 2], name: \"CK\")", "colour: Some(\"red\")", "label: \"motor\""]
-        {
-            assert!(written.contains(kept), "{kept} is not in\n{written}");
-        }
-        assert_eq!(Document::parse(&written), Ok(document));
-    }
-
-    #[test]
     fn what_is_written_is_read() {
         let mut document = Document::parse(SHORT).unwrap();
         let Body::Hiperface(profile) = &mut document.body else { panic!() };
@@ -386,7 +333,7 @@ mod tests {
             ("", "", "line 1, column 1: "),
             ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
             ("schema: 1,", "", "schema is missing"),
-            ("schema: 1,", "schema: 2,", "schema 2; this program knows schema 1 to 1"),
+            ("schema: 1,", "schema: 0,", "schema 0; this program knows schema 1 to 1"),
             ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\", \"ssi\","),
             ("\"A1\"", "17", "identity.serial_number must be a text"),
             ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
@@ -394,7 +341,12 @@ mod tests {
             ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
             ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
             ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
-            ("bytes:", "byts:", "fields[0].bytes: missing; a field without them is locked: true"),
+            ("bytes:", "byts:", "line 5, column 44: fields[0].byts is not known, and bytes is missing"),
+            (
+                "bytes: \"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"",
+                "",
+                "fields[0].bytes: missing; a field without them is",
+            ),
             ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has none"),
             ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
             ("fields: [", "mounting: [(item: \"counter\")], fields: [", "mounting[0].item: \"counter\" is not"),

@@ -4,20 +4,26 @@
 pub mod biss;
 mod difference;
 mod document;
+mod error;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
+mod misspelt;
 mod mounting;
+mod place;
 mod plan;
 mod restore;
 mod rewrite;
 mod ron_text;
+#[cfg(test)]
+mod schema_tests;
 mod source;
 pub mod ssi;
 mod unique_names;
 
 pub use difference::{Comparison, Difference};
-pub use document::{Body, Document, ProfileError, SCHEMA};
+pub use document::{Body, Document, SCHEMA};
+pub use error::ProfileError;
 pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};
 pub use restore::{Restore, RestoreOptions};

@@ -36,7 +36,7 @@ impl<Item> MountingMark<Item> {
         let text: String = entries.required("item", expected)?;
         let item = item(&text).map_err(|what| ProfileError::Value { path, what })?;
         let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
-        Ok(MountingMark { item, meaning, unknown: entries.rest() })
+        Ok(MountingMark { item, meaning, unknown: entries.rest()? })
     }
 }
 

@@ -3,28 +3,36 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::rc::Rc;
 
 use ron::Value;
 use serde::de::DeserializeOwned;
 
 use super::ProfileError;
+use super::misspelt::{Reading, Slip, letters_apart};
 use crate::bits::{HexError, parse_hex};
 
 /// What belongs where a byte is read.
 pub(super) const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
 
-/// Entries that this program does not know, by name.
+/// Entries that this program does not know, by name: a person's own, or those of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
 
-/// The entries of a structure, taken out one by one; what is left at the end is unknown.
+/// Where people's own entries stand in a structure.
+const EXTRA: &str = "extra";
+
+/// The entries of a structure, taken out one by one; what is left at the end is a person's own, or misspelt.
 pub(super) struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
+    /// Names that were asked for and are not there.
+    missed: Vec<String>,
+    reading: Rc<Reading>,
 }
 
 impl Entries {
     /// Opens the structure `value`, which stands at `path`.
-    pub(super) fn open(path: &str, value: Value) -> Result<Self, ProfileError> {
+    pub(super) fn open(path: &str, value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
         let map = match unwrapped(value) {
             Value::Map(map) => map,
             // How the crate reads an empty structure: `()` and `( )`.
@@ -41,7 +49,30 @@ impl Entries {
             };
             entries.insert(name, value);
         }
-        Ok(Entries { path: path.to_owned(), entries })
+        Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
+    }
+
+    /// Takes an entry as it stands; that it is missing is remembered.
+    fn take(&mut self, name: &str) -> Option<Value> {
+        let value = self.entries.remove(name);
+        if value.is_none() {
+            self.missed.push(name.to_owned());
+        }
+        value
+    }
+
+    /// The entry that is left over and most like a missing name, where no more than so many letters differ.
+    fn misspelt(&self, most: usize) -> Option<Slip> {
+        if self.reading.is_newer() {
+            return None;
+        }
+        let left = self.entries.keys().filter(|name| *name != EXTRA);
+        let pairs = left.flat_map(|name| self.missed.iter().map(move |meant| (name, meant)));
+        let slips = pairs.filter_map(|(name, meant)| {
+            let letters = letters_apart(name, meant).filter(|letters| *letters <= most)?;
+            Some(Slip { letters, path: self.path_of(name), meant: meant.clone() })
+        });
+        slips.min()
     }
 
     /// Where the structure stands, for messages.
@@ -60,7 +91,7 @@ impl Entries {
         name: &str,
         expected: &'static str,
     ) -> Result<Option<T>, ProfileError> {
-        let Some(value) = self.entries.remove(name) else { return Ok(None) };
+        let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
             return Ok(None);
         }
@@ -79,16 +110,16 @@ impl Entries {
     /// Takes a structure that has to be there.
     pub(super) fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
         let path = self.path_of(name);
-        let value = self.entries.remove(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
-        Entries::open(&path, value)
+        let value = self.take(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
+        Entries::open(&path, value, &self.reading)
     }
 
     /// Takes a structure; `None` when it is not there.
     pub(super) fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
         let path = self.path_of(name);
-        match self.entries.remove(name) {
+        match self.take(name) {
             None | Some(Value::Option(None)) => Ok(None),
-            Some(value) => Entries::open(&path, value).map(Some),
+            Some(value) => Entries::open(&path, value, &self.reading).map(Some),
         }
     }
 
@@ -110,6 +141,7 @@ impl Entries {
     /// Takes a list of structures that has to be there.
     pub(super) fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
+            self.missed.push(name.to_owned());
             return Err(ProfileError::Missing { path: self.path_of(name) });
         }
         self.structures(name)
@@ -118,12 +150,12 @@ impl Entries {
     /// Takes a list of structures; empty when it is not there.
     pub(super) fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
-        match self.entries.remove(name).map(unwrapped) {
+        match self.take(name).map(unwrapped) {
             None => Ok(Vec::new()),
             Some(Value::Seq(values)) => values
                 .into_iter()
                 .enumerate()
-                .map(|(at, value)| Entries::open(&format!("{path}[{at}]"), value))
+                .map(|(at, value)| Entries::open(&format!("{path}[{at}]"), value, &self.reading))
                 .collect(),
             Some(_) => Err(ProfileError::Shape { path, expected: "a list: […]" }),
         }
@@ -131,16 +163,56 @@ impl Entries {
 
     /// Takes a map with whatever stands before its colons, in their order; empty when it is not there.
     pub(super) fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
-        match self.entries.remove(name).map(unwrapped) {
+        match self.take(name).map(unwrapped) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
             Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: "a map: {number: value, …}" }),
         }
     }
 
-    /// What nobody took.
-    pub(super) fn rest(self) -> Unknown {
-        self.entries
+    /// What nobody took: a person's own entries, which stand in `extra`, or of a newer schema what is not known. Entries that
+    /// stand beside `extra` are taken into it: files of before it have them there.
+    ///
+    /// # Errors
+    /// [`ProfileError::Misspelt`] where one is the misspelt name of an entry that is not there.
+    pub(super) fn rest(mut self) -> Result<Unknown, ProfileError> {
+        let left = std::mem::take(&mut self.entries);
+        if self.reading.is_newer() {
+            self.tell_beyond(&left);
+            return Ok(left);
+        }
+        self.entries = left;
+        if let Some(slip) = self.misspelt(usize::MAX) {
+            return Err(slip.error());
+        }
+        let mut left = std::mem::take(&mut self.entries);
+        let mut own = match left.remove(EXTRA) {
+            None => Unknown::new(),
+            Some(value) => std::mem::take(&mut Entries::open(&self.path_of(EXTRA), value, &self.reading)?.entries),
+        };
+        self.tell_beyond(&left);
+        for (name, value) in left {
+            own.entry(name).or_insert(value);
+        }
+        Ok(own)
+    }
+
+    /// Something at this place is beyond the schema.
+    pub(super) fn is_beyond(&self, path: String) {
+        self.reading.is_beyond(path);
+    }
+
+    fn tell_beyond(&self, left: &Unknown) {
+        left.keys().for_each(|name| self.reading.is_beyond(self.path_of(name)));
+    }
+}
+
+impl Drop for Entries {
+    /// Reading ended early: the entry that is missing may be there under a misspelt name. Not all names were asked for.
+    fn drop(&mut self) {
+        if let Some(slip) = self.misspelt(2) {
+            self.reading.is_misspelt(slip);
+        }
     }
 }
 
@@ -200,11 +272,10 @@ impl Writer {
         self.close(']');
     }
 
-    /// Everything unknown, as it was read.
+    /// A person's own entries, as they were read.
     pub(super) fn unknown(&mut self, unknown: &Unknown) {
-        for (name, value) in unknown {
-            let text = value_text(value);
-            self.entry(name, &text, "");
+        if !unknown.is_empty() {
+            self.entry(EXTRA, &extra_text(unknown), "");
         }
     }
 
@@ -238,9 +309,15 @@ pub(super) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Everything unknown behind the known entries of a structure on one line: `, name: value`.
+/// A person's own entries behind the known ones of a structure on one line: `, extra: {…}`.
 pub(super) fn entries_text(unknown: &Unknown) -> String {
-    unknown.iter().map(|(name, value)| format!(", {name}: {}", value_text(value))).collect()
+    if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
+}
+
+fn extra_text(unknown: &Unknown) -> String {
+    let entries: Vec<String> =
+        unknown.iter().map(|(name, value)| format!("{}: {}", quoted(name), value_text(value))).collect();
+    format!("{{{}}}", entries.join(", "))
 }
 
 /// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.

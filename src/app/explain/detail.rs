@@ -176,6 +176,11 @@ pub fn setting(error: &ConfigError) -> Text {
 pub fn document(error: &ProfileError) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, what),
+        ProfileError::Misspelt { line, column, path, meant } => Text::new("detail.misspelt")
+            .with("line", line)
+            .with("column", column)
+            .with("path", path)
+            .with("meant", meant),
         ProfileError::Missing { path } => Text::new("detail.missing").with("path", path),
         ProfileError::Shape { path, expected } => {
             Text::new("detail.shape").with("path", path).with_text("expected", phrase(expected))

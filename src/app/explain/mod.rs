@@ -20,7 +20,7 @@ pub use detail::{document, logbook_problem, phrase, recording, setting, type_tab
 use super::Text;
 use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::{Body, ProfileError};
+use crate::profile::{Body, Document, ProfileError, SCHEMA};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::worker::{NotBegun, OpenError};
 
@@ -125,6 +125,26 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
         }
         error => Text::new("profile.invalid").with("path", path).with_text("why", document(error)),
     }
+}
+
+/// What is to be known of a profile that was opened: of a newer schema, or with entries that the schema does not have.
+pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
+    if document.is_newer() {
+        return vec![newer_profile(path, document)];
+    }
+    let beyond =
+        || Text::new("profile.beyond").with("path", path.display()).with("entries", document.beyond.join(", "));
+    if document.beyond.is_empty() { Vec::new() } else { vec![beyond()] }
+}
+
+/// A profile of a newer schema, with what is not known of it.
+pub fn newer_profile(path: &Path, document: &Document) -> Text {
+    let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
+    Text::new(id)
+        .with("path", path.display())
+        .with("found", document.schema)
+        .with("known", SCHEMA)
+        .with("entries", document.beyond.join(", "))
 }
 
 /// Why a write was not begun.

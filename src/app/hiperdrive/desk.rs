@@ -130,6 +130,7 @@ impl Studio {
     pub(in crate::app) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {
         match action {
             Action::Reconnect => self.reconnect(id),
+            Action::WriteInto(_) if self.is_only_looked_at(id) => {}
             Action::WriteInto(target) => {
                 let profile = self.device(id).and_then(AnyDevice::hiperdrive).and_then(Unit::wanted_profile);
                 let Some(profile) = profile else { return };

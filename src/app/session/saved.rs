@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{OnDesk, Phase, Source, WithMemory};
 use crate::app::Text;
 use crate::app::action::ReadError;
-use crate::app::documents::read_error;
+use crate::app::documents::{only_looked_at, read_error};
 use crate::app::services::Services;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
@@ -37,7 +37,9 @@ pub(in crate::app) trait Saved: WithMemory {
 
     /// A connected device is read again for it; a profile is written as it is edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
-        if let Source::File { document, .. } = &self.session().source {
+        if let Some(refusal) = only_looked_at(&self.session().source) {
+            self.session().refuse(refusal, services);
+        } else if let Source::File { document, .. } = &self.session().source {
             let mut document = (**document).clone();
             if let Some(body) = self.wanted_body() {
                 document.body = body;
@@ -59,7 +61,10 @@ pub(in crate::app) trait Saved: WithMemory {
 
     /// A backup was read, or not.
     fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
-        let restored = result.and_then(|own| self.restore(own.body, services).map_err(ReadError::Profile));
+        let restored = result.and_then(|own| {
+            let known = own.known().map_err(ReadError::Profile)?;
+            self.restore(known.body, services).map_err(ReadError::Profile)
+        });
         if let Err(error) = restored {
             self.session().refuse(read_error(path, &error), services);
         }

@@ -9,7 +9,7 @@ use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
-use crate::app::documents::document_of;
+use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Source};
 use crate::app::{Severity, Text, explain};
@@ -227,6 +227,9 @@ impl Encoder {
 
     /// Saves the layout.
     pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        if let Some(refusal) = only_looked_at(&self.session.source) {
+            return self.session.refuse(refusal, services);
+        }
         let body = Body::Ssi(self.wanted_profile());
         let document = match &self.session.source {
             Source::File { document, .. } => Document { body, ..(**document).clone() },

@@ -14,7 +14,7 @@ use crate::cli::check;
 use crate::cli::consent::{answer, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
-use crate::cli::profiles::{load, show_done};
+use crate::cli::profiles::{load_to_write, show_done};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::biss::procedure::Outcome;
@@ -164,7 +164,7 @@ fn mounting(words: &[&str]) -> Result<MountingRun> {
 }
 
 fn profile(file: &Path) -> Result<BissProfile> {
-    load(file)?.into_biss().map_err(|error| failed(&explain::profile(file, &error)))
+    load_to_write(file)?.into_biss().map_err(|error| failed(&explain::profile(file, &error)))
 }
 
 fn place(text: &str) -> Result<PresetValue> {

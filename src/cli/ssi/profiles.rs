@@ -32,7 +32,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 
 /// The document of a layout. It was read from no device, so that nothing in it tells when.
 pub(super) fn document(profile: SsiProfile) -> Document {
-    Document { saved: None, note: None, body: Body::Ssi(profile), unknown: Default::default() }
+    Document { saved: None, ..Document::new(String::new(), Body::Ssi(profile)) }
 }
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {

@@ -164,7 +164,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         description: entries.optional("description", "a text")?.unwrap_or_default(),
         multiturn_bits: entries.optional("multiturn_bits", BYTE)?,
         singleturn_bits: entries.optional("singleturn_bits", BYTE)?,
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 
@@ -193,7 +193,7 @@ fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
     };
     let (singleturn, multiturn) = (number("singleturn")?, number("multiturn")?);
     let value = PresetValue::new(singleturn, multiturn).unwrap_or_default();
-    Ok(PresetSetting { value, unknown: entries.rest() })
+    Ok(PresetSetting { value, unknown: entries.rest()? })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
@@ -208,7 +208,7 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
         calibration_status: entries.optional("calibration_status", BYTE)?,
         device_mode: entries.optional("device_mode", BYTE)?.map(DeviceMode::new),
         eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 
@@ -243,13 +243,13 @@ fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
     listed.sort_by_key(|listed| listed.bank.number);
     let name = entries.optional("name", "a text")?.unwrap_or_default();
     let empty = entries.optional("empty", BYTE)?;
-    Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest() })
+    Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
 }
 
 fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
     let number = entries.required("bank", BYTE)?;
     let bytes = read_exactly(&mut entries, "bytes")?;
-    Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest() })
+    Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
 }
 
 #[cfg(test)]

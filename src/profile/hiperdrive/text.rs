@@ -154,7 +154,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
-    let unknown = entries.rest();
+    let unknown = entries.rest()?;
     Ok(ProfileIdentity { topology, name, article_number, serial_number, version, drives: Vec::new(), unknown })
 }
 
@@ -163,7 +163,7 @@ fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive,
     let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
-    Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest() })
+    Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })
 }
 
 fn read_marked(text: &str) -> Result<Item, String> {
@@ -193,6 +193,7 @@ fn read_parameters(
                 let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
                 return Err(ProfileError::Value { path, what: no_parameter(own, drive) });
             }
+            entries.is_beyond(format!("{}.{}", entries.path_of("parameters"), value_text(&name)));
             unknown.0.entry(drive).or_default().push((name, value));
             continue;
         };

@@ -204,7 +204,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
         eeprom_bytes: entries.optional("eeprom_bytes", "a whole number")?.unwrap_or_default(),
         options: entries.optional("options", BYTE)?.unwrap_or_default(),
         extended_label: entries.bytes("extended_label")?,
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 
@@ -212,7 +212,7 @@ fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     Ok(Interface {
         address: entries.required("address", BYTE)?,
         settings: LineSettings::from_byte(entries.required("settings", BYTE)?),
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 
@@ -220,7 +220,7 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
         position: entries.optional("position", "a number from 0 to 4294967295")?,
         counter: entries.optional("counter", "a number from 0 to 16777215")?,
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 
@@ -254,5 +254,5 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
         let what = format!("{} bytes where the status says {}", bytes.len(), status.size().bytes());
         return Err(wrong(&entries, "bytes", what));
     }
-    Ok((FieldImage { number, status, bytes }, entries.rest()))
+    Ok((FieldImage { number, status, bytes }, entries.rest()?))
 }

@@ -154,7 +154,7 @@ fn name(writer: &mut Writer, name: &str) {
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     let serial_number = entries.optional("serial_number", TEXT)?.unwrap_or_default();
     let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
-    Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest() })
+    Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
 }
 
 fn read_parameters(mut entries: Entries, unknown: &mut Kept) -> Result<Parameters, ProfileError> {
@@ -165,7 +165,7 @@ fn read_parameters(mut entries: Entries, unknown: &mut Kept) -> Result<Parameter
     let direction = word.parse::<Direction>().map_err(|_| ProfileError::Shape { path, expected: DIRECTION })?;
     let preset = value(&mut entries, "preset")?.get();
     let zero_shift = value(&mut entries, "zero_shift")?.get();
-    unknown.parameters = entries.rest();
+    unknown.parameters = entries.rest()?;
     Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
@@ -195,9 +195,9 @@ fn read_program(
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
         names.set_cam(at, cam, entries.optional("name", TEXT)?.unwrap_or_default());
-        keep(&mut unknown.cams, (at, cam), entries.rest());
+        keep(&mut unknown.cams, (at, cam), entries.rest()?);
     }
-    keep(&mut unknown.programs, at, entries.rest());
+    keep(&mut unknown.programs, at, entries.rest()?);
     Ok((at, program))
 }
 
@@ -222,7 +222,7 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
         temperature_tenths: entries.optional("temperature_tenths", WHOLE)?,
         mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
         preset_flag: entries.optional("preset_flag", WHOLE)?,
-        unknown: entries.rest(),
+        unknown: entries.rest()?,
     })
 }
 

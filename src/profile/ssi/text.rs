@@ -228,12 +228,12 @@ fn read_frame(mut entries: Entries, unknown: &mut Kept) -> Result<Descriptor, Pr
     if let Some(mut entries) = entries.optional_structure("parity")? {
         let clock = entries.required("clock", SMALL)?;
         frame.parity = Some(Parity { clock, even: entries.required("even", FLAG)? });
-        unknown.parity = entries.rest();
+        unknown.parity = entries.rest()?;
     }
     if let Some(mut entries) = entries.optional_structure("repeat")? {
         let word = entries.required("word", SMALL)?;
         frame.repeat = Some(Repeat { word, gap: entries.optional("gap", SMALL)?.unwrap_or(1) });
-        unknown.repeat = entries.rest();
+        unknown.repeat = entries.rest()?;
     }
     for entries in entries.structures("patterns")? {
         let (pattern, more) = read_pattern(entries)?;
@@ -242,7 +242,7 @@ fn read_frame(mut entries: Entries, unknown: &mut Kept) -> Result<Descriptor, Pr
     }
     unknown.errors.retain(|(_, more)| !more.is_empty());
     unknown.patterns.retain(|(_, more)| !more.is_empty());
-    unknown.frame = entries.rest();
+    unknown.frame = entries.rest()?;
     Ok(frame)
 }
 
@@ -320,7 +320,7 @@ fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError>
         active_low: entries.optional("active_low", FLAG)?.unwrap_or(false),
         cleared_by_transfer: entries.optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
     };
-    Ok((bit, entries.rest()))
+    Ok((bit, entries.rest()?))
 }
 
 fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
@@ -331,7 +331,7 @@ fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
     let name = entries.required("name", TEXT)?;
-    Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()))
+    Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
 fn read_reading(mut entries: Entries, unknown: &mut Kept) -> Result<ReadingSettings, ProfileError> {
@@ -346,7 +346,7 @@ fn read_reading(mut entries: Entries, unknown: &mut Kept) -> Result<ReadingSetti
     }
     let cable_metres = entries.optional("cable_metres", METRES)?;
     let synchronous = entries.optional("synchronous", FLAG)?.unwrap_or(usual.synchronous);
-    unknown.reading = entries.rest();
+    unknown.reading = entries.rest()?;
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 

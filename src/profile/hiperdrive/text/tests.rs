@@ -6,7 +6,14 @@ use crate::profile::{Body, Document};
 
 fn document(profile: HiperdriveProfile) -> Document {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
-    Document { saved, note: None, body: Body::Hiperdrive(Box::new(profile)), unknown: Default::default() }
+    Document {
+        saved,
+        note: None,
+        body: Body::Hiperdrive(Box::new(profile)),
+        unknown: Default::default(),
+        schema: 1,
+        beyond: Vec::new(),
+    }
 }
 
 fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
@@ -77,12 +84,22 @@ fn what_is_not_known_is_kept() {
     let profile = document.body.hiperdrive().unwrap();
     assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
     let written = document.emit();
-    for kept in
-        ["\"owner\": (name: \"CK\"),", "axis: \"feed\",", "\"spare\": Some(3),", "colour: \"red\",", "by: \"CK\""]
-    {
+    for kept in [
+        "\"owner\": (name: \"CK\"),",
+        "{\"axis\": \"feed\"}",
+        "\"spare\": Some(3),",
+        "{\"colour\": \"red\"}",
+        "{\"by\": \"CK\"}",
+    ] {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
-    assert_eq!(Document::parse(&written), Ok(document));
+    assert_eq!(document.beyond.len(), 5);
+    let again = Document::parse(&written).unwrap();
+    assert_eq!(
+        (again.emit(), again.beyond.len()),
+        (written, 2),
+        "those among the parameters stay there, and are named"
+    );
 }
 
 #[test]

@@ -16,7 +16,14 @@ fn profile(text: &str) -> SsiProfile {
 }
 
 fn document(profile: SsiProfile) -> Document {
-    Document { saved: None, note: None, body: Body::Ssi(profile), unknown: Default::default() }
+    Document {
+        saved: None,
+        note: None,
+        body: Body::Ssi(profile),
+        unknown: Default::default(),
+        schema: 1,
+        beyond: Vec::new(),
+    }
 }
 
 fn of_family(text: &str) -> SsiProfile {
@@ -214,32 +221,32 @@ fn what_is_not_known_is_kept() {
     let read = Document::parse(&text).unwrap();
     let written = read.emit();
     for kept in [
-        "    owner: (floors: [1, 2], name: \"CK\"),",
-        "        drawn: \"a\",",
-        "clock: 24, meaning: \"warning\", cleared_by_transfer: true, colour: Some(\"b\")),",
-        "parity: (clock: 25, even: false, by: \"c\"),",
-        "repeat: (word: 25, gap: 1, by: \"d\"),",
-        "(name: \"fault\", word: \"ones\", meaning: \"invalid\", seen: \"e\"),",
-        "        module: \"f\",",
+        "    extra: {\"owner\": (floors: [1, 2], name: \"CK\")},",
+        "        extra: {\"drawn\": \"a\"},",
+        "clock: 24, meaning: \"warning\", cleared_by_transfer: true, extra: {\"colour\": Some(\"b\")}),",
+        "parity: (clock: 25, even: false, extra: {\"by\": \"c\"}),",
+        "repeat: (word: 25, gap: 1, extra: {\"by\": \"d\"}),",
+        "(name: \"fault\", word: \"ones\", meaning: \"invalid\", extra: {\"seen\": \"e\"}),",
+        "        extra: {\"module\": \"f\"},",
     ] {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
+    assert_eq!(read.beyond.len(), 7);
+    let read = Document { beyond: Vec::new(), ..read };
     assert_eq!(Document::parse(&written).unwrap(), read);
     // What stood at a bit stays with it, also where another comes before it.
     let mut moved = read.body.into_ssi().unwrap();
     moved.descriptor.errors.reverse();
     let written = document(moved).emit();
-    assert!(
-        written.contains(
-            "(name: \"quote \\\" and ä\", clock: 24, meaning: \"warning\", cleared_by_transfer: true, colour"
-        )
-    );
+    assert!(written.contains(
+        "(name: \"quote \\\" and ä\", clock: 24, meaning: \"warning\", cleared_by_transfer: true, extra: {\"colour"
+    ));
 }
 
 #[test]
 fn a_wrong_profile_is_told_where() {
     let cases = [
-        ("frame:", "fram:", "frame is missing"),
+        ("frame:", "fram:", "line 3, column 5: fram is not known, and frame is missing"),
         ("clocks: 27,", "", "frame.clocks is missing"),
         ("clocks: 27", "clocks: 300", "frame.clocks must be a number from 0 to 255"),
         ("clocks: 27", "clocks: 65", "frame: a frame has 1 to 64 clocks, not 65"),

@@ -1,0 +1,90 @@
+//! Why a text is not a profile.
+
+use super::Body;
+use crate::protocol::ssi::LayoutError;
+
+/// Why a text is not a profile.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProfileError {
+    /// Not RON.
+    #[error("line {line}, column {column}: {what}")]
+    Syntax {
+        /// Counted from 1.
+        line: usize,
+        /// Counted from 1.
+        column: usize,
+        /// What the parser says.
+        what: String,
+    },
+    /// The name of an entry is not known, and one like it is missing.
+    #[error("line {line}, column {column}: {path} is not known, and {meant} is missing")]
+    Misspelt {
+        /// Counted from 1.
+        line: usize,
+        /// Counted from 1.
+        column: usize,
+        /// Where: `fields[2].statsu`.
+        path: String,
+        /// The name that is missing.
+        meant: String,
+    },
+    /// No version of a profile's form, or a later one where it has to be known as a whole.
+    #[error("schema {found}; this program knows schema 1 to {known}")]
+    Schema {
+        /// What the file says.
+        found: u32,
+        /// The newest that is known.
+        known: u32,
+    },
+    /// Not a kind of device that this program saves.
+    #[error("device {found:?}; this program knows {}", quoted_kinds())]
+    Device {
+        /// What the file says.
+        found: String,
+    },
+    /// A kind of device that this program saves, and not the one that is asked for.
+    #[error("a profile of a {found} device where one of a {wanted} device is needed")]
+    OtherKind {
+        /// What the file says.
+        found: &'static str,
+        /// What is needed.
+        wanted: &'static str,
+    },
+    /// Something has to be there and is not.
+    #[error("{path} is missing")]
+    Missing {
+        /// Where: `fields[2].status`.
+        path: String,
+    },
+    /// Something is of another kind.
+    #[error("{path} must be {expected}")]
+    Shape {
+        /// Where.
+        path: String,
+        /// What belongs there.
+        expected: &'static str,
+    },
+    /// A value that cannot be.
+    #[error("{path}: {what}")]
+    Value {
+        /// Where.
+        path: String,
+        /// What is wrong, and what is allowed.
+        what: String,
+    },
+    /// An SSI frame that cannot work.
+    #[error("{path}: {cause}")]
+    Frame {
+        /// Where.
+        path: String,
+        /// Why not.
+        cause: LayoutError,
+    },
+}
+
+fn quoted_kinds() -> String {
+    let kinds = Body::KINDS.map(|kind| format!("{kind:?}"));
+    let [first, between @ .., last] = &kinds;
+    let between: String = between.iter().map(|kind| format!(", {kind}")).collect();
+    format!("{first}{between} and {last}")
+}

@@ -1,0 +1,134 @@
+//! Misspelt names of entries, and entries that the schema does not have, as they are found while a profile is read.
+
+use std::cell::{Cell, RefCell};
+
+use super::ProfileError;
+
+/// What the structures of a file have in common while it is read.
+#[derive(Default)]
+pub(super) struct Reading {
+    /// The file is of a newer schema: its entries that are not known are kept.
+    is_newer: Cell<bool>,
+    /// Places of entries beyond the schema.
+    beyond: RefCell<Vec<String>>,
+    /// The misspelt name of an entry that was not found: what an error about the entry comes from.
+    slip: RefCell<Option<Slip>>,
+}
+
+/// A name that is another one but for a slip of the hand. The one with the fewest letters to change is the least.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Slip {
+    /// How many letters differ.
+    pub(super) letters: usize,
+    /// Where it stands.
+    pub(super) path: String,
+    /// The name that is meant.
+    pub(super) meant: String,
+}
+
+impl Slip {
+    /// The error that tells it, without its line yet.
+    pub(super) fn error(self) -> ProfileError {
+        let Slip { path, meant, .. } = self;
+        ProfileError::Misspelt { line: 0, column: 0, path, meant }
+    }
+}
+
+impl Reading {
+    /// The file is of a newer schema.
+    pub(super) fn set_newer(&self) {
+        self.is_newer.set(true);
+    }
+
+    pub(super) fn is_newer(&self) -> bool {
+        self.is_newer.get()
+    }
+
+    /// Something at this place is beyond the schema.
+    pub(super) fn is_beyond(&self, path: String) {
+        self.beyond.borrow_mut().push(path);
+    }
+
+    /// Places of entries beyond the schema, in the order of reading.
+    pub(super) fn beyond(&self) -> Vec<String> {
+        self.beyond.borrow().clone()
+    }
+
+    /// Reading ended early, and a name is misspelt where it ended. The innermost structure counts.
+    pub(super) fn is_misspelt(&self, slip: Slip) {
+        self.slip.borrow_mut().get_or_insert(slip);
+    }
+
+    /// The error as it has to be told: about the misspelt name, where that is what is wrong. What is said of another entry
+    /// comes from a misspelt one only where no more than a letter differs.
+    pub(super) fn told(&self, error: ProfileError) -> ProfileError {
+        let Some(slip) = self.slip.take() else { return error };
+        let is_it = match &error {
+            ProfileError::Misspelt { .. } => false,
+            ProfileError::Missing { path } => path.ends_with(&slip.meant),
+            _ => slip.letters <= 1,
+        };
+        if is_it { slip.error() } else { error }
+    }
+}
+
+/// How many letters differ between a name and the one that is meant, where that is a slip of the hand: a few do, or the one
+/// begins with the other. Case, hyphens and underscores do not count.
+pub(super) fn letters_apart(name: &str, meant: &str) -> Option<usize> {
+    let plain = |text: &str| -> Vec<char> {
+        text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
+    };
+    let (name, meant) = (plain(name), plain(meant));
+    let (shorter, longer) = if name.len() < meant.len() { (&name, &meant) } else { (&meant, &name) };
+    let begins = shorter.len() >= 3 && longer.starts_with(shorter);
+    let letters = distance(&name, &meant);
+    (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
+}
+
+/// Letters that have to be put in, left out, replaced or exchanged with their neighbour to make one of the other.
+fn distance(from: &[char], to: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=to.len()).collect();
+    for (row, letter) in from.iter().enumerate() {
+        let mut next = vec![row + 1];
+        for (column, other) in to.iter().enumerate() {
+            let at = |line: &[usize], at: usize| line.get(at).copied().unwrap_or(usize::MAX - 1);
+            let mut least = at(&last, column) + usize::from(letter != other);
+            least = least.min(at(&last, column + 1) + 1).min(at(&next, column) + 1);
+            let is_exchanged =
+                row > 0 && column > 0 && from.get(row - 1) == Some(other) && to.get(column - 1) == Some(letter);
+            if is_exchanged {
+                least = least.min(at(&before, column - 1) + 1);
+            }
+            next.push(least);
+        }
+        (before, last) = (last, next);
+    }
+    last.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_told_from_another_name() {
+        let cases = [
+            ("filtr", "filter", Some(1)),
+            ("presett", "preset", Some(1)),
+            ("fitler", "filter", Some(1)),
+            ("Serial-Number", "serial_number", Some(0)),
+            ("pre", "preset", Some(3)),
+            ("serial", "serial_number", Some(6)),
+            ("identy", "identity", Some(2)),
+            ("owner", "note", None),
+            ("by", "item", None),
+            ("colour", "counter", None),
+            ("multiturn_bits", "singleturn_bits", None),
+        ];
+        for (name, meant, letters) in cases {
+            assert_eq!(letters_apart(name, meant), letters, "{name} {meant}");
+            assert_eq!(letters_apart(meant, name), letters, "{meant} {name}");
+        }
+    }
+}
