@@ -9,11 +9,13 @@ use crate::app::Text;
 use crate::app::closing::MUCH;
 use crate::app::recorder::{self, GroupId, Line, LineId, Recorder};
 use crate::signal::history::{Flags, Kind, Part, Value};
-use crate::signal::{Motion, Rates, Time, Unwrap};
+use crate::signal::{Rates, Time};
 use crate::units::Moment;
 
+mod follower;
 mod meaning;
 
+use follower::Follower;
 pub(super) use meaning::Meaning;
 
 /// Positions that are kept: more than a day at the fastest rate of a serial line.
@@ -25,8 +27,6 @@ const APART: i64 = 5_000_000_000;
 const LATE: i64 = 400_000_000;
 /// Likewise between watched values, which come more slowly.
 const WATCHED_APART: i64 = APART;
-/// Nanoseconds over which speed is averaged.
-const WINDOW: i64 = 250_000_000;
 /// Values of one watched thing that are kept.
 const WATCHED: usize = 500_000;
 /// Nanoseconds that are shown to begin with.
@@ -107,14 +107,6 @@ struct Watched<W> {
     active: bool,
 }
 
-/// Makes positions that go on from positions that go round.
-#[derive(Debug)]
-struct Follower {
-    meaning: Meaning,
-    unwrap: Unwrap,
-    motion: Motion,
-}
-
 /// Positions on their way into the recorder.
 #[derive(Debug, Default)]
 struct Columns {
@@ -133,13 +125,6 @@ impl Columns {
         self.speed.push(rates.speed.unwrap_or(f64::NAN));
         self.acceleration.push(rates.acceleration.unwrap_or(f64::NAN));
         self.flags.push(flags);
-    }
-}
-
-impl Follower {
-    fn new(meaning: Meaning) -> Self {
-        let unwrap = meaning.range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear);
-        Follower { meaning, unwrap, motion: Motion::over(WINDOW) }
     }
 }
 
@@ -225,24 +210,23 @@ impl<W: Watchable> Track<W> {
             // Read on its own between two samples that are recorded already.
             return;
         }
-        if sighting.is_bad || self.newest.is_some_and(|newest| time.nanoseconds_since(newest) > self.apart) {
-            self.lose_track();
-        }
         self.newest = Some(time);
         let Some(word) = sighting.position else {
-            self.lose_track();
+            // A damaged frame: when the positions on both sides were taken is known.
+            if let Some(follower) = &mut self.follower {
+                follower.miss();
+            }
             return columns.push(time, self.last, Rates::default(), Flags::BAD);
         };
+        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.joins(time, self.apart)) {
+            self.lose_track();
+        }
         self.last = word;
         let Some(follower) = &mut self.follower else { return };
-        let Some(next) = follower.unwrap.next(word).filter(|_| !sighting.is_bad) else {
+        let Some((next, rates)) = follower.next(time, word).filter(|_| !sighting.is_bad) else {
             self.lose_track();
             return columns.push(time, word, Rates::default(), Flags::BAD);
         };
-        if next.broken {
-            follower.motion.reset();
-        }
-        let rates = follower.motion.next(time, next.steps);
         let mut flags = if next.broken { Flags::BREAK } else { Flags::NONE };
         if sighting.is_warned {
             flags |= Flags::WARNING;
@@ -414,8 +398,7 @@ impl<W: Watchable> Track<W> {
     /// How the next position goes on from the last is not known.
     fn lose_track(&mut self) {
         if let Some(follower) = &mut self.follower {
-            follower.unwrap.gap();
-            follower.motion.reset();
+            follower.lose_track();
         }
     }
 

@@ -69,11 +69,12 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     // One that was read on its own before is not recorded again.
     track.add(&stream(5, 1), &meaning);
     let (none, bad, broken) = (Flags::NONE, Flags::BAD | Flags::BREAK, Flags::BREAK);
+    // A damaged one lies between two that are joined; one that the device calls invalid parts what is before and behind it.
     let expected = [
         (0, 0.0, none),
         (50_000, 50.0, none),
         (100_000, 50.0, bad),
-        (150_000, 150.0, broken),
+        (150_000, 150.0, none),
         (200_000, 200.0, bad),
         (250_000, 250.0, broken | Flags::WARNING),
         (450_000, 450.0, broken),
@@ -82,6 +83,44 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     ];
     assert_eq!(samples(&track, 0), expected);
     assert_eq!((track.positions(), track.dropped()), (9, 3));
+}
+
+/// Issue 22.21: one frame of ten is damaged, and the speed is there as soon as a window is over and stays: 50 steps in 50 µs.
+#[test]
+fn damaged_frames_do_not_take_the_speed_away() {
+    let meaning = Meaning::of_turns(Some(1000), 1000.0);
+    for damaged in [10, 3] {
+        let mut track = Track::<Nothing>::default();
+        let mut all = stream(0, 20_000);
+        all.iter_mut().skip(1).step_by(damaged).for_each(|own| (own.position, own.is_bad) = (None, true));
+        all.chunks(173).for_each(|portion| track.add(portion, &meaning));
+        let speeds = samples(&track, 1);
+        let is_damaged = |number: usize| number % damaged == 1;
+        for (number, (_, speed, flags)) in speeds.iter().enumerate().skip(5_010) {
+            assert_eq!(flags.contains(Flags::BAD), is_damaged(number));
+            assert!(is_damaged(number) == speed.is_nan(), "{number}");
+            assert!(speed.is_nan() || (speed - 1e6).abs() < 1e-3, "{number}: {speed}");
+        }
+        let places = samples(&track, 0);
+        assert!(
+            (3..20_000).filter(|at| !is_damaged(*at)).all(|at| places[at].1 == places[3].1 + 50.0 * (at - 3) as f64)
+        );
+    }
+}
+
+/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps has come round after 20 samples: so many damaged ones are not
+/// bridged, a few are.
+#[test]
+fn a_shaft_that_may_have_come_round_unseen_is_not_followed() {
+    let meaning = Meaning::of_turns(Some(1000), 1000.0);
+    for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
+        let mut track = Track::<Nothing>::default();
+        let mut all = stream(0, 50);
+        all.iter_mut().skip(10).take(missing).for_each(|own| (own.position, own.is_bad) = (None, true));
+        track.add(&all, &meaning);
+        let (_, _, flags) = samples(&track, 0)[10 + missing];
+        assert_eq!(flags == Flags::BREAK, is_broken, "{missing}: {flags:?}");
+    }
 }
 
 /// Positions once a second: so many, from a second on.

@@ -1,0 +1,73 @@
+//! Positions that go on, made of positions that go round, and how fast they change; across a damaged one too, where the shaft
+//! cannot have come round unseen.
+
+use super::Meaning;
+use crate::signal::{Motion, Rates, Time, Unwrap, Unwrapped};
+
+/// Nanoseconds over which speed is averaged.
+const WINDOW: i64 = 250_000_000;
+
+/// Makes positions that go on from positions that go round.
+#[derive(Debug)]
+pub(super) struct Follower {
+    /// What they mean.
+    pub(super) meaning: Meaning,
+    unwrap: Unwrap,
+    motion: Motion,
+    /// The last position, as it goes on.
+    last: Option<(Time, i64)>,
+    /// Steps/s between the last two positions, whichever way.
+    pace: Option<f64>,
+    /// Samples without a position have come since the last one.
+    has_missed: bool,
+}
+
+impl Follower {
+    pub(super) fn new(meaning: Meaning) -> Self {
+        let unwrap = meaning.range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear);
+        Follower { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
+    }
+
+    /// The next position is joined to the last one: it comes soon enough, and where samples without a position lie between,
+    /// the shaft cannot have gone round unseen at the pace that it had.
+    pub(super) fn joins(&self, time: Time, apart: i64) -> bool {
+        let Some((before, _)) = self.last else { return true };
+        if time.nanoseconds_since(before) > apart {
+            return false;
+        }
+        let Some(range) = self.meaning.range.filter(|_| self.has_missed) else { return true };
+        self.pace.is_some_and(|pace| pace * time.seconds_since(before) < range as f64 / 4.0)
+    }
+
+    /// A sample without a position came.
+    pub(super) fn miss(&mut self) {
+        self.has_missed = true;
+    }
+
+    /// The next position as it goes on, and how fast; `None` where it lies outside the range.
+    pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(Unwrapped, Rates)> {
+        let next = self.unwrap.next(word)?;
+        if next.broken {
+            self.motion.reset();
+            (self.last, self.pace) = (None, None);
+        }
+        self.follow(time, next.steps);
+        Some((next, self.motion.next(time, next.steps)))
+    }
+
+    fn follow(&mut self, time: Time, steps: i64) {
+        let pace = |(before, from): (Time, i64)| {
+            let seconds = time.seconds_since(before);
+            (seconds > 0.0).then(|| (steps.saturating_sub(from) as f64 / seconds).abs())
+        };
+        self.pace = self.last.and_then(pace).or(self.pace);
+        (self.last, self.has_missed) = (Some((time, steps)), false);
+    }
+
+    /// How the next position goes on from the last is not known.
+    pub(super) fn lose_track(&mut self) {
+        self.unwrap.gap();
+        self.motion.reset();
+        (self.last, self.pace, self.has_missed) = (None, None, false);
+    }
+}
