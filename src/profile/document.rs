@@ -92,7 +92,7 @@ impl Document {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
         }
         if schema > SCHEMA {
-            reading.set_newer();
+            reading.set_newer(schema);
         }
         let device: String = entries.required("device", "a text")?;
         let saved = entries.optional("saved", "a text")?;

@@ -2,13 +2,13 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::ProfileError;
+use super::{ProfileError, SCHEMA};
 
 /// What the structures of a file have in common while it is read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// The file is of a newer schema: its entries that are not known are kept.
-    is_newer: Cell<bool>,
+    /// The newer schema that the file is of: its entries that are not known are kept.
+    newer: Cell<Option<u32>>,
     /// Places of entries beyond the schema.
     beyond: RefCell<Vec<String>>,
     /// The misspelt name of an entry that was not found: what an error about the entry comes from.
@@ -35,13 +35,13 @@ impl Slip {
 }
 
 impl Reading {
-    /// The file is of a newer schema.
-    pub(super) fn set_newer(&self) {
-        self.is_newer.set(true);
+    /// The file is of this newer schema.
+    pub(super) fn set_newer(&self, schema: u32) {
+        self.newer.set(Some(schema));
     }
 
     pub(super) fn is_newer(&self) -> bool {
-        self.is_newer.get()
+        self.newer.get().is_some()
     }
 
     /// Something at this place is beyond the schema.
@@ -60,8 +60,11 @@ impl Reading {
     }
 
     /// The error as it has to be told: about the misspelt name, where that is what is wrong. What is said of another entry
-    /// comes from a misspelt one only where no more than a letter differs.
+    /// comes from a misspelt one only where no more than a letter differs. A newer schema is what is wrong with its files.
     pub(super) fn told(&self, error: ProfileError) -> ProfileError {
+        if let Some(found) = self.newer.get() {
+            return ProfileError::Schema { found, known: SCHEMA };
+        }
         let Some(slip) = self.slip.take() else { return error };
         let is_it = match &error {
             ProfileError::Misspelt { .. } => false,

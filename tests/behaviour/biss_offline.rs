@@ -146,3 +146,26 @@ fn two_profiles_are_compared_without_a_link() {
     bench.run(&["diff", &left, &other, "--json"]).fails(1, &["other.ron", "hiperface", "biss"]);
     bench.run(&["diff", &other, &left, "--json"]).fails(1, &["left.ron", "hiperface", "biss"]);
 }
+
+/// Issue 22.17: a misspelt name stops a restore with its place, and a newer schema is compared but not restored.
+#[test]
+fn a_misspelt_name_is_told_and_a_newer_schema_is_only_looked_at() {
+    let bench = Bench::new();
+    for (name, slip, place) in [("filter", "filtr", "line 14, column 5"), ("preset", "presett", "line 15, column 5")] {
+        let file = bench.write("slip.ron", PROFILE.replace(&format!("    {name}:"), &format!("    {slip}:")));
+        for command in [
+            &["restore", &file, "--yes", "--link", "sim:"][..],
+            &["diff", &file, &file],
+            &["verify", &file, "--link", "sim:"],
+        ] {
+            bench.run(command).fails(1, &["slip.ron", place, slip, name]);
+        }
+    }
+    let text = PROFILE.replace("schema: 1", "schema: 9").replace("    filter:", "    motor: \"M1\", filter:");
+    let newer = bench.write("newer.ron", &text);
+    let ran = bench.run(&["diff", &newer, &newer, "--json"]);
+    ran.says(&["newer.ron", "schema 9", "motor"]);
+    assert_eq!(ran.json()["equal"], json!(true));
+    bench.run(&["restore", &newer, "--yes", "--link", "sim:"]).fails(1, &["newer.ron", "schema 9", "1 to 1"]);
+    assert_eq!(bench.read("newer.ron"), text);
+}

@@ -113,6 +113,24 @@ fn a_profile_that_cannot_be_read_is_told_and_left() {
     assert_eq!(desk.studio.devices().len(), 1);
 }
 
+/// Issue 22.17: what this program does not know of a newer schema would be lost with a save.
+#[test]
+fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
+    let (mut desk, path) = saved();
+    let encoder = desk.encoder().session.id;
+    let newer = read_text(&path).unwrap().replace("schema: 1", "schema: 9");
+    fs::write(&path, &newer).unwrap();
+    open(&mut desk, &path);
+    assert_eq!(desk.times_told("profile.newer"), 1);
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::Save(path.clone()));
+    assert_eq!(desk.times_told("profile.newer"), 2);
+    desk.ask(Hiperface::WriteInto(encoder));
+    assert_eq!((desk.times_told("profile.newer"), desk.encoder().session.name().as_str()), (3, "mine.ron"));
+    assert_eq!(fs::read_to_string(&path).unwrap(), newer);
+    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+}
+
 #[test]
 fn a_profile_read_again_keeps_its_edits() {
     let (mut desk, path) = saved();
